@@ -25,7 +25,7 @@
 #include "thimble/tree/octree.h"
 #include "thimble/tree/shared_tree.h"
 #include "wide/lit/lit_renderer.h"
-#include "wide/renderer.h"
+#include "wide/raster/renderer.h"
 
 namespace thimble::tests {
 namespace {

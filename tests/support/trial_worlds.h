@@ -11,7 +11,7 @@
 
 #include "scene/built_scene.h"
 #include "thimble/picture/camera.h"
-#include "wide/voxel_lists.h"
+#include "wide/raster/voxel_lists.h"
 
 namespace thimble::tests {
 

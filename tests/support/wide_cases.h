@@ -14,7 +14,7 @@
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/octree.h"
-#include "wide/renderer.h"
+#include "wide/raster/renderer.h"
 
 namespace thimble::tests {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "support/trial_worlds.h"
-#include "wide/renderer.h"
+#include "wide/raster/renderer.h"
 
 namespace thimble::tests {
 namespace {

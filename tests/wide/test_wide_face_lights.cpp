@@ -82,11 +82,11 @@ TEST_CASE("wide: the light on many faces, on edges and corners, with any effects
     lit::Frame frame{scene.tree, camera, shading, lit.scene, lit.options, set};
     constexpr std::uint32_t kCount = 200;
     const wide::FaceLightsShape shape(set, lit.scene, kCount);
-    wide::Taker counter(nullptr);
+    wide::ArrayArena counter(nullptr);
     wide::FaceLightsParts parts;
     parts.lay_out(shape, &counter);
-    const HeapBytes bytes(counter.used() + wide::Taker::kAlignment);
-    wide::Taker taker(wide::Taker::aligned(bytes.span().data));
+    const HeapBytes bytes(counter.used() + wide::ArrayArena::kAlignment);
+    wide::ArrayArena taker(wide::ArrayArena::aligned(bytes.span().data));
     wide::FaceLights lights(frame, map, shape, &taker);
     std::vector<lit::Spot> spots;
     for (std::uint32_t i = 0; i < kCount; ++i) {

@@ -13,8 +13,8 @@
 #include "support/hard_frames.h"
 #include "support/wide_cases.h"
 #include "thimble/tree/compact_tree.h"
-#include "wide/exact.h"
-#include "wide/surface.h"
+#include "wide/raster/exact.h"
+#include "wide/raster/surface.h"
 
 namespace thimble::tests {
 namespace {

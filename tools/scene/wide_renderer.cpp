@@ -5,7 +5,7 @@
 
 #include "scene/built_scene.h"
 #include "scene/host_memory.h"
-#include "wide/renderer.h"
+#include "wide/raster/renderer.h"
 #include "wide/threads.h"
 
 namespace thimble::tools {

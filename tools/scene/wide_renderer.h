@@ -15,8 +15,8 @@
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
 #include "thimble/tree/compact_tree.h"
-#include "wide/kernels.h"
-#include "wide/voxel_lists.h"
+#include "wide/raster/kernels.h"
+#include "wide/raster/voxel_lists.h"
 
 namespace thimble::wide {
 class Threads;

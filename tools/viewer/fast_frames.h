@@ -11,7 +11,7 @@
 #include "thimble/base/memory.h"
 #include "viewer/finished_picture.h"
 #include "viewer/pace.h"
-#include "wide/renderer.h"
+#include "wide/raster/renderer.h"
 
 namespace thimble::tools::viewer {
 

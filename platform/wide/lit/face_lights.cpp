@@ -40,38 +40,38 @@ FaceLightsShape::FaceLightsShape(EffectSet effects, const LitScene& scene, uint3
   }
 }
 
-void FaceLightsParts::lay_out(const FaceLightsShape& shape, Taker* taker) {
+void FaceLightsParts::lay_out(const FaceLightsShape& shape, ArrayArena* arena) {
   const size_t count = shape.faces;
   const size_t of_lamps = shape.has_lamps ? count + kMostLightLanes : 0;
   const size_t of_ways = shape.has_through ? count : 0;
-  faces = taker->take<LitFace>(count);
-  light = taker->take<lit::Color>(count);
-  rays = taker->take<Ray>(count * std::max(1U, shape.around));
-  asking = taker->take<uint32_t>(count);
-  any = taker->take<uint8_t>(count);
-  points = taker->take<RayPoint>(std::max(of_lamps, count * shape.around));
-  bright = taker->take<lit::Color>(count);
-  order = taker->take<uint32_t>(of_lamps);
-  numerator = taker->take<int32_t>(of_lamps);
+  faces = arena->take<LitFace>(count);
+  light = arena->take<lit::Color>(count);
+  rays = arena->take<Ray>(count * std::max(1U, shape.around));
+  asking = arena->take<uint32_t>(count);
+  any = arena->take<uint8_t>(count);
+  points = arena->take<RayPoint>(std::max(of_lamps, count * shape.around));
+  bright = arena->take<lit::Color>(count);
+  order = arena->take<uint32_t>(of_lamps);
+  numerator = arena->take<int32_t>(of_lamps);
   for (int axis = 0; axis < 3; ++axis) {
-    at[axis] = taker->take<int32_t>(of_lamps);
-    direction[axis] = taker->take<int32_t>(of_lamps);
-    brightness[axis] = taker->take<int32_t>(of_lamps);
+    at[axis] = arena->take<int32_t>(of_lamps);
+    direction[axis] = arena->take<int32_t>(of_lamps);
+    brightness[axis] = arena->take<int32_t>(of_lamps);
   }
-  in_water = taker->take<uint8_t>(shape.has_water ? count : 0);
-  under_way = taker->take<uint32_t>(of_ways);
-  through = taker->take<lit::LightRay>(of_ways);
-  ways = taker->take<lit::LightWay>(of_ways);
-  answers = taker->take<lit::Answer>(of_ways);
+  in_water = arena->take<uint8_t>(shape.has_water ? count : 0);
+  under_way = arena->take<uint32_t>(of_ways);
+  through = arena->take<lit::LightRay>(of_ways);
+  ways = arena->take<lit::LightWay>(of_ways);
+  answers = arena->take<lit::Answer>(of_ways);
   for (const lit::Question question : {lit::Question::kClosest, lit::Question::kBefore, lit::Question::kOn}) {
     lit::Asked& asked = questions[static_cast<int>(question)];
-    asked.rays = taker->take<Ray>(of_ways);
-    asked.answer = taker->take<uint32_t>(of_ways);
-    asked.before = question == lit::Question::kClosest ? nullptr : taker->take<RayPoint>(of_ways);
-    asked.in = question == lit::Question::kOn ? taker->take<uint16_t>(of_ways) : nullptr;
+    asked.rays = arena->take<Ray>(of_ways);
+    asked.answer = arena->take<uint32_t>(of_ways);
+    asked.before = question == lit::Question::kClosest ? nullptr : arena->take<RayPoint>(of_ways);
+    asked.in = question == lit::Question::kOn ? arena->take<uint16_t>(of_ways) : nullptr;
   }
-  hits = taker->take<Hit>(of_ways);
-  exits = taker->take<MediumExit>(of_ways);
+  hits = arena->take<Hit>(of_ways);
+  exits = arena->take<MediumExit>(of_ways);
 }
 
 // Rays were checked when they were asked, so none is refused.
@@ -100,14 +100,15 @@ void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hi
   on.count = 0;
 }
 
-FaceLights::FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, Taker* taker)
+FaceLights::FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape,
+                       ArrayArena* arena)
     : frame_(frame),
       once_(frame),
       asking_(frame),
       map_(map),
       open_(map, frame.scene.occlusion, shape.around),
       shape_(shape) {
-  parts_.lay_out(shape, taker);
+  parts_.lay_out(shape, arena);
   asking_.questions = parts_.questions;
   asking_.once = &once_;
   const bool has_lights = (frame.effects & Effect::kDirectLight) != 0;

@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 #include "thimble/light/host/asked.h"
+#include "wide/lit/array_arena.h"
 #include "wide/lit/open_space.h"
-#include "wide/lit/taker.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -34,7 +34,7 @@ struct FaceLightsShape {
 };
 
 struct FaceLightsParts {
-  void lay_out(const FaceLightsShape& shape, Taker* taker);
+  void lay_out(const FaceLightsShape& shape, ArrayArena* arena);
 
   LitFace* faces;
   lit::Color* light;   ///< by face
@@ -70,7 +70,7 @@ class FaceLights {
   static constexpr uint32_t kInside = 6;  ///< the first face number of voxels in which a ray begins
   static constexpr uint32_t kSides = 12;
 
-  FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, Taker* taker);
+  FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape, ArrayArena* arena);
   // asking_ points to once_.
   FaceLights(const FaceLights&) = delete;
   FaceLights& operator=(const FaceLights&) = delete;

@@ -1,5 +1,5 @@
 /// @file kernels.h
-/// The loops of lit pictures. They are compiled for several instruction sets, as those of wide/kernels.h.
+/// The loops of lit pictures. They are compiled for several instruction sets, as those of wide/raster/kernels.h.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_KERNELS_H
 #define THIMBLE_PLATFORM_WIDE_LIT_KERNELS_H
 

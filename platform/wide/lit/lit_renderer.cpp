@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "wide/lit/opaque_stream.h"
-#include "wide/lit/pixel_flow.h"
+#include "wide/lit/pixel_queue.h"
 #include "wide/lit/stream.h"
 
 namespace thimble::wide {
@@ -21,8 +21,8 @@ size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
 }
 
 template <class Stream, class Shape>
-Status draw_by(const lit::Frame& frame, const RayMap& map, PixelFlow* flow, Bytes workspace, Threads* threads,
-               LitCounts* counts) {
+Status draw_by(const lit::Frame& frame, const RayMap& map, PixelQueue* queue, Bytes workspace,
+               Threads* threads, LitCounts* counts) {
   // As many threads as there is room for; then as many pixels at once as there is room for.
   size_t workers = threads == nullptr ? 1 : static_cast<size_t>(threads->count());
   workers = std::min(workers, workspace.size / least_lit_workspace_bytes(frame.effects, frame.scene));
@@ -38,7 +38,7 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, PixelFlow* flow, Byte
   const auto work = [&](int worker) {
     Stream stream(frame, map, shape,
                   workspace.subspan(static_cast<size_t>(worker) * shape.bytes(), shape.bytes()));
-    stream.draw(flow);
+    stream.draw(queue);
     while (adding.test_and_set()) {
     }
     if (counts != nullptr) {
@@ -54,11 +54,11 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, PixelFlow* flow, Byte
   return Status::kOk;
 }
 
-Status draw_by_either(const lit::Frame& frame, const RayMap& map, PixelFlow flow, Bytes workspace,
+Status draw_by_either(const lit::Frame& frame, const RayMap& map, PixelQueue queue, Bytes workspace,
                       Threads* threads, LitCounts* counts) {
   return is_opaque(frame.effects)
-             ? draw_by<OpaqueStream, OpaqueShape>(frame, map, &flow, workspace, threads, counts)
-             : draw_by<Stream, StreamShape>(frame, map, &flow, workspace, threads, counts);
+             ? draw_by<OpaqueStream, OpaqueShape>(frame, map, &queue, workspace, threads, counts)
+             : draw_by<Stream, StreamShape>(frame, map, &queue, workspace, threads, counts);
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, co
   if (status != Status::kOk) {
     return status;
   }
-  return draw_by_either(frame, map, PixelFlow(frame, band, stride, !is_opaque(effects)), workspace, threads,
+  return draw_by_either(frame, map, PixelQueue(frame, band, stride, !is_opaque(effects)), workspace, threads,
                         counts);
 }
 
@@ -124,7 +124,7 @@ Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& cam
   if (status != Status::kOk) {
     return status;
   }
-  return draw_by_either(frame, map, PixelFlow(frame, places, rgb), workspace, threads, counts);
+  return draw_by_either(frame, map, PixelQueue(frame, places, rgb), workspace, threads, counts);
 }
 
 }  // namespace thimble::wide

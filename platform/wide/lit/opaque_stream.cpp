@@ -28,26 +28,26 @@ OpaqueShape::OpaqueShape(EffectSet effects, const LitScene& scene, uint32_t slot
     : slots(slot_count), lights(effects, scene, slot_count) {}
 
 size_t OpaqueShape::bytes() const {
-  return Taker::bytes_of<OpaqueParts, FaceLightsParts>(*this, lights);
+  return ArrayArena::bytes_of<OpaqueParts, FaceLightsParts>(*this, lights);
 }
 
-void OpaqueParts::lay_out(const OpaqueShape& shape, Taker* taker) {
+void OpaqueParts::lay_out(const OpaqueShape& shape, ArrayArena* arena) {
   const size_t slots = shape.slots;
-  rays = taker->take<Ray>(slots);
-  hits = taker->take<Hit>(slots);
-  beyond = taker->take<uint32_t>(slots);
-  sky.lay_out(shape.slots, taker);
-  colors = taker->take<lit::Color>(slots);
-  places = taker->take<PixelSlot>(slots);
+  rays = arena->take<Ray>(slots);
+  hits = arena->take<Hit>(slots);
+  beyond = arena->take<uint32_t>(slots);
+  sky.lay_out(shape.slots, arena);
+  colors = arena->take<lit::Color>(slots);
+  places = arena->take<PixelSlot>(slots);
 }
 
 OpaqueStream::OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes)
     : frame_(frame),
       map_(map),
       shape_(shape),
-      taker_(Taker::laid_out(shape, bytes.data, &parts_)),
-      beyond_(frame, map, parts_.sky, shape.slots),
-      lights_(frame, map, shape.lights, &taker_) {
+      arena_(ArrayArena::laid_out(shape, bytes.data, &parts_)),
+      misses_(frame, map, parts_.sky, shape.slots),
+      lights_(frame, map, shape.lights, &arena_) {
   for (uint32_t material = 0; material < 256; ++material) {
     const Surface surface = lit::surface_of(frame, static_cast<uint8_t>(material));
     const bool shines = (frame.effects & Effect::kEmission) != 0 && surface.kind == SurfaceKind::kEmit;
@@ -113,7 +113,7 @@ void OpaqueStream::show_beyond(uint32_t count) {
   for (uint32_t i = 0; i < count; ++i) {
     parts_.sky.put(i, parts_.rays[parts_.beyond[i]].direction);
   }
-  beyond_.each_color(count,
+  misses_.each_color(count,
                      [&](uint32_t i, const lit::Color& color) { parts_.colors[parts_.beyond[i]] = color; });
 }
 
@@ -160,11 +160,11 @@ void OpaqueStream::light_up(uint32_t count) {
   paint();
 }
 
-void OpaqueStream::draw(PixelFlow* flow) {
-  PixelReader pixels(flow);
+void OpaqueStream::draw(PixelQueue* queue) {
+  PixelReader pixels(queue);
   for (;;) {
     uint32_t count = 0;
-    while (count < shape_.slots && (!pixels.row_is_done() || beyond_.begin_row(&pixels, &frame_.counts))) {
+    while (count < shape_.slots && (!pixels.row_is_done() || misses_.begin_row(&pixels, &frame_.counts))) {
       for (; count < shape_.slots && !pixels.row_is_done(); ++count) {
         pixels.take(&parts_.rays[count], &parts_.places[count]);
       }

@@ -12,11 +12,11 @@
 
 #include "thimble/base/memory.h"
 #include "thimble/light/host/asked.h"
-#include "wide/lit/beyond.h"
+#include "wide/lit/array_arena.h"
 #include "wide/lit/face_lights.h"
 #include "wide/lit/lit_renderer.h"
-#include "wide/lit/pixel_flow.h"
-#include "wide/lit/taker.h"
+#include "wide/lit/miss_shader.h"
+#include "wide/lit/pixel_queue.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -35,7 +35,7 @@ struct OpaqueShape {
 };
 
 struct OpaqueParts {
-  void lay_out(const OpaqueShape& shape, Taker* taker);
+  void lay_out(const OpaqueShape& shape, ArrayArena* arena);
 
   Ray* rays;  ///< the pixels' rays
   Hit* hits;
@@ -50,8 +50,8 @@ class OpaqueStream {
   /// `bytes` has shape.bytes(), at any address.
   OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes);
 
-  /// Draws pixels that it takes from the flow, until the flow ends.
-  void draw(PixelFlow* flow);
+  /// Draws pixels that it takes from the queue, until the queue ends.
+  void draw(PixelQueue* queue);
   LitCounts counts() const;
 
  private:
@@ -70,8 +70,8 @@ class OpaqueStream {
   const RayMap& map_;
   OpaqueShape shape_;
   OpaqueParts parts_;
-  Taker taker_;
-  Beyond beyond_;
+  ArrayArena arena_;
+  MissShader misses_;
   FaceLights lights_;
   uint32_t face_count_ = 0;
   Paint paints_[256];

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "thimble/light/host/optics.h"
-#include "wide/lit/taker.h"
+#include "wide/lit/array_arena.h"
 
 namespace thimble::wide {
 namespace {
@@ -13,34 +13,34 @@ constexpr uint32_t kSlopesASlot = 2;
 
 }  // namespace
 
-void StreamParts::lay_out(const StreamShape& shape, Taker* taker) {
-  slots = taker->take<StreamSlot>(shape.slots);
-  pending = taker->take<lit::PendingRay>(size_t{shape.slots} * shape.pending);
-  lights = taker->take<lit::KnownLight>(size_t{shape.slots} * shape.lights);
-  answers = taker->take<lit::Answer>(size_t{shape.slots} * shape.answers);
-  waiting = taker->take<uint32_t>(shape.slots);
+void StreamParts::lay_out(const StreamShape& shape, ArrayArena* arena) {
+  slots = arena->take<StreamSlot>(shape.slots);
+  pending = arena->take<lit::PendingRay>(size_t{shape.slots} * shape.pending);
+  lights = arena->take<lit::KnownLight>(size_t{shape.slots} * shape.lights);
+  answers = arena->take<lit::Answer>(size_t{shape.slots} * shape.answers);
+  waiting = arena->take<uint32_t>(shape.slots);
   uint32_t most_hits = 0;
   for (int i = 0; i < lit::kQuestions; ++i) {
     const bool names =
         i != static_cast<int>(lit::Question::kAny) && i != static_cast<int>(lit::Question::kOn);
     most_hits = names ? std::max(most_hits, shape.most[i]) : most_hits;
-    questions[i].rays = taker->take<Ray>(shape.most[i]);
-    questions[i].answer = taker->take<uint32_t>(shape.most[i]);
+    questions[i].rays = arena->take<Ray>(shape.most[i]);
+    questions[i].answer = arena->take<uint32_t>(shape.most[i]);
     const bool is_on = i == static_cast<int>(lit::Question::kOn);
     const bool has_point = is_on || i == static_cast<int>(lit::Question::kBefore);
-    questions[i].before = has_point ? taker->take<RayPoint>(shape.most[i]) : nullptr;
-    questions[i].in = is_on ? taker->take<uint16_t>(shape.most[i]) : nullptr;
+    questions[i].before = has_point ? arena->take<RayPoint>(shape.most[i]) : nullptr;
+    questions[i].in = is_on ? arena->take<uint16_t>(shape.most[i]) : nullptr;
   }
-  slopes = taker->take<lit::AskedSlope>(shape.most_slopes);
-  known_slopes = taker->take<KnownSlope>(shape.known_slopes);
-  known_windows = taker->take<KnownWindow>(shape.known_slopes / 4);
-  exits = taker->take<MediumExit>(shape.most[static_cast<int>(lit::Question::kOn)]);
-  any = taker->take<uint8_t>(shape.most[static_cast<int>(lit::Question::kAny)]);
-  hits = taker->take<Hit>(most_hits);
-  shown = taker->take<ShownFace>(shape.of_faces.faces);
-  done = taker->take<uint32_t>(shape.slots);
-  sky.lay_out(shape.of_faces.faces, taker);
-  beyond = taker->take<ShownBeyond>(shape.of_faces.faces);
+  slopes = arena->take<lit::AskedSlope>(shape.most_slopes);
+  known_slopes = arena->take<KnownSlope>(shape.known_slopes);
+  known_windows = arena->take<KnownWindow>(shape.known_slopes / 4);
+  exits = arena->take<MediumExit>(shape.most[static_cast<int>(lit::Question::kOn)]);
+  any = arena->take<uint8_t>(shape.most[static_cast<int>(lit::Question::kAny)]);
+  hits = arena->take<Hit>(most_hits);
+  shown = arena->take<ShownFace>(shape.of_faces.faces);
+  done = arena->take<uint32_t>(shape.slots);
+  sky.lay_out(shape.of_faces.faces, arena);
+  beyond = arena->take<ShownBeyond>(shape.of_faces.faces);
 }
 
 StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot_count)
@@ -80,7 +80,7 @@ StreamShape::StreamShape(EffectSet effects, const LitScene& scene, uint32_t slot
 }
 
 size_t StreamShape::bytes() const {
-  return Taker::bytes_of<StreamParts, FaceLightsParts>(*this, of_faces);
+  return ArrayArena::bytes_of<StreamParts, FaceLightsParts>(*this, of_faces);
 }
 
 Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes)
@@ -94,10 +94,10 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
       is_wet_((frame.effects & Effect::kWater) != 0),
       is_smooth_((frame.effects & Effect::kSmoothNormals) != 0),
       is_open_beyond_((frame.effects & (Effect::kWater | Effect::kFog)) == 0),
-      taker_(Taker::laid_out(shape, bytes.data, &parts_)),
-      beyond_(frame, map, parts_.sky, shape.of_faces.faces),
+      arena_(ArrayArena::laid_out(shape, bytes.data, &parts_)),
+      misses_(frame, map, parts_.sky, shape.of_faces.faces),
       slopes_(frame, parts_.known_slopes, parts_.known_windows, shape.known_slopes),
-      lights_(frame, map, shape.of_faces, &taker_) {
+      lights_(frame, map, shape.of_faces, &arena_) {
   frame_.questions = parts_.questions;
   asking_.questions = parts_.questions;
   frame_.slopes = parts_.slopes;
@@ -111,7 +111,7 @@ Stream::Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& sh
 
 bool Stream::begin(uint32_t number, PixelReader* pixels) {
   while (pixels->row_is_done()) {
-    if (!(is_open_beyond_ ? beyond_.begin_row(pixels, &frame_.counts) : pixels->begin_row())) {
+    if (!(is_open_beyond_ ? misses_.begin_row(pixels, &frame_.counts) : pixels->begin_row())) {
       return false;
     }
   }
@@ -232,7 +232,7 @@ bool Stream::show_beyond(uint32_t number) {
 
 // Faces as lit::face_color does, the sky as lit::sky_color.
 void Stream::light_up() {
-  beyond_.each_color(beyond_count_, [&](uint32_t i, const lit::Color& color) {
+  misses_.each_color(beyond_count_, [&](uint32_t i, const lit::Color& color) {
     lit::add(color, parts_.beyond[i].weight, &parts_.slots[parts_.beyond[i].pixel].sum);
   });
   beyond_count_ = 0;
@@ -313,8 +313,8 @@ LitCounts Stream::counts() const {
   return all;
 }
 
-void Stream::draw(PixelFlow* flow) {
-  PixelReader pixels(flow);
+void Stream::draw(PixelQueue* queue) {
+  PixelReader pixels(queue);
   uint32_t waiting = 0;
   while (waiting < shape_.slots && begin(waiting, &pixels)) {
     parts_.waiting[waiting] = waiting;

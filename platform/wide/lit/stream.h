@@ -8,10 +8,10 @@
 
 #include "thimble/base/memory.h"
 #include "thimble/light/host/asked.h"
-#include "wide/lit/beyond.h"
 #include "wide/lit/face_lights.h"
 #include "wide/lit/lit_renderer.h"
-#include "wide/lit/pixel_flow.h"
+#include "wide/lit/miss_shader.h"
+#include "wide/lit/pixel_queue.h"
 #include "wide/lit/slope_table.h"
 #include "wide/rays/ray_map.h"
 
@@ -55,7 +55,7 @@ struct ShownBeyond {
 };
 
 struct StreamParts {
-  void lay_out(const StreamShape& shape, Taker* taker);
+  void lay_out(const StreamShape& shape, ArrayArena* arena);
 
   StreamSlot* slots;
   lit::PendingRay* pending;
@@ -80,9 +80,9 @@ class Stream {
   /// `bytes` has shape.bytes(), at any address.
   Stream(const lit::Frame& frame, const RayMap& map, const StreamShape& shape, Bytes bytes);
 
-  /// Draws pixels that it takes from the flow, until the flow ends. Pixels that are done make room for others, so that
+  /// Draws pixels that it takes from the queue, until the queue ends. Pixels that are done make room for others, so that
   /// every slot has a pixel under way.
-  void draw(PixelFlow* flow);
+  void draw(PixelQueue* queue);
   LitCounts counts() const;
 
  private:
@@ -116,8 +116,8 @@ class Stream {
   bool is_smooth_;
   bool is_open_beyond_;  // nothing is between a ray's beginning and the sky that the tree does not hold
   StreamParts parts_;
-  Taker taker_;
-  Beyond beyond_;
+  ArrayArena arena_;
+  MissShader misses_;
   SlopeTable slopes_;
   FaceLights lights_;
   uint32_t face_count_ = 0;

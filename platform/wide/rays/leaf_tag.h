@@ -28,11 +28,11 @@ struct LeafTag {
   }
 };
 
-/// The second word, without its material, of a brick that is solid through in one material. In other bricks that word
+/// The second word, without its material, of a chunk that is solid through in one material. In other chunks that word
 /// is a node's number, or all ones.
-inline constexpr uint64_t kSolidBrick = uint64_t{1} << 63;
-constexpr bool is_solid_brick(uint64_t second) {
-  return second >> 8 == kSolidBrick >> 8;
+inline constexpr uint64_t kSolidChunk = uint64_t{1} << 63;
+constexpr bool is_solid_chunk(uint64_t second) {
+  return second >> 8 == kSolidChunk >> 8;
 }
 
 /// The voxels of a leaf, by the bits of its mask.

@@ -1,4 +1,4 @@
-// Makes the map of a compact tree: bricks and leaves in one walk over the nodes, then how far the empty cubes reach.
+// Makes the map of a compact tree: chunks and leaves in one walk over the nodes, then how far the empty cubes reach.
 #include <algorithm>
 
 #include "wide/rays/leaf_tag.h"
@@ -15,8 +15,8 @@ constexpr uint64_t kMaterials = 256;
 bool measure(const CompactTree& tree, MapShape* shape) {
   uint64_t begin = 0;
   uint64_t end = tree.empty() ? 0 : 1;
-  shape->top = uint64_t{1} << (3 * (map_level(tree) - kBrickLevel));
-  uint64_t bricks = 1;  // the brick that is solid through, which all such cubes share
+  shape->top = uint64_t{1} << (3 * (map_level(tree) - kChunkLevel));
+  uint64_t chunks = 1;  // the chunk that is solid through, which all such cubes share
   uint64_t leaves = kLeaves;
   uint64_t blocks = 0;
   uint64_t solid_cubes = 0;  // solid blocks of a cube's size or larger
@@ -31,10 +31,10 @@ bool measure(const CompactTree& tree, MapShape* shape) {
       solid += mask == 0 ? 1 : 0;
     }
     blocks += solid;
-    solid_cubes += level >= kBrickLevel ? solid : 0;
+    solid_cubes += level >= kChunkLevel ? solid : 0;
     const bool is_root = level == tree.level();
-    if (level == kBrickLevel || (is_root && level < kBrickLevel)) {
-      bricks += end - begin;
+    if (level == kChunkLevel || (is_root && level < kChunkLevel)) {
+      chunks += end - begin;
     }
     if (level == kLeafLevel || (is_root && level < kLeafLevel)) {
       leaves += end - begin;
@@ -51,10 +51,10 @@ bool measure(const CompactTree& tree, MapShape* shape) {
   if (has_tags(tree)) {
     const uint64_t of_materials = std::min(solid_cubes, kMaterials);
     leaves =
-        2 * leaves + kLeaves * of_materials;  // each leaf has a tag, except in bricks that are solid through
-    bricks += of_materials;
+        2 * leaves + kLeaves * of_materials;  // each leaf has a tag, except in chunks that are solid through
+    chunks += of_materials;
   }
-  shape->words = leaves + bricks * (has_nodes(tree) ? 2 : 1);
+  shape->words = leaves + chunks * (has_nodes(tree) ? 2 : 1);
   return begin == tree.node_count();
 }
 
@@ -70,23 +70,23 @@ size_t map_bytes(const MapShape& shape, const MediaShape& media) {
 
 class MapWriter : TreeWalk {
  public:
-  MapWriter(const CompactTree& tree, const MapShape& shape, uint32_t* top, uint64_t* bricks)
+  MapWriter(const CompactTree& tree, const MapShape& shape, uint32_t* top, uint64_t* chunks)
       : TreeWalk(tree, shape),
         top_(top),
-        bricks_(bricks),
-        bits_(map_level(tree) - kBrickLevel),
+        chunks_(chunks),
+        bits_(map_level(tree) - kChunkLevel),
         has_nodes_(has_nodes(tree)),
         has_tags_(has_tags(tree)),
         next_voxel_(tree.node_count()) {
     std::copy(shape.block_begin, shape.block_begin + kMaxLevel + 1, next_block_);
     std::fill(top, top + shape.top, kEmptyCube);
-    std::fill(brick_, brick_ + kLeaves, ~uint64_t{0});
-    put_brick(UINT64_MAX);
+    std::fill(chunk_, chunk_ + kLeaves, ~uint64_t{0});
+    put_chunk(UINT64_MAX);
   }
 
   void write() {
-    if (tree_.level() < kBrickLevel) {
-      write_brick(next_node_[tree_.level()], tree_.level(), {0, 0, 0});
+    if (tree_.level() < kChunkLevel) {
+      write_chunk(next_node_[tree_.level()], tree_.level(), {0, 0, 0});
     } else {
       enter(tree_.level(), {0, 0, 0});
     }
@@ -94,26 +94,26 @@ class MapWriter : TreeWalk {
   uint64_t words() const { return next_word_; }
 
  private:
-  // Enters a node of the brick's level or above.
+  // Enters a node of the chunk's level or above.
   void enter(int level, const Corner& corner) {
-    if (level == kBrickLevel && tree_.mask(next_node_[level]) != 0) {
-      write_brick(next_node_[level], level, corner);
+    if (level == kChunkLevel && tree_.mask(next_node_[level]) != 0) {
+      write_chunk(next_node_[level], level, corner);
       return;
     }
     visit(
         level, [&](unsigned octant) { enter(level - 1, child_corner(corner, octant, level)); },
-        [&] { fill_cubes(level, corner, has_tags_ ? solid_brick(next_material(level)) : 0); });
+        [&] { fill_cubes(level, corner, has_tags_ ? solid_chunk(next_material(level)) : 0); });
   }
 
   // The material of the next solid block of a level.
   uint8_t next_material(int level) { return tree_.material_of_block(next_block_[level]++); }
 
-  // Returns where the brick begins that is solid through in a material; writes it first if need be.
-  uint32_t solid_brick(uint8_t material) {
+  // Returns where the chunk begins that is solid through in a material; writes it first if need be.
+  uint32_t solid_chunk(uint8_t material) {
     if (solid_[material] == 0) {
-      std::fill(brick_, brick_ + kLeaves, ~uint64_t{0});
+      std::fill(chunk_, chunk_ + kLeaves, ~uint64_t{0});
       solid_[material] = next_word_;
-      put_brick(kSolidBrick | material);
+      put_chunk(kSolidChunk | material);
     }
     return solid_[material];
   }
@@ -121,40 +121,40 @@ class MapWriter : TreeWalk {
   uint32_t* cube(uint32_t x, uint32_t y, uint32_t z) const {
     return top_ + ((uint64_t{z} << bits_ | y) << bits_ | x);
   }
-  void fill_cubes(int level, const Corner& corner, uint32_t brick) {
-    const uint32_t side = uint32_t{1} << (level - kBrickLevel);
-    const Corner low{corner.x >> kBrickLevel, corner.y >> kBrickLevel, corner.z >> kBrickLevel};
+  void fill_cubes(int level, const Corner& corner, uint32_t chunk) {
+    const uint32_t side = uint32_t{1} << (level - kChunkLevel);
+    const Corner low{corner.x >> kChunkLevel, corner.y >> kChunkLevel, corner.z >> kChunkLevel};
     for (uint32_t z = low.z; z < low.z + side; ++z) {
       for (uint32_t y = low.y; y < low.y + side; ++y) {
-        std::fill_n(cube(low.x, y, z), side, brick << 4);
+        std::fill_n(cube(low.x, y, z), side, chunk << 4);
       }
     }
   }
 
-  // Writes the brick of `node`, which in a world smaller than a brick is the root.
-  void write_brick(uint32_t node, int level, const Corner& corner) {
-    std::fill(brick_, brick_ + kLeaves, 0);
+  // Writes the chunk of `node`, which in a world smaller than a chunk is the root.
+  void write_chunk(uint32_t node, int level, const Corner& corner) {
+    std::fill(chunk_, chunk_ + kLeaves, 0);
     std::fill(tags_, tags_ + kLeaves, Collected());
     collect(level, corner);
-    *cube(corner.x >> kBrickLevel, corner.y >> kBrickLevel, corner.z >> kBrickLevel) = next_word_ << 4;
-    put_brick(node);
+    *cube(corner.x >> kChunkLevel, corner.y >> kChunkLevel, corner.z >> kChunkLevel) = next_word_ << 4;
+    put_chunk(node);
   }
 
-  void put_brick(uint64_t node) {
-    uint64_t& mask = bricks_[next_word_++];
+  void put_chunk(uint64_t node) {
+    uint64_t& mask = chunks_[next_word_++];
     mask = 0;
     if (has_nodes_) {
-      bricks_[next_word_++] = node;
+      chunks_[next_word_++] = node;
     }
     for (unsigned leaf = 0; leaf < kLeaves; ++leaf) {
-      if (brick_[leaf] != 0) {
+      if (chunk_[leaf] != 0) {
         mask |= uint64_t{1} << leaf;
-        bricks_[next_word_++] = brick_[leaf];
+        chunks_[next_word_++] = chunk_[leaf];
       }
     }
-    for (unsigned leaf = 0; has_tags_ && node < kSolidBrick && leaf < kLeaves; ++leaf) {
-      if (brick_[leaf] != 0) {
-        bricks_[next_word_++] = tags_[leaf].is_plain ? tags_[leaf].whole() : tags_[leaf].tag.word();
+    for (unsigned leaf = 0; has_tags_ && node < kSolidChunk && leaf < kLeaves; ++leaf) {
+      if (chunk_[leaf] != 0) {
+        chunks_[next_word_++] = tags_[leaf].is_plain ? tags_[leaf].whole() : tags_[leaf].tag.word();
       }
     }
   }
@@ -205,7 +205,7 @@ class MapWriter : TreeWalk {
   void collect(int level, const Corner& corner) {
     if (level == 1) {
       const unsigned mask = tree_.mask(next_node_[1]++);
-      brick_[bit_of(corner, kLeafLevel)] |= spread(mask == 0 ? 0xFF : mask) << bit_of(corner, 0);
+      chunk_[bit_of(corner, kLeafLevel)] |= spread(mask == 0 ? 0xFF : mask) << bit_of(corner, 0);
       if (has_tags_ && mask == 0) {
         tag_cells(corner, 1U << LeafOrder::cell_of(bit_of(corner, 0)), next_material(1));
       } else if (has_tags_) {
@@ -221,7 +221,7 @@ class MapWriter : TreeWalk {
           for (uint32_t i = 0; i < side * side * side; ++i) {
             const Corner leaf{corner.x + i % side * 4, corner.y + i / side % side * 4,
                               corner.z + i / side / side * 4};
-            brick_[bit_of(leaf, kLeafLevel)] = ~uint64_t{0};
+            chunk_[bit_of(leaf, kLeafLevel)] = ~uint64_t{0};
             if (has_tags_) {
               tag_cells(leaf, 0xFF, material);
             }
@@ -230,20 +230,20 @@ class MapWriter : TreeWalk {
   }
 
   uint32_t* top_;
-  uint64_t* bricks_;
+  uint64_t* chunks_;
   int bits_;
   bool has_nodes_;
   bool has_tags_;
   uint32_t next_word_ = 0;
   uint32_t next_voxel_;
   uint32_t next_block_[kMaxLevel + 1];
-  uint32_t solid_[kMaterials] = {};  // by material: where its solid brick begins; 0: not written yet
-  uint64_t brick_[kLeaves];
+  uint32_t solid_[kMaterials] = {};  // by material: where its solid chunk begins; 0: not written yet
+  uint64_t chunk_[kLeaves];
   Collected tags_[kLeaves];
 };
 
 // Writes how far the empty cubes reach along one octant after the other. An empty cube of side k + 1 is an empty cell,
-// and the empty cubes of side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell bricks, comes
+// and the empty cubes of side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell chunks, comes
 // last.
 class Reaches {
  public:
@@ -256,7 +256,7 @@ class Reaches {
   }
 
  private:
-  static constexpr size_t kMostSide = size_t{1} << (kMaxLevel - kBrickLevel);
+  static constexpr size_t kMostSide = size_t{1} << (kMaxLevel - kChunkLevel);
   using Row = uint32_t[kMostSide];
 
   // Lowers `reach` to the reaches of a row of cubes.
@@ -331,23 +331,23 @@ Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map, Span<con
   const MediaShape layers = measure_media(tree, shape, media);
   const uint64_t words = shape.words + layers.words;
   uint32_t* top = array<uint32_t>(arena, top_words(shape, layers));
-  uint64_t* bricks = words < kMostWords ? array<uint64_t>(arena, words) : nullptr;
-  if (top == nullptr || bricks == nullptr) {
+  uint64_t* chunks = words < kMostWords ? array<uint64_t>(arena, words) : nullptr;
+  if (top == nullptr || chunks == nullptr) {
     *arena = before;
     return Status::kOutOfMemory;
   }
-  MapWriter writer(tree, shape, top, bricks);
+  MapWriter writer(tree, shape, top, chunks);
   if (!tree.empty()) {
     writer.write();
   }
-  write_media(tree, shape, layers, top + shape.top, bricks, writer.words());
+  write_media(tree, shape, layers, top + shape.top, chunks, writer.words());
   const int level = map_level(tree);
   for (uint64_t layer = 0; layer <= layers.layers; ++layer) {
-    Reaches(top + layer * shape.top, level - kBrickLevel).write();
+    Reaches(top + layer * shape.top, level - kChunkLevel).write();
   }
   top[top_words(shape, layers) - 1] = kEmptyCube;
   *map = RayMap(tree);
-  map->cells_ = {top, bricks, level, has_nodes(tree), has_tags(tree)};
+  map->cells_ = {top, chunks, level, has_nodes(tree), has_tags(tree)};
   for (uint8_t layer = 0; layer < layers.layers; ++layer) {
     map->layers_[layers.materials[layer]] = static_cast<uint8_t>(layer + 1);
   }

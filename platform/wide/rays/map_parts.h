@@ -9,19 +9,19 @@
 
 namespace thimble::wide {
 
-inline constexpr int kBrickLevel = 4;
+inline constexpr int kChunkLevel = 4;
 inline constexpr int kLeafLevel = 2;
-inline constexpr unsigned kLeaves = 64;              // of a brick
+inline constexpr unsigned kLeaves = 64;              // of a chunk
 inline constexpr uint32_t kEmptyCube = 0x11111111U;  // before it is known how far it reaches
 inline constexpr uint64_t kMostWords = uint64_t{1}
-                                       << 28;  // of bricks, so that a cube says where its own begins
+                                       << 28;  // of chunks, so that a cube says where its own begins
 
 /// How large a map is, and where each level of the tree begins.
 struct MapShape {
   uint32_t level_begin[kMaxLevel + 1];
   uint32_t block_begin[kMaxLevel + 1];  // the number of the first solid block of each level
   uint64_t top = 0;                     // cubes
-  uint64_t words = 0;                   // of bricks
+  uint64_t words = 0;                   // of chunks
 };
 
 struct Corner {
@@ -75,26 +75,26 @@ class TreeWalk {
 struct MediaShape {
   uint8_t layers = 0;
   uint8_t materials[kMostMedia];  // the layers' materials, in order
-  uint64_t words = 0;             // of their bricks
+  uint64_t words = 0;             // of their chunks
 };
 
 /// Finds which of `materials` the tree holds, as many as there may be layers.
 MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<const uint8_t> materials);
 
-/// Writes the cubes of all layers, one layer after the other, at `top`, and their bricks from word
+/// Writes the cubes of all layers, one layer after the other, at `top`, and their chunks from word
 /// `next_word` on.
 void write_media(const CompactTree& tree, const MapShape& shape, const MediaShape& media, uint32_t* top,
-                 uint64_t* bricks, uint64_t next_word);
+                 uint64_t* chunks, uint64_t next_word);
 
 inline bool has_nodes(const CompactTree& tree) {
   return tree.many_materials() || tree.merged();
 }
-/// Whether bricks say where the tree keeps the materials of their voxels.
+/// Whether chunks say where the tree keeps the materials of their voxels.
 inline bool has_tags(const CompactTree& tree) {
   return tree.many_materials() && !tree.merged();
 }
 inline int map_level(const CompactTree& tree) {
-  return std::max(tree.level(), kBrickLevel);
+  return std::max(tree.level(), kChunkLevel);
 }
 
 }  // namespace thimble::wide

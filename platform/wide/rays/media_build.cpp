@@ -18,7 +18,7 @@ class MediaWalk : TreeWalk {
   }
 
   void run() {
-    if (tree_.level() < kBrickLevel) {
+    if (tree_.level() < kChunkLevel) {
       collect(tree_.level(), {0, 0, 0});
       taker_.take_cube({0, 0, 0});
     } else {
@@ -33,7 +33,7 @@ class MediaWalk : TreeWalk {
   }
 
   void enter(int level, const Corner& corner) {
-    if (level == kBrickLevel && tree_.mask(next_node_[level]) != 0) {
+    if (level == kChunkLevel && tree_.mask(next_node_[level]) != 0) {
       collect(level, corner);
       taker_.take_cube(corner);
       return;
@@ -81,12 +81,12 @@ struct UsedMaterials {
   void take_cube(const Corner& /*corner*/) {}
 };
 
-// Writes cubes and bricks; without a place to write it only counts words.
+// Writes cubes and chunks; without a place to write it only counts words.
 class LayerWriter {
  public:
-  LayerWriter(const MediaShape& media, int bits, bool has_nodes, uint32_t* top, uint64_t* bricks,
+  LayerWriter(const MediaShape& media, int bits, bool has_nodes, uint32_t* top, uint64_t* chunks,
               uint64_t next_word)
-      : media_(media), bits_(bits), has_nodes_(has_nodes), top_(top), bricks_(bricks), next_word_(next_word) {
+      : media_(media), bits_(bits), has_nodes_(has_nodes), top_(top), chunks_(chunks), next_word_(next_word) {
     for (uint8_t layer = 0; layer < media.layers; ++layer) {
       layer_of_[media.materials[layer]] = layer;
     }
@@ -101,7 +101,7 @@ class LayerWriter {
   }
   void take_block(const Corner& corner, int level, uint8_t material) {
     const uint8_t layer = layer_of_[material];
-    const uint32_t side = uint32_t{1} << (level - kBrickLevel);
+    const uint32_t side = uint32_t{1} << (level - kChunkLevel);
     for (uint32_t i = 0; layer != kNone && top_ != nullptr && i < side * side; ++i) {
       std::fill_n(cube(layer, {corner.x, corner.y + i % side * 16, corner.z + i / side * 16}), side,
                   kEmptyCube);
@@ -127,9 +127,9 @@ class LayerWriter {
   };
 
   uint32_t* cube(uint8_t layer, const Corner& corner) const {
-    const uint64_t x = corner.x >> kBrickLevel;
-    const uint64_t y = corner.y >> kBrickLevel;
-    const uint64_t z = corner.z >> kBrickLevel;
+    const uint64_t x = corner.x >> kChunkLevel;
+    const uint64_t y = corner.y >> kChunkLevel;
+    const uint64_t z = corner.z >> kChunkLevel;
     return top_ + ((((uint64_t{layer} << bits_ | z) << bits_ | y) << bits_) | x);
   }
   void put(uint8_t layer, const Corner& corner) {
@@ -140,8 +140,8 @@ class LayerWriter {
       const uint64_t outside = ~inside_[layer][leaf];
       if (outside != 0) {
         mask |= uint64_t{1} << leaf;
-        if (bricks_ != nullptr) {
-          bricks_[next_word_] = outside;
+        if (chunks_ != nullptr) {
+          chunks_[next_word_] = outside;
         }
         ++next_word_;
       }
@@ -149,14 +149,14 @@ class LayerWriter {
     if (mask == 0) {
       next_word_ = begin;
     }
-    if (bricks_ == nullptr) {
+    if (chunks_ == nullptr) {
       return;
     }
     *cube(layer, corner) = mask == 0 ? kEmptyCube : static_cast<uint32_t>(begin) << 4;
     if (mask != 0) {
-      bricks_[begin] = mask;
+      chunks_[begin] = mask;
       if (has_nodes_) {
-        bricks_[begin + 1] = UINT64_MAX;
+        chunks_[begin + 1] = UINT64_MAX;
       }
     }
   }
@@ -165,7 +165,7 @@ class LayerWriter {
   int bits_;
   bool has_nodes_;
   uint32_t* top_;
-  uint64_t* bricks_;
+  uint64_t* chunks_;
   uint64_t next_word_;
   Layers layer_of_;
   uint64_t inside_[kMostMedia][kLeaves] = {};
@@ -196,18 +196,18 @@ MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<co
   if (media.layers != 0) {
     walk_media(tree, shape, &counter);
   }
-  // A brick's first words are written before it is known to be empty.
+  // A chunk's first words are written before it is known to be empty.
   media.words = counter.words() + 2;
   return media;
 }
 
 void write_media(const CompactTree& tree, const MapShape& shape, const MediaShape& media, uint32_t* top,
-                 uint64_t* bricks, uint64_t next_word) {
+                 uint64_t* chunks, uint64_t next_word) {
   if (media.layers == 0) {
     return;
   }
-  std::fill(top, top + shape.top * media.layers, 0U);  // 0 is the first brick, which is solid
-  LayerWriter writer(media, map_level(tree) - kBrickLevel, has_nodes(tree), top, bricks, next_word);
+  std::fill(top, top + shape.top * media.layers, 0U);  // 0 is the first chunk, which is solid
+  LayerWriter writer(media, map_level(tree) - kChunkLevel, has_nodes(tree), top, chunks, next_word);
   walk_media(tree, shape, &writer);
 }
 

@@ -49,8 +49,8 @@ Status run(const RayMap& map, Span<const Ray> rays, Job job) {
 // What the map says about a voxel's leaf.
 struct Leaf {
   uint64_t voxels = 0;
-  const uint64_t* tag = nullptr;  // only with tags; null in a brick that is solid through
-  uint64_t second = 0;            // the brick's second word
+  const uint64_t* tag = nullptr;  // only with tags; null in a chunk that is solid through
+  uint64_t second = 0;            // the chunk's second word
   unsigned voxel = 0;             // the voxel's bit
 
   bool holds() const { return (voxels >> voxel & 1U) != 0; }
@@ -70,18 +70,18 @@ Leaf leaf_at(const MapCells& cells, const Vec3i& voxel) {
   if ((cube & 15U) != 0) {
     return leaf;
   }
-  const uint64_t* const brick = cells.bricks + (cube >> 4);
+  const uint64_t* const chunk = cells.chunks + (cube >> 4);
   const uint64_t of_leaf = uint64_t{1} << bit(2);
-  if ((*brick & of_leaf) == 0) {
+  if ((*chunk & of_leaf) == 0) {
     return leaf;
   }
   const uint64_t* const at =
-      brick + cells.header() + static_cast<unsigned>(__builtin_popcountll(*brick & (of_leaf - 1)));
+      chunk + cells.header() + static_cast<unsigned>(__builtin_popcountll(*chunk & (of_leaf - 1)));
   leaf.voxels = *at;
   leaf.voxel = static_cast<unsigned>(bit(0));
-  leaf.second = brick[1];
-  if (cells.has_tags && leaf.second < kSolidBrick) {
-    leaf.tag = at + static_cast<unsigned>(__builtin_popcountll(*brick));
+  leaf.second = chunk[1];
+  if (cells.has_tags && leaf.second < kSolidChunk) {
+    leaf.tag = at + static_cast<unsigned>(__builtin_popcountll(*chunk));
   }
   return leaf;
 }
@@ -112,26 +112,26 @@ uint64_t cells_in(const VoxelBox& box, const Vec3i& corner, int level) {
   return cells;
 }
 
-// Whether a brick has a voxel in a box.
-bool reaches_into(const VoxelBox& box, const Vec3i& corner, const uint64_t* brick, uint64_t header) {
-  for (uint64_t leaves = *brick & cells_in(box, corner, 2); leaves != 0; leaves &= leaves - 1) {
+// Whether a chunk has a voxel in a box.
+bool reaches_into(const VoxelBox& box, const Vec3i& corner, const uint64_t* chunk, uint64_t header) {
+  for (uint64_t leaves = *chunk & cells_in(box, corner, 2); leaves != 0; leaves &= leaves - 1) {
     const auto leaf = static_cast<unsigned>(__builtin_ctzll(leaves));
-    const auto before = static_cast<unsigned>(__builtin_popcountll(*brick & ((uint64_t{1} << leaf) - 1)));
+    const auto before = static_cast<unsigned>(__builtin_popcountll(*chunk & ((uint64_t{1} << leaf) - 1)));
     const Vec3i at{corner.x + static_cast<int32_t>(4 * (leaf & 3U)),
                    corner.y + static_cast<int32_t>(leaf & 12U),
                    corner.z + static_cast<int32_t>(leaf >> 4 << 2)};
-    if ((brick[header + before] & cells_in(box, at, 0)) != 0) {
+    if ((chunk[header + before] & cells_in(box, at, 0)) != 0) {
       return true;
     }
   }
   return false;
 }
 
-// Looks up the material of a solid voxel where bricks have tags. Returns false where only the tree knows it.
+// Looks up the material of a solid voxel where chunks have tags. Returns false where only the tree knows it.
 bool look_up(const CompactTree& tree, const Leaf& leaf, uint8_t* material) {
   if (leaf.tag == nullptr) {
     *material = static_cast<uint8_t>(leaf.second);
-    return is_solid_brick(leaf.second);
+    return is_solid_chunk(leaf.second);
   }
   const LeafTag tag = LeafTag::of(*leaf.tag);
   const unsigned cell = LeafOrder::cell_of(leaf.voxel);
@@ -155,8 +155,8 @@ Parent parent_of(const RayMap& map, const Vec3i& voxel) {
   const MapCells& cells = *map.cells();
   const auto cube = [&](int axis) { return static_cast<uint64_t>(voxel[axis]) >> kCubeLevel; };
   const int bits = cells.level - kCubeLevel;
-  const uint64_t known = cells.bricks[(cells.top[(cube(2) << bits | cube(1)) << bits | cube(0)] >> 4) + 1];
-  const bool is_known = known < kSolidBrick && tree.level() > kCubeLevel;
+  const uint64_t known = cells.chunks[(cells.top[(cube(2) << bits | cube(1)) << bits | cube(0)] >> 4) + 1];
+  const bool is_known = known < kSolidChunk && tree.level() > kCubeLevel;
   Parent parent{is_known ? static_cast<uint32_t>(known) : 0, is_known ? kCubeLevel : tree.level()};
   while (parent.level > 1 && tree.mask(parent.node) != 0) {
     --parent.level;
@@ -422,7 +422,7 @@ bool RayMap::is_empty(const VoxelBox& box) const {
           cells_.top + ((static_cast<size_t>(z) << bits | static_cast<size_t>(y)) << bits);
       for (int32_t x = low.x; x < end.x; ++x) {
         if ((row[x] & 15U) == 0 &&
-            reaches_into(box, {16 * x, 16 * y, 16 * z}, cells_.bricks + (row[x] >> 4), cells_.header())) {
+            reaches_into(box, {16 * x, 16 * y, 16 * z}, cells_.chunks + (row[x] >> 4), cells_.header())) {
           return false;
         }
       }

@@ -23,24 +23,24 @@ namespace thimble::wide {
 
 /// What the vectors read.
 ///
-/// The world is cut into cubes of 16^3 voxels. A cube that holds something is a brick, which is cut into 4^3 leaves of
+/// The world is cut into cubes of 16^3 voxels. A cube that holds something is a chunk, which is cut into 4^3 leaves of
 /// 4^3 voxels. In all three numberings x comes first and z last.
 struct MapCells {
   /// A word for each cube, in one numbering after the other, and one word more. In the word of an empty cube the four
   /// bits from 4 * o on are the side, in cubes, of the largest empty cube that begins there and extends along octant o
   /// (bit a: to smaller coordinates on axis a), 1 .. 15; outside of the world all is empty. The word of another cube is
-  /// 16 times the place where its brick begins.
+  /// 16 times the place where its chunk begins.
   const uint32_t* top = nullptr;
-  /// Bricks one after the other. A brick has a word with a bit for each leaf that holds something; with `has_nodes` the
+  /// Chunks one after the other. A chunk has a word with a bit for each leaf that holds something; with `has_nodes` the
   /// number of the tree's node of this cube, or a number above all nodes'; then for each of these leaves a word with a
   /// bit for each voxel; and with `has_tags` for each of them a word that says where its materials are (leaf_tag.h).
-  /// The first brick is solid through, and serves all such cubes; with `has_tags` each material has such a brick.
-  const uint64_t* bricks = nullptr;
+  /// The first chunk is solid through, and serves all such cubes; with `has_tags` each material has such a chunk.
+  const uint64_t* chunks = nullptr;
   int level = 0;           ///< the map's world is 2^level voxels a side: the tree's, or 16
   bool has_nodes = false;  ///< the tree has several materials, or blocks made by coarsening
   bool has_tags = false;   ///< several materials, and no such blocks
 
-  /// Words of a brick before its leaves.
+  /// Words of a chunk before its leaves.
   uint64_t header() const { return has_nodes ? 2 : 1; }
 };
 
@@ -59,7 +59,7 @@ class RayMap {
   /// tree whose masks do not add up; nothing is taken then, and `map` is as it was. `media` are materials that rays
   /// go through. Those that the tree holds get a layer each, up to kMostMedia of them and in worlds of up to
   /// kMostMediaLevel, so that `first_change` finds in vectors where rays leave them. A layer takes 4 bytes for each
-  /// 16^3 voxels of the world, and bricks where the medium ends.
+  /// 16^3 voxels of the world, and chunks where the medium ends.
   static Status make(const CompactTree& tree, Arena* arena, RayMap* map, Span<const uint8_t> media = {});
   /// The most bytes that `make` takes. Reads all masks, and with `media` the tree twice more.
   static size_t bytes(const CompactTree& tree, Span<const uint8_t> media = {});

@@ -20,7 +20,7 @@
 #include "benchmarks/peers/contest.h"
 #include "support/trial_worlds.h"
 #include "thimble/bake/baked_scene.h"
-#include "wide/renderer.h"
+#include "wide/raster/renderer.h"
 
 namespace thimble::benchmarks {
 namespace {

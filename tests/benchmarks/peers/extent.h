@@ -16,7 +16,7 @@ struct Extent {
   std::int32_t x0, x1, y0, y1;
 };
 
-/// How many pixels a voxel reaches from its middle: wide/frame.h.
+/// How many pixels a voxel reaches from its middle: wide/raster/frame.h.
 struct Reach {
   float x, y;
 };

@@ -61,7 +61,7 @@ class Loop : public Peer {
   }
 
   // The core's rule: of the planes of each two axes the lower one of either is passed before the upper one of
-  // the other (wide/exact.cpp).
+  // the other (wide/raster/exact.cpp).
   static bool meets(const Ray& ray, Voxel voxel, Hit* hit) {
     const std::int32_t low[3] = {voxel.x * 256 - ray.origin.x.raw, voxel.y * 256 - ray.origin.y.raw,
                                  voxel.z * 256 - ray.origin.z.raw};

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "thimble/picture/shading.h"
-#include "wide/frame.h"
+#include "wide/raster/frame.h"
 
 namespace thimble::benchmarks {
 

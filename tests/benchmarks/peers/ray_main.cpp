@@ -19,7 +19,7 @@
 #include "scene/host_memory.h"
 #include "scene/scene_source.h"
 #include "thimble/trace/secondary_ray.h"
-#include "wide/kernels.h"
+#include "wide/raster/kernels.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::benchmarks {

@@ -12,7 +12,7 @@
 
 #include "benchmarks/peers/contest.h"
 #include "scene/scene_source.h"
-#include "wide/renderer.h"
+#include "wide/raster/renderer.h"
 
 namespace thimble::benchmarks {
 namespace {

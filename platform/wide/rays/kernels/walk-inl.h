@@ -47,8 +47,8 @@ constexpr int kCube = kFraction + 4;
 // What all steps share.
 struct View {
   const uint32_t* top;
-  const uint64_t* bricks;
-  uint64_t header;  // words of a brick before its leaves
+  const uint64_t* chunks;
+  uint64_t header;  // words of a chunk before its leaves
   int bits;         // bits of a cube's index on each axis
 };
 
@@ -121,10 +121,10 @@ HWY_INLINE VU cells_ahead(VU cell, VU octant) {
 struct Sight {
   VU place[3];
   VU word;  // the cube's word
-  MU is_brick;
-  VU brick;   // where the brick begins
-  VU mask;    // the brick's leaves
-  VU unit;    // the unit of a step: 4 voxels, or 16 where no other leaf of the brick lies ahead
+  MU is_chunk;
+  VU chunk;   // where the chunk begins
+  VU mask;    // the chunk's leaves
+  VU unit;    // the unit of a step: 4 voxels, or 16 where no other leaf of the chunk lies ahead
   VU voxels;  // the leaf's voxels
 };
 
@@ -144,11 +144,11 @@ HWY_INLINE void see_cube(const View& view, const Lanes& lanes, Sight* sight) {
   sight->word = gather_low(view.top, cube);
 }
 
-HWY_INLINE void see_brick(const View& view, Sight* sight) {
+HWY_INLINE void see_chunk(const View& view, Sight* sight) {
   const U64 d;
-  sight->is_brick = hn::Eq(hn::And(sight->word, hn::Set(d, 15)), hn::Zero(d));
-  sight->brick = hn::And(hn::ShiftRight<4>(sight->word), hn::Set(d, (1U << 28) - 1));
-  sight->mask = gather(view.bricks, sight->brick, sight->is_brick);
+  sight->is_chunk = hn::Eq(hn::And(sight->word, hn::Set(d, 15)), hn::Zero(d));
+  sight->chunk = hn::And(hn::ShiftRight<4>(sight->word), hn::Set(d, (1U << 28) - 1));
+  sight->mask = gather(view.chunks, sight->chunk, sight->is_chunk);
 }
 
 HWY_INLINE void see_leaf(const View& view, const Lanes& lanes, Sight* sight) {
@@ -161,12 +161,12 @@ HWY_INLINE void see_leaf(const View& view, const Lanes& lanes, Sight* sight) {
   // Leaves stand in the order of their bits. Bits are counted lane by lane: few instruction sets do it in vectors.
   alignas(64) uint64_t at[kLanes];
   alignas(64) uint64_t before[kLanes];
-  hn::Store(hn::IfThenElseZero(in_leaf, hn::Add(sight->brick, hn::Set(d, view.header))), d, at);
+  hn::Store(hn::IfThenElseZero(in_leaf, hn::Add(sight->chunk, hn::Set(d, view.header))), d, at);
   hn::Store(hn::And(mask, hn::Sub(leaf_bit, one)), d, before);
   sight->voxels = hn::IfThenElseZero(in_leaf, load_lanes([&](size_t lane) {
                                        const auto leaves =
                                            static_cast<unsigned>(__builtin_popcountll(before[lane]));
-                                       return static_cast<long long>(view.bricks[at[lane] + leaves]);
+                                       return static_cast<long long>(view.chunks[at[lane] + leaves]);
                                      }));
   const VU ahead = hn::And(mask, cells_ahead(leaf, hn::Load(d, lanes.words[kOctant - kDoubles])));
   // Whether no other leaf lies ahead than the one that the ray is in (which may be empty ahead, too).
@@ -191,8 +191,8 @@ HWY_INLINE Box see_voxel(const Lanes& lanes, const Sight& sight) {
   const VU reach = hn::ShiftLeft<kCube>(hn::And(hn::Shr(sight.word, octant), hn::Set(d, 15)));
   Box box;
   box.solid = hn::TestBit(sight.voxels, hn::Shl(hn::Set(d, 1), voxel));
-  box.grain = hn::IfThenElse(sight.is_brick, unit, hn::Set(d, uint64_t{1} << kCube));
-  box.side = hn::IfThenElse(sight.is_brick, unit, reach);
+  box.grain = hn::IfThenElse(sight.is_chunk, unit, hn::Set(d, uint64_t{1} << kCube));
+  box.side = hn::IfThenElse(sight.is_chunk, unit, reach);
   return box;
 }
 
@@ -269,7 +269,7 @@ constexpr size_t kGroups = kLanes < 4 ? 4 : 32 / kLanes;
 
 void trace_job(Job* job) {
   const MapCells& cells = *job->map->cells();
-  const View view{cells.top, cells.bricks, cells.header(), cells.level - 4};
+  const View view{cells.top, cells.chunks, cells.header(), cells.level - 4};
   constexpr uint32_t kAll = static_cast<uint32_t>((uint64_t{1} << kLanes) - 1);
   Queue queue;
   Lanes groups[kGroups] = {};
@@ -297,7 +297,7 @@ void trace_job(Job* job) {
       see_cube(view, groups[group], &sights[group]);
     }
     for (size_t group = 0; group < kGroups; ++group) {
-      see_brick(view, &sights[group]);
+      see_chunk(view, &sights[group]);
     }
     for (size_t group = 0; group < kGroups; ++group) {
       see_leaf(view, groups[group], &sights[group]);

@@ -1,0 +1,78 @@
+/// @file miss_shader.h
+/// What rays show that leave the world: the sky, found in lanes, or the background.
+#ifndef THIMBLE_PLATFORM_WIDE_LIT_MISS_SHADER_H
+#define THIMBLE_PLATFORM_WIDE_LIT_MISS_SHADER_H
+
+#include <stdint.h>
+
+#include "thimble/light/host/asked.h"
+#include "wide/lit/array_arena.h"
+#include "wide/lit/kernels.h"
+#include "wide/lit/pixel_queue.h"
+#include "wide/lit/row_spans.h"
+#include "wide/rays/ray_map.h"
+
+namespace thimble::wide {
+
+/// Components of rays' directions, then shares of the sky; with room for kMostLightLanes more.
+struct SkyColumns {
+  void lay_out(uint32_t count, ArrayArena* arena);
+  void put(uint32_t number, const Vec3i& direction) {
+    for (int axis = 0; axis < 3; ++axis) {
+      of[axis][number] = direction[axis];
+    }
+  }
+
+  int32_t* of[4];
+};
+
+class MissShader {
+ public:
+  /// `columns` are for `most` rays.
+  MissShader(const lit::Frame& frame, const RayMap& map, const SkyColumns& columns, uint32_t most);
+
+  /// Begins a row, of which only what can show the occupied box is left to be taken: the rest is stored. False: there is
+  /// no row left.
+  bool begin_row(PixelReader* pixels, LitCounts* counts) const;
+  /// Calls give(i, color) for the first `count` directions of the columns: lit::sky_color, or the background.
+  template <class Give>
+  void each_color(uint32_t count, const Give& give) const;
+
+ private:
+  void show_row(const PixelReader& pixels, int32_t first, int32_t end) const;
+
+  const lit::Frame& frame_;
+  bool has_spans_;
+  RowSpans spans_;
+  SkyColumns columns_;
+  uint32_t most_;
+  lit::Color background_;
+  lit::Color horizon_;
+  uint32_t change_[2][3];  // from the horizon to the zenith and the ground, modulo 2^32
+};
+
+template <class Give>
+void MissShader::each_color(uint32_t count, const Give& give) const {
+  if ((frame_.effects & Effect::kSky) == 0) {
+    for (uint32_t i = 0; i < count; ++i) {
+      give(i, background_);
+    }
+    return;
+  }
+  // Lanes behind the last ray get some direction, which must not be zero.
+  for (size_t i = count; i < count + kMostLightLanes; ++i) {
+    columns_.of[0][i] = 1;
+  }
+  int32_t* const shares = columns_.of[3];
+  find_sky_shares(columns_.of[0], columns_.of[1], columns_.of[2], count, shares);
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto share = static_cast<uint32_t>(shares[i]);
+    const uint32_t* const to = change_[columns_.of[2][i] < 0 ? 1 : 0];
+    const auto mix = [&](int c) { return (horizon_.c[c] * 4096 + to[c] * share) >> 12; };
+    give(i, lit::Color{{mix(0), mix(1), mix(2)}});
+  }
+}
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,266 @@
+/// @file pairs-inl.h
+/// Tests pairs of a box and a pixel: does the ray hit the box?
+#if defined(THIMBLE_WIDE_RASTER_KERNELS_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef THIMBLE_WIDE_RASTER_KERNELS_PAIRS_INL_H_
+#undef THIMBLE_WIDE_RASTER_KERNELS_PAIRS_INL_H_
+#else
+#define THIMBLE_WIDE_RASTER_KERNELS_PAIRS_INL_H_
+#endif
+
+#include "wide/raster/exact.h"
+#include "wide/raster/hidden_voxels.h"
+#include "wide/raster/kernels.h"
+#include "wide/raster/kernels/grays-inl.h"
+#include "wide/raster/kernels/hits-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace thimble::wide::HWY_NAMESPACE {
+namespace {
+
+// Appends the pairs of the lanes in `mask`; with kGray, without the entries' numbers, which greys do not need.
+template <bool kGray = false>
+HWY_INLINE void append(hn::Mask<F32> mask, hn::Vec<U32> entry, hn::Vec<U32> number, hn::Vec<U32> place,
+                       Pairs* pairs) {
+  const U32 d;
+  const auto chosen = hn::RebindMask(d, mask);
+  hn::StoreU(squeeze(entry, chosen), d, pairs->entry + pairs->count);
+  if (!kGray) {
+    hn::StoreU(squeeze(number, chosen), d, pairs->number + pairs->count);
+  }
+  hn::StoreU(squeeze(place, chosen), d, pairs->place + pairs->count);
+  pairs->count += hn::CountTrue(d, chosen);
+}
+
+// Finds the corner of the batch's cube less the eye, in 1/512 voxel.
+inline void origin_of(const WideFrame& frame, const Batch& batch, float (&origin)[3]) {
+  for (int axis = 0; axis < 3; ++axis) {
+    origin[axis] = static_cast<float>(int64_t{512} * batch.corner[axis] - int64_t{2} * frame.eye[axis]);
+  }
+}
+
+// Tests in integers the pairs that floats could not decide.
+void test_unclear(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
+  Pairs& pairs = batch->unclear;
+  batch->counts.exact += pairs.count;
+  for (size_t i = 0; i < pairs.count; ++i) {
+    const int32_t x = static_cast<int32_t>(pairs.place[i] & 0xFFFFU);
+    const int32_t y = static_cast<int32_t>(pairs.place[i] >> 16);
+    uint32_t key = 0;
+    uint32_t down = 0;
+    const Meeting meeting = meet_exactly(frame, x, y, pairs.entry[i], batch->corner, &key, &down);
+    if (meeting == Meeting::kTouch && frame.hidden_in != nullptr) {
+      ask_core_behind(frame, depths, x, y, pairs.entry[i], key, down, batch);
+    }
+    if (meeting != Meeting::kHit) {
+      continue;
+    }
+    if (batch->hits >= Pairs::kSize) {
+      write_hits(depths, batch);
+      *written = true;
+    }
+    batch->key[batch->hits] = key;
+    batch->down[batch->hits] = down;
+    batch->number[batch->hits] = pairs.number[i];
+    if (depths.gray_scale != nullptr) {
+      batch->key[batch->hits] = mirrored_sum(pairs.entry[i], down);
+      batch->number[batch->hits] = code_exactly(*frame.camera, *depths.shading, depths.gray_scale->code, x, y,
+                                                pairs.entry[i], batch->corner);
+    }
+    batch->pixel[batch->hits] =
+        static_cast<uint32_t>(32 * depths.word(x, y) + (static_cast<uint32_t>(x) & 31U));
+    ++batch->hits;
+  }
+  pairs.count = 0;
+}
+
+// A vector of pairs, unpacked.
+template <bool kUnit>
+struct Unpacked {
+  hn::Vec<U32> entry, x, y, level;
+  hn::Vec<U32> low[3];
+  hn::Vec<F32> half;
+
+  Unpacked(const Pairs& pairs, size_t at) {
+    const F32 d;
+    const I32 di;
+    const U32 du;
+    const auto place = hn::Load(du, pairs.place + at);
+    x = hn::And(place, hn::Set(du, 0xFFFFU));
+    y = hn::ShiftRight<16>(place);
+    entry = hn::Load(du, pairs.entry + at);
+    unpack_side(du, entry, kUnit, &level, &low[0]);
+    half = kUnit ? hn::Set(d, 256.0F) : hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 256U), level)));
+    low[1] = hn::And(hn::ShiftRight<10>(entry), hn::Set(du, kWithin));
+    low[2] = hn::And(hn::ShiftRight<20>(entry), hn::Set(du, kWithin));
+  }
+
+  template <bool kPerspective>
+  HWY_INLINE Aims aims(const WideFrame& frame, const float (&origin)[3]) const {
+    const auto real = [](hn::Vec<U32> v) { return hn::ConvertTo(F32(), hn::BitCast(I32(), v)); };
+    const hn::Vec<F32> corner[3] = {real(low[0]), real(low[1]), real(low[2])};
+    return aims_of<kPerspective>(frame, origin, real(x), real(y), corner, half);
+  }
+};
+
+// Appends the pairs in `hit` to the batch's hits, with keys mirrored by the signs of the directions.
+// `number`: the entries' numbers, or greys.
+template <bool kUnit, bool kGray>
+HWY_INLINE void append_hits(hn::Mask<F32> hit, const Unpacked<kUnit>& pairs, const Aims& aims,
+                            hn::Vec<U32> number, const Depths& depths, bool* written, Batch* batch) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  const auto within = hn::Set(du, kWithin);
+  if (batch->hits + hn::Lanes(d) > Pairs::kSize) {
+    write_hits(depths, batch);
+    *written = true;
+  }
+  auto key = hn::Zero(du);
+  [[maybe_unused]] auto down = hn::Zero(du);
+#pragma GCC unroll 3
+  for (int axis = 2; axis >= 0; --axis) {
+    const auto is_down = hn::RebindMask(du, hn::Lt(aims.direction[axis], hn::Zero(d)));
+    auto mirrored = hn::Xor(pairs.low[axis], hn::IfThenElseZero(is_down, within));
+    if (kGray) {
+      key = hn::Add(key, mirrored);
+      continue;
+    }
+    if (!kUnit) {
+      const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), pairs.level)));
+      mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
+    }
+    key = hn::Or(hn::ShiftLeft<1>(key), spread10(mirrored));
+    down = hn::Or(hn::ShiftLeft<1>(down), hn::IfThenElseZero(is_down, hn::Set(du, 1U)));
+  }
+  const auto pixel =
+      hn::Or(hn::ShiftLeft<5>(word_of(depths, pairs.x, pairs.y)), hn::And(pairs.x, hn::Set(du, 31U)));
+  const auto chosen = hn::RebindMask(du, hit);
+  hn::StoreU(squeeze(key, chosen), du, batch->key + batch->hits);
+  if (!kGray) {
+    hn::StoreU(squeeze(down, chosen), du, batch->down + batch->hits);
+  }
+  hn::StoreU(squeeze(number, chosen), du, batch->number + batch->hits);
+  hn::StoreU(squeeze(pixel, chosen), du, batch->pixel + batch->hits);
+  batch->hits += hn::CountTrue(du, chosen);
+}
+
+// Remembers which lanes of each vector of pairs floats could not decide. These pairs are put aside after all vectors
+// have been tested: a branch in each vector would be mispredicted now and then, just where much waits for it.
+class Unclear {
+ public:
+  HWY_INLINE void set(size_t vector, hn::Mask<F32> lanes) { lanes_[vector] = bits_of(F32(), lanes); }
+  void put_aside(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) const {
+    const size_t lanes = hn::Lanes(F32());
+    const Pairs& pairs = batch->waiting;
+    Pairs& unclear = batch->unclear;
+    for (size_t at = 0; at < pairs.count; at += lanes) {
+      for (uint32_t bits = lanes_[at / lanes]; bits != 0; bits &= bits - 1) {
+        const size_t pair = at + static_cast<size_t>(__builtin_ctz(bits));
+        unclear.entry[unclear.count] = pairs.entry[pair];
+        unclear.number[unclear.count] = pairs.number[pair];
+        unclear.place[unclear.count] = pairs.place[pair];
+        if (++unclear.count == Pairs::kSize) {
+          test_unclear(frame, depths, written, batch);
+        }
+      }
+    }
+  }
+
+ private:
+  uint32_t lanes_[Pairs::kSize];
+};
+
+// Keeps only the pairs that were hit and those that are unclear; the search for greys, which comes next, finds the
+// latter unclear again. Only with greys.
+template <bool kPerspective>
+HWY_NOINLINE void drop_missed(const WideFrame& frame, const float (&origin)[3], const Depths& depths,
+                              bool* written, Batch* batch) {
+  Pairs* const pairs = &batch->waiting;
+  const F32 d;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  size_t count = 0;
+  for (size_t at = 0; at < pairs->count; at += lanes) {
+    const auto live = hn::FirstN(d, pairs->count - at < lanes ? pairs->count - at : lanes);
+    const Unpacked<true> unpacked(*pairs, at);
+    const Aims aims = unpacked.template aims<kPerspective>(frame, origin);
+    const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
+    const auto place = hn::Load(du, pairs->place + at);
+    const auto may_be_met = hn::Or(hn::AndNot(verdict.unclear, verdict.hit), aims.unclear);
+    const auto chosen = hn::RebindMask(du, hn::And(live, may_be_met));
+    const auto unclear = hn::AndNot(aims.unclear, hn::And(live, verdict.unclear));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, unclear))) {
+      append<true>(unclear, unpacked.entry, unpacked.entry, place, &batch->unclear);
+      if (batch->unclear.count + lanes > Pairs::kSize) {
+        test_unclear(frame, depths, written, batch);
+      }
+    }
+    hn::StoreU(squeeze(unpacked.entry, chosen), du, pairs->entry + count);
+    hn::StoreU(squeeze(place, chosen), du, pairs->place + count);
+    count += hn::CountTrue(du, chosen);
+  }
+  pairs->count = count;
+}
+
+// Tests the waiting pairs in floats, and puts aside those that floats do not decide. Sets `written` when something was
+// written into the picture.
+//
+// For a perspective camera the pairs that were not hit are dropped first, so that greys are found only for hits. A
+// parallel camera's rays hit nearly all of their boxes, and its greys take no division: there one pass does both.
+template <bool kPerspective, bool kUnit, Keep kKeep>
+HWY_NOINLINE void test_waiting_of(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
+  constexpr bool kGray = kKeep != Keep::kNumbers;
+  const F32 d;
+  const U32 du;
+  const size_t lanes = hn::Lanes(d);
+  Pairs& pairs = batch->waiting;
+  batch->counts.candidates += pairs.count;
+  float origin[3];
+  origin_of(frame, *batch, origin);
+  constexpr bool kTwice = kGray && kPerspective;
+  if (kTwice) {
+    drop_missed<kPerspective>(frame, origin, depths, written, batch);
+  }
+  Unclear all_unclear;
+  for (size_t at = 0; at < pairs.count; at += lanes) {
+    const auto live = hn::FirstN(d, pairs.count - at < lanes ? pairs.count - at : lanes);
+    const Unpacked<kUnit> unpacked(pairs, at);
+    const Aims aims = unpacked.template aims<kPerspective>(frame, origin);
+    auto unclear = aims.unclear;
+    auto hit = live;
+    if (!kTwice) {
+      const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
+      unclear = hn::Or(unclear, verdict.unclear);
+      hit = hn::And(hit, verdict.hit);
+    }
+    hn::Vec<U32> number;
+    if (kGray) {
+      auto no_gray = hn::Lt(hn::Zero(d), hn::Zero(d));
+      number = codes_of<kPerspective, kKeep>(frame, *depths.gray_scale, aims, &no_gray);
+      unclear = hn::Or(unclear, hn::And(no_gray, hit));
+    } else {
+      number = hn::Load(du, pairs.number + at);
+    }
+    all_unclear.set(at / lanes, hn::And(unclear, live));
+    append_hits<kUnit, kGray>(hn::AndNot(unclear, hit), unpacked, aims, number, depths, written, batch);
+  }
+  all_unclear.put_aside(frame, depths, written, batch);
+  pairs.count = 0;
+}
+
+template <bool kPerspective, bool kUnit>
+HWY_INLINE void test_waiting(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
+  if (depths.gray_scale == nullptr) {
+    test_waiting_of<kPerspective, kUnit, Keep::kNumbers>(frame, depths, written, batch);
+  } else if (depths.gray_scale->code == GrayScale::Code::kGray) {  // all boxes are single voxels
+    test_waiting_of<kPerspective, true, Keep::kGrays>(frame, depths, written, batch);
+  } else {
+    test_waiting_of<kPerspective, true, Keep::kFaces>(frame, depths, written, batch);
+  }
+}
+
+}  // namespace
+}  // namespace thimble::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

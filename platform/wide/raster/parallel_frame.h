@@ -1,0 +1,44 @@
+/// @file parallel_frame.h
+/// Draws a frame with several threads.
+#ifndef THIMBLE_PLATFORM_WIDE_RASTER_PARALLEL_FRAME_H
+#define THIMBLE_PLATFORM_WIDE_RASTER_PARALLEL_FRAME_H
+
+#include "wide/raster/painter.h"
+#include "wide/raster/renderer.h"
+#include "wide/raster/tile_drawer.h"
+#include "wide/raster/tiles.h"
+#include "wide/raster/workspace.h"
+
+namespace thimble::wide {
+
+/// Draws and paints a frame, either tile by tile in one picture, or with a picture for each thread.
+class ParallelFrame {
+ public:
+  /// `threads`: null where the calling thread draws alone.
+  ParallelFrame(Threads* threads, const TileDrawer::Task& task, const TilePainter& painter,
+                const Workspace& workspace)
+      : threads_(threads), task_(task), painter_(painter), workspace_(workspace) {}
+
+  /// Every thread draws and paints tiles, then parts of other threads' tiles, until none are left. Returns how many
+  /// pixels show something. `splits` gets how many parts changed hands.
+  uint64_t draw_tiles(const Tiles& tiles, uint32_t* splits) const;
+  /// Every thread draws its share of the list in a picture of its own; then the pictures are merged and painted.
+  /// Returns how many pixels show something.
+  uint64_t draw_copies() const;
+  /// What all threads counted.
+  Counts counts() const;
+
+ private:
+  int thread_count() const { return threads_ == nullptr ? 1 : threads_->count(); }
+  uint64_t draw_some(const Tiles& tiles, int thread, TileDrawer::Others* others) const;
+  uint64_t merge_and_paint(int part) const;
+
+  Threads* threads_;
+  const TileDrawer::Task& task_;
+  const TilePainter& painter_;
+  const Workspace& workspace_;
+};
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,137 @@
+#include "wide/raster/renderer.h"
+
+#include "wide/raster/cost_model.h"
+#include "wide/raster/coverage.h"
+#include "wide/raster/parallel_frame.h"
+
+namespace thimble::wide {
+
+static_assert(kMaxPicturePx <= 1 << kPlaceBits);
+
+namespace {
+
+// From so many boxes on, drawn in the order of the list, up to kMostCopies threads draw a picture each. Fewer boxes are
+// drawn in the time that merging the pictures takes.
+constexpr size_t kCopyBoxes = 150000;
+
+// A picture that shows fewer boxes than it has pieces (Depths::is_touched) is mostly empty.
+bool is_sparse(const VoxelLists& lists, const Camera& camera, const Band& band, bool by_blocks, int threads,
+               const TilePainter& painter) {
+  const size_t words = strips_of(camera.width_px()) * static_cast<size_t>(band.rows);
+  // Not with surfaces: the pixels that the core is asked for (hidden_voxels.h) are written without clearing their pieces.
+  return threads == 1 && !by_blocks && !lists.is_surface() && painter.takes_sparse() &&
+         words >= Workspace::kLeastSparseWords && lists.entries().size < words / kPieceWords;
+}
+
+Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace, int threads) {
+  const int32_t width = camera.width_px();
+  if (width == 0 || camera.level() != lists.tree().level() || band.first_row < 0 || band.rows < 0 ||
+      band.rows > camera.height_px() - band.first_row) {
+    return Status::kBadArgument;
+  }
+  const int32_t multiple = band_row_multiple(band.format);
+  const bool ends = band.first_row + band.rows == camera.height_px();
+  if (band.first_row % multiple != 0 || (!ends && band.rows % multiple != 0)) {
+    return Status::kBadArgument;
+  }
+  const size_t line_bytes = row_bytes(band.format, width);
+  const size_t stride = band.stride_bytes == 0 ? line_bytes : band.stride_bytes;
+  if (stride < line_bytes) {
+    return Status::kBadArgument;
+  }
+  if (band.rows == 0) {
+    return Status::kOk;
+  }
+  if (line_bytes > band.pixels.size ||
+      row_place(band.format, whole_rows(band.format, band.rows)) - 1 >
+          (band.pixels.size - line_bytes) / stride ||
+      workspace.size < workspace_bytes(width, band.rows, threads)) {
+    return Status::kOutOfMemory;
+  }
+  return lists.entries().size > size_t{1} << kEntryBits ? Status::kTooFine : Status::kOk;
+}
+
+// How a frame is drawn.
+struct Plan {
+  bool has_boxes;  // whether the list of boxes is drawn, not that of the surface
+  Order order;
+  bool copies;  // whether each thread draws a picture of its own
+  CostEstimate cost;
+};
+
+Plan plan_of(const VoxelLists& lists, const WideFrame& frame, const Options& options, int threads) {
+  const Order wanted = options.order;
+  Plan plan{options.list == List::kBoxes && lists.has_boxes_beside(), wanted, false, {}};
+  const bool chooses = lists.has_boxes_beside() && options.list == List::kAuto;
+  if (wanted == Order::kAuto || threads > 1 || chooses) {
+    plan.cost = estimate_cost(plan.has_boxes ? lists.boxes_beside() : lists, frame, threads > 1);
+  }
+  if (chooses) {
+    const CostEstimate other = estimate_cost(lists.boxes_beside(), frame, threads > 1);
+    if (boxes_pay(other, plan.cost, frame.perspective)) {
+      plan.cost = other;
+      plan.has_boxes = true;
+    }
+  }
+  if (wanted == Order::kAuto) {
+    plan.order = plan.cost.blocks_pay ? Order::kBlocks : Order::kFlat;
+  }
+  plan.copies = threads > 1 && threads <= kMostCopies && plan.order != Order::kBlocks &&
+                lists.entries().size >= kCopyBoxes;
+  return plan;
+}
+
+}  // namespace
+
+size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
+  return Workspace::bytes(width_px, rows, threads);
+}
+
+Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& shading, const Band& band,
+              Bytes workspace, RenderCounts* counts, const Options& options, Stats* stats) {
+  const int threads = options.threads == nullptr ? 1 : options.threads->count();
+  const Status status = check(all_lists, camera, band, workspace, threads);
+  if (status != Status::kOk || band.rows == 0) {
+    return status;
+  }
+  WideFrame frame;
+  if (!make_frame(camera, {0, band.first_row, camera.width_px(), band.first_row + band.rows}, &frame)) {
+    return Status::kTooFine;
+  }
+  const Plan plan = plan_of(all_lists, frame, options, threads);
+  const VoxelLists lists = plan.has_boxes ? all_lists.boxes_beside() : all_lists;
+  SolidStarts starts;
+  if (lists.is_surface()) {
+    frame.hidden_in = &lists.tree();
+    frame.first_hidden = static_cast<uint32_t>(lists.entries().size);
+    starts = find_solid_starts(lists.tree(), frame);
+  }
+  const bool by_blocks = plan.order == Order::kBlocks;
+  const TilePainter painter(lists, camera, shading, band);
+  const Workspace space(
+      workspace,
+      {camera.width_px(), band.first_row, band.rows, threads, plan.copies ? threads : 1, by_blocks,
+       is_sparse(lists, camera, band, by_blocks, threads, painter), painter.gray_scale(), &shading});
+  const TileDrawer::Task task{lists, frame, by_blocks, lists.is_surface() ? &starts : nullptr};
+  const ParallelFrame parallel(options.threads, task, painter, space);
+  uint64_t hits = 0;
+  uint32_t splits = 0;
+  if (plan.copies) {
+    hits = parallel.draw_copies();
+  } else {
+    hits = parallel.draw_tiles(Tiles(band.rows, threads, by_blocks ? plan.cost.blocks : plan.cost.flat),
+                               &splits);
+  }
+  const Counts done = parallel.counts();
+  if (counts != nullptr) {
+    counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);
+    counts->hits += hits;
+    counts->node_visits += done.nodes;
+  }
+  if (stats != nullptr) {
+    *stats = {done, plan.order, splits, plan.has_boxes};
+  }
+  return Status::kOk;
+}
+
+}  // namespace thimble::wide

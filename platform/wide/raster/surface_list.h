@@ -1,0 +1,47 @@
+/// @file surface_list.h
+/// Counts, then writes, the list of a tree's surface; and says what lists are made of.
+#ifndef THIMBLE_PLATFORM_WIDE_RASTER_SURFACE_LIST_H
+#define THIMBLE_PLATFORM_WIDE_RASTER_SURFACE_LIST_H
+
+#include <stdint.h>
+
+#include "thimble/tree/compact_tree.h"
+#include "wide/raster/voxel_lists.h"
+
+namespace thimble::wide {
+
+/// Packs the entry of a box of 2^level voxels a side (voxel_lists.h).
+inline uint32_t packed(const uint32_t (&corner)[3], int level) {
+  const uint32_t within = (uint32_t{1} << kCubeLevel) - 1;
+  const uint32_t x = corner[0] & within;
+  const uint32_t y = corner[1] & within;
+  const uint32_t z = corner[2] & within;
+  const uint32_t side = level < 3 ? static_cast<uint32_t>(level) : 3;
+  const uint32_t more = level < 3 ? 0 : static_cast<uint32_t>(level - 3);
+  return x | more | y << 10 | z << 20 | side << 30;
+}
+
+/// Where a list is written. `materials` and `merged` are null where the tree has none.
+struct ListTo {
+  uint32_t* entries;
+  BlockNode* nodes;
+  uint8_t* materials;
+  uint8_t* merged;
+};
+
+/// How large the list of a surface is.
+struct SurfaceCount {
+  uint64_t entries = 0;
+  /// Where each level's nodes begin, the root's first; so [level - 1] is the number of nodes of that level and above.
+  /// Levels below 2 have none.
+  uint32_t level_begin[kMaxLevel + 2] = {};
+};
+
+/// Both functions take trees that SurfaceWalk takes (surface.h), and the tree's own `level_begin`.
+SurfaceCount count_surface(const CompactTree& tree, const uint32_t* level_begin);
+void write_surface(const CompactTree& tree, const uint32_t* level_begin, const SurfaceCount& count,
+                   int block_level, const ListTo& to);
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,402 @@
+#include "wide/raster/tile_drawer.h"
+
+#include <algorithm>
+
+#include "thimble/picture/camera.h"
+#include "wide/raster/cost_model.h"
+#include "wide/raster/coverage.h"
+#include "wide/raster/surface_list.h"
+
+namespace thimble::wide {
+namespace {
+
+// Blocks of more boxes than this are cut up (in flat order and in blocks), so that boxes out of sight are not
+// projected.
+constexpr uint32_t kFlatBoxes = 4096;
+constexpr uint32_t kBlockBoxes = 320;
+// Blocks of at most so many pixels a side are drawn whole: too little of them is hidden for a cut to pay.
+constexpr int32_t kTinyPx = 16;
+constexpr uint32_t kTinyBoxes = 1024;
+// The limits of blocks that are drawn by tables.
+constexpr uint32_t kTableBoxes = 1900;
+constexpr int32_t kTablePx = 56;
+constexpr float kMostBend = 0.24F;
+// Boxes whose faces are on average so many pixels wide are sorted from front to back before they are drawn.
+constexpr float kSortedPx = 6.0F;
+constexpr float kSortedVoxelPx = 8.0F;  // where all are single voxels
+// And smaller voxels where their faces would cover the block so many times: a hull of one layer gains nothing.
+constexpr float kSortedDeepPx = 5.0F;
+constexpr float kDeepInPerspective = 3.0F;
+constexpr float kDeepInParallel = 1.0F;
+constexpr uint32_t kRunsPerShare = 2;
+constexpr uint32_t kMostLines = 64;
+// Tiles with fewer rows, or fewer remaining boxes, are not split.
+constexpr int32_t kLeastRows = 2 * kPatchRows;
+constexpr float kLeastWork = 4000;
+
+int32_t width_of(const Rectangle& where) {
+  return std::max(where.x1 - where.x0, where.y1 - where.y0);
+}
+
+bool touches_edge(const Rectangle& where, const Tile& tile) {
+  return where.x0 == tile.x0 || where.y0 == tile.y0 || where.x1 == tile.x1 || where.y1 == tile.y1;
+}
+
+}  // namespace
+
+TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others,
+                       std::atomic<uint32_t>* next_share)
+    : lists_(task.lists),
+      frame_(task.frame),
+      starts_(task.starts),
+      depths_(depths),
+      full_(full),
+      by_blocks_(task.by_blocks),
+      batch_(batch),
+      others_(others),
+      next_share_(next_share),
+      share_(next_share == nullptr ? 0 : (*next_share)++) {
+  const Camera& camera = *frame_.camera;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Rays of a parallel camera come from beyond the world.
+    eye_cell_[axis] = camera.is_perspective()        ? camera.eye()[axis].raw >> 8
+                      : camera.direction()[axis] < 0 ? INT32_MAX
+                                                     : INT32_MIN;
+  }
+}
+
+void TileDrawer::start(int32_t y0, int32_t y1) {
+  frame_.tile.y0 = y0;
+  frame_.tile.y1 = y1;
+  const CompactTree& tree = lists_.tree();
+  if (!tree.empty()) {
+    // The root, as the first child of a world twice as large.
+    Block world{};
+    world.level = static_cast<uint16_t>(tree.level() + 1);
+    depth_ = find_children(frame_, world, 1, 0, 0, stack_);
+  }
+  if (starts_ != nullptr && share_ == 0) {
+    draw_starts();
+  }
+}
+
+// Draws the voxels in which rays begin, before all others. Only lists that may leave out these voxels need it.
+void TileDrawer::draw_starts() {
+  if (starts_->on_plane) {
+    draw_plane_starts(frame_, depths_, frame_.tile.y0, frame_.tile.y1, batch_);
+  }
+  for (uint32_t i = 0; i < starts_->count; ++i) {
+    const SolidStarts::Voxel& voxel = starts_->voxels[i];
+    ++batch_->counts.nodes;
+    Block parent{};
+    parent.level = 1;
+    unsigned octant = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      parent.corner[axis] = static_cast<uint16_t>(voxel.at[axis] & ~1U);
+      octant |= (voxel.at[axis] & 1U) << axis;
+    }
+    Block block[8];
+    if (find_children(frame_, parent, 1U << octant, 0, 0, block) == 0) {
+      continue;
+    }
+    uint32_t entries[1 + kReadAhead] = {};
+    Run run = run_of(block[0]);
+    entries[0] = packed({voxel.at[0], voxel.at[1], voxel.at[2]}, 0);
+    run.entries = entries;
+    run.count = 1;
+    run.first = frame_.first_hidden + voxel.material;
+    draw_run(frame_, run, depths_, batch_);
+  }
+  depth_ = starts_->are_all ? 0 : depth_;
+}
+
+void TileDrawer::draw() {
+  while (depth_ > 0) {
+    if (others_ != nullptr && others_->is_wanted()) {
+      split();
+      if (depth_ == 0) {
+        break;
+      }
+    }
+    const Block block = stack_[--depth_];
+    ++batch_->counts.nodes;
+    const bool is_tabled = has_table(block);
+    const BlockNode& node = lists_.nodes()[block.node];
+    if (!faces_eye(block, node) || is_hidden(block, is_tabled)) {
+      continue;
+    }
+    const unsigned mask = lists_.children(block.node);
+    if (!is_leaf(block, node, mask, is_tabled)) {
+      push_children(block, node, mask);
+    } else if (is_ours()) {
+      enqueue(block, node);
+    }
+  }
+  while (ahead_count_ != 0) {
+    batch_->ahead_end = batch_->ahead;
+    draw_oldest();
+  }
+  finish(frame_, depths_, batch_);
+}
+
+// Whether the eye may see any voxel of the block.
+bool TileDrawer::faces_eye(const Block& block, const BlockNode& node) const {
+  const uint32_t corner[3] = {block.corner[0], block.corner[1], block.corner[2]};
+  return (lists_.facing(node) & ways_to(eye_cell_, corner, uint32_t{1} << block.level)) != 0;
+}
+
+// Whether all pixels of the block are known to be covered. Small blocks with tables look that up while they are drawn.
+bool TileDrawer::is_hidden(const Block& block, bool is_tabled) const {
+  return by_blocks_ && (!is_tabled || width_of(block.place.where) > kTablePx) &&
+         all_covered(depths_, block.place.where, full_);
+}
+
+bool TileDrawer::has_table(const Block& block) const {
+  return by_blocks_ && !lists_.has_blocks() && voxel_px(block) < kTableVoxelPx;
+}
+
+// Whether the block is drawn as one run.
+bool TileDrawer::is_leaf(const Block& block, const BlockNode& node, unsigned mask, bool is_tabled) const {
+  if (mask == 0 || block.level <= lists_.block_level()) {
+    return true;
+  }
+  const int32_t widest = width_of(block.place.where);
+  uint32_t most = by_blocks_ || touches_edge(block.place.where, frame_.tile) ? kBlockBoxes : kFlatBoxes;
+  if (is_tabled) {
+    if (widest > kTablePx || !is_flat(block)) {
+      return false;
+    }
+    most = kTableBoxes;
+  }
+  if (widest <= kTinyPx) {
+    most = std::max(most, kTinyBoxes);
+  }
+  return node.entries <= most && block.level <= kCubeLevel;
+}
+
+// Whether perspective bends the block so little that a table serves. It moves a voxel by about `bend` times the block's
+// size, and the centre by the square of that.
+bool TileDrawer::is_flat(const Block& block) const {
+  const float bend = frame_.norm_w * static_cast<float>(1 << block.level) * 0.5F * block.place.per_depth;
+  return !frame_.perspective ||
+         (bend <= kMostBend &&
+          0.5F * static_cast<float>(width_of(block.place.where)) * bend * bend <= kMostBentPx);
+}
+
+// Roughly how many pixels wide a voxel of the block is on the picture.
+float TileDrawer::voxel_px(const Block& block) const {
+  return block.place.per_depth == 0 ? 1e9F : 2 * frame_.reach_x * block.place.per_depth;
+}
+
+unsigned TileDrawer::nearest_octant(const Block& block) const {
+  const int32_t side = int32_t{1} << (block.level - 1);
+  unsigned octant = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    octant |= eye_cell_[axis] >= block.corner[axis] + side ? 1U << axis : 0U;
+  }
+  return octant;
+}
+
+// Whether the next run is one of ours. All threads pass the same runs in the same order; each takes the next free share
+// when it has drawn its last one, so every run is drawn once.
+bool TileDrawer::is_ours() {
+  if (next_share_ == nullptr) {
+    return true;
+  }
+  const uint32_t share = run_++ / kRunsPerShare;
+  if (share > share_) {
+    share_ = (*next_share_)++;
+  }
+  return share == share_;
+}
+
+// Pushes the children that may be seen; the last one pushed is the first one drawn.
+void TileDrawer::push_children(const Block& block, const BlockNode& node, unsigned mask) {
+  Block* const children = stack_ + depth_;
+  const int count = find_children(frame_, block, mask, node.first_child, nearest_octant(block), children);
+  for (int child = 0; child < count; ++child) {
+    __builtin_prefetch(&lists_.nodes()[children[child].node]);
+  }
+  depth_ += count;
+}
+
+// Puts a block into the ring. Its boxes are fetched while those of the blocks before it are drawn.
+void TileDrawer::enqueue(const Block& block, const BlockNode& node) {
+  ahead_[(ahead_first_ + ahead_count_++) % kAhead] = block;
+  if (ahead_count_ < kAhead) {
+    fetch(node, 0);
+    return;
+  }
+  const uint32_t* const first = lists_.entries().data + node.first_entry;
+  batch_->ahead = first;
+  batch_->ahead_end = first + node.entries;
+  draw_oldest();
+  fetch(node, static_cast<uint32_t>(batch_->ahead - first) / 16);
+}
+
+// Prefetches the boxes of a block, except the first `done` cache lines.
+void TileDrawer::fetch(const BlockNode& node, uint32_t done) const {
+  const uint32_t* entries = lists_.entries().data + node.first_entry;
+  for (uint32_t line = done; 16 * line < node.entries && line < kMostLines; ++line) {
+    __builtin_prefetch(entries + 16 * line);
+  }
+}
+
+void TileDrawer::draw_oldest() {
+  const Block& block = ahead_[ahead_first_];
+  ahead_first_ = (ahead_first_ + 1) % kAhead;
+  --ahead_count_;
+  // What lies before the block may have been drawn since it was enqueued. Small blocks look that up while they are
+  // drawn.
+  if (by_blocks_ && width_of(block.place.where) > kTablePx &&
+      all_covered(depths_, block.place.where, full_)) {
+    return;
+  }
+  draw_block(block, lists_.nodes()[block.node]);
+}
+
+// Makes the run of a block, without entries yet.
+Run TileDrawer::run_of(const Block& block) const {
+  Run run{};
+  run.unit = !lists_.has_blocks();
+  run.place = block.place;
+  run.behind = by_blocks_;
+  run.voxel_px = voxel_px(block);
+  run.side = uint32_t{1} << block.level;
+  const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    run.corner[axis] = block.corner[axis] & ~cube;
+    run.block[axis] = block.corner[axis] & cube;
+  }
+  return run;
+}
+
+bool TileDrawer::is_worth_sorting(const Block& block, const BlockNode& node) const {
+  const float side_px = voxel_px(block);
+  const float face_px = side_px * side_px * static_cast<float>(lists_.face_area(node));
+  const auto are_as_large = [&](float px) { return face_px >= px * px * static_cast<float>(node.entries); };
+  if (lists_.has_blocks()) {
+    return are_as_large(kSortedPx);
+  }
+  const Rectangle& where = block.place.where;
+  const auto area = static_cast<float>((where.x1 - where.x0) * (where.y1 - where.y0));
+  return are_as_large(kSortedVoxelPx) ||
+         (are_as_large(kSortedDeepPx) &&
+          face_px >= area * (frame_.perspective ? kDeepInPerspective : kDeepInParallel));
+}
+
+void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
+  Run run = run_of(block);
+  run.entries = lists_.entries().data + node.first_entry;
+  run.count = node.entries;
+  run.first = node.first_entry;
+  if (block.level > kCubeLevel) {
+    draw_cubes(block, node, &run);
+    return;
+  }
+  if (by_blocks_ && run.count > 1 && run.count <= SortedRun::kMostBoxes && is_worth_sorting(block, node) &&
+      !sorted_.cull_and_sort(frame_, block, eye_cell_, depths_, batch_, &run)) {
+    return;
+  }
+  draw_run(frame_, run, depths_, batch_);
+}
+
+// Draws a solid block of several cubes, which has an entry for each cube, in Morton order.
+void TileDrawer::draw_cubes(const Block& block, const BlockNode& node, Run* run) {
+  run->behind = false;
+  run->count = 1;
+  for (uint32_t piece = 0; piece < node.entries; ++piece) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const uint32_t place = (piece >> axis & 1U) | (piece >> (3 + axis) & 1U) << 1;
+      run->corner[axis] = block.corner[axis] + (place << kCubeLevel);
+    }
+    draw_run(frame_, *run, depths_, batch_);
+    ++run->entries;
+    ++run->first;
+  }
+}
+
+// Gives the lower rows, with about half of the work that is left, to a thread that waits.
+void TileDrawer::split() {
+  const Tile& tile = frame_.tile;
+  if (tile.y1 - tile.y0 < kLeastRows) {
+    return;
+  }
+  const int32_t cut = middle_row();
+  const float all = work_above(tile.y1);
+  const float above = work_above(cut);
+  if (all < kLeastWork || above < all / 16 || above > all * 15 / 16) {
+    return;
+  }
+  TileDrawer* const taker = others_->take();
+  if (taker == nullptr) {
+    return;
+  }
+  // Draws what waits in the batch now: from here on the lower rows are the taker's.
+  finish(frame_, depths_, batch_);
+  std::rotate(ahead_, ahead_ + ahead_first_, ahead_ + kAhead);
+  ahead_first_ = 0;
+  taker->frame_.tile = {tile.x0, cut, tile.x1, tile.y1};
+  taker->take_blocks(*this);
+  frame_.tile.y1 = cut;
+  take_blocks(*this);
+  Others::give(taker);
+}
+
+// Takes those blocks of `from` (which may be this drawer) that reach our rows. The ring of `from` begins at 0.
+void TileDrawer::take_blocks(const TileDrawer& from) {
+  const auto take = [&](const Block* blocks, uint32_t count, Block* to) {
+    uint32_t taken = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+      Block block = blocks[i];
+      Rectangle& where = block.place.where;
+      where.y0 = std::max(where.y0, frame_.tile.y0);
+      where.y1 = std::min(where.y1, frame_.tile.y1);
+      if (where.y0 < where.y1) {
+        to[taken++] = block;
+      }
+    }
+    return taken;
+  };
+  depth_ = static_cast<int>(take(from.stack_, static_cast<uint32_t>(from.depth_), stack_));
+  ahead_count_ = take(from.ahead_, from.ahead_count_, ahead_);
+  ahead_first_ = 0;
+}
+
+// Finds a row with about half of the work above it: the first row of a patch, but not of the tile.
+int32_t TileDrawer::middle_row() const {
+  const int32_t origin = depths_.first_row;
+  const float half = work_above(frame_.tile.y1) / 2;
+  int32_t low = (frame_.tile.y0 - origin) / kPatchRows + 1;
+  int32_t high = (frame_.tile.y1 - origin - 1) / kPatchRows;
+  while (low < high) {
+    const int32_t middle = (low + high) / 2;
+    // Looks half a patch further down, so that it finds the nearest cut.
+    if (work_above(origin + middle * kPatchRows + kPatchRows / 2) < half) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return origin + low * kPatchRows;
+}
+
+// Estimates how many of the remaining boxes lie above the row, as if a block's boxes were spread evenly over its rows.
+float TileDrawer::work_above(int32_t y) const {
+  float work = 0;
+  const auto add = [&](const Block& block) {
+    const Rectangle& where = block.place.where;
+    const float part = static_cast<float>(std::clamp(y, where.y0, where.y1) - where.y0) /
+                       static_cast<float>(where.y1 - where.y0);
+    work += part * static_cast<float>(lists_.nodes()[block.node].entries);
+  };
+  for (int i = 0; i < depth_; ++i) {
+    add(stack_[i]);
+  }
+  for (uint32_t i = 0; i < ahead_count_; ++i) {
+    add(ahead_[(ahead_first_ + i) % kAhead]);
+  }
+  return work;
+}
+
+}  // namespace thimble::wide

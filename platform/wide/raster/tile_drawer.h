@@ -1,0 +1,98 @@
+/// @file tile_drawer.h
+/// Draws the boxes of one tile of the picture: walks the tree, skips blocks that cannot be seen, and hands
+/// runs of boxes to the kernels.
+#ifndef THIMBLE_PLATFORM_WIDE_RASTER_TILE_DRAWER_H
+#define THIMBLE_PLATFORM_WIDE_RASTER_TILE_DRAWER_H
+
+#include <atomic>
+
+#include "wide/raster/hidden_voxels.h"
+#include "wide/raster/kernels.h"
+#include "wide/raster/sorted_run.h"
+#include "wide/raster/voxel_lists.h"
+#include "wide/raster/work_sharing.h"
+
+namespace thimble::wide {
+
+/// Draws for one thread, one tile or part of a tile after the other.
+class TileDrawer {
+ public:
+  using Others = WorkSharing<TileDrawer>;
+
+  /// What all threads of a frame share.
+  struct Task {
+    const VoxelLists& lists;
+    const WideFrame& frame;
+    bool by_blocks;
+    const SolidStarts* starts;  ///< null where the lists leave nothing out
+  };
+
+  /// `full`: see all_covered(); may be null where blocks are not used. `others`: null, or the threads that draw other
+  /// rows of the same depths and take some of ours when they have none left. `next_share`: null, or shared by several
+  /// threads that divide the runs of a list among them, each with depths of its own; not with blocks.
+  TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others,
+             std::atomic<uint32_t>* next_share = nullptr);
+
+  /// Begins a tile of rows y0 .. y1 - 1 of the picture.
+  void start(int32_t y0, int32_t y1);
+  /// Draws the rows that were started or given, except those that it gives away meanwhile. Afterwards frame().tile is
+  /// the rows that were drawn.
+  void draw();
+
+  const WideFrame& frame() const { return frame_; }
+
+  // For WorkSharing.
+  std::atomic<bool> given{false};
+  TileDrawer* next_taker = nullptr;
+
+ private:
+  static constexpr uint32_t kAhead = 8;
+
+  bool is_leaf(const Block& block, const BlockNode& node, unsigned mask, bool is_tabled) const;
+  bool faces_eye(const Block& block, const BlockNode& node) const;
+  bool is_hidden(const Block& block, bool is_tabled) const;
+  bool has_table(const Block& block) const;
+  bool is_flat(const Block& block) const;
+  float voxel_px(const Block& block) const;
+  // Whether the boxes of a block are drawn from front to back.
+  bool is_worth_sorting(const Block& block, const BlockNode& node) const;
+  unsigned nearest_octant(const Block& block) const;
+  bool is_ours();
+
+  void push_children(const Block& block, const BlockNode& node, unsigned mask);
+  void enqueue(const Block& block, const BlockNode& node);
+  void fetch(const BlockNode& node, uint32_t done) const;
+  void draw_oldest();
+  void draw_starts();
+  Run run_of(const Block& block) const;
+  void draw_block(const Block& block, const BlockNode& node);
+  void draw_cubes(const Block& block, const BlockNode& node, Run* run);
+
+  void split();
+  void take_blocks(const TileDrawer& from);
+  int32_t middle_row() const;
+  float work_above(int32_t y) const;
+
+  const VoxelLists& lists_;
+  WideFrame frame_;
+  const SolidStarts* starts_;
+  const Depths& depths_;
+  uint8_t* full_;
+  bool by_blocks_;
+  Batch* batch_;
+  Others* others_;
+  std::atomic<uint32_t>* next_share_;
+  uint32_t share_;
+  uint32_t run_ = 0;
+  int32_t eye_cell_[3];
+  int depth_ = 0;  ///< blocks on stack_
+  Block stack_[7 * kMaxLevel + 8];
+  Block ahead_[kAhead];  ///< a ring of blocks whose boxes are being fetched, in the order of drawing
+  uint32_t ahead_first_ = 0;
+  uint32_t ahead_count_ = 0;
+  SortedRun sorted_;
+};
+
+}  // namespace thimble::wide
+
+#endif

@@ -1,0 +1,365 @@
+#include "wide/raster/voxel_lists.h"
+
+#include "thimble/tree/compact_tree.h"
+#include "wide/raster/surface.h"
+#include "wide/raster/surface_list.h"
+
+namespace thimble::wide {
+namespace {
+
+// Where each level of the tree begins (its nodes stand one after the other), and how many boxes there are.
+struct Census {
+  uint32_t level_begin[kMaxLevel + 2];  // by level; [0] is the number of nodes
+  uint64_t boxes = 0;
+  uint64_t added = 0;      // boxes that splitting blocks into voxels would add
+  uint64_t volume = 0;     // in voxels
+  uint64_t removable = 0;  // at most so many voxels are hidden
+  bool has_blocks = false;
+  bool splits = false;  // whether blocks are split into voxels; then `boxes` counts these
+};
+
+// Lists of single voxels are drawn faster, so blocks are split into voxels where that adds at most one box to so many.
+constexpr uint64_t kBoxesPerAdded = 8;
+// A surface is listed where more than one voxel in so many may be hidden.
+constexpr uint64_t kVoxelsPerHidden = 4;
+// A list of boxes stands beside a surface where it has at most so many boxes, or one for so many voxels of the surface.
+constexpr uint64_t kFewBoxesBeside = uint64_t{1} << 20;
+constexpr uint64_t kVoxelsPerBoxBeside = 4;
+
+// Solid blocks larger than a cube of entries are listed as such cubes.
+uint32_t pieces_of(int level) {
+  return level > kCubeLevel ? uint32_t{1} << (3 * (level - kCubeLevel)) : 1;
+}
+
+bool count(const CompactTree& tree, Census* census) {
+  uint32_t begin = 0;
+  uint32_t end = tree.empty() ? 0 : 1;
+  for (int level = tree.level(); level >= 1; --level) {
+    census->level_begin[level] = begin;
+    uint64_t children = 0;
+    for (uint32_t node = begin; node < end; ++node) {
+      const unsigned mask = tree.mask(node);
+      children += static_cast<unsigned>(__builtin_popcount(mask));
+      if (mask == 0) {
+        census->boxes += pieces_of(level);
+        census->has_blocks = true;
+        census->volume += uint64_t{1} << (3 * level);
+        census->removable += uint64_t{1} << (3 * level);
+        census->added += (uint64_t{1} << (3 * level)) - pieces_of(level);
+      } else if (level == 1) {
+        census->removable += most_hidden(mask);
+      }
+    }
+    if (level == 1) {
+      census->boxes += children;
+      census->volume += children;
+    } else if (children > tree.node_count() - end) {
+      return false;
+    }
+    begin = end;
+    end += level == 1 ? 0 : static_cast<uint32_t>(children);
+  }
+  census->level_begin[0] = begin;
+  return begin == tree.node_count() && census->boxes <= UINT32_MAX;
+}
+
+// Chooses to split blocks into voxels, where that adds few boxes or where voxels are wanted.
+void split_blocks(const CompactTree& tree, bool wants_voxels, Census* census) {
+  const uint64_t voxels = census->boxes + census->added;
+  const bool are_few = census->added <= census->boxes / kBoxesPerAdded && voxels <= UINT32_MAX;
+  census->splits =
+      census->has_blocks && !tree.merged() && (are_few || (wants_voxels && voxels <= kMostSurface));
+  if (census->splits) {
+    census->boxes = voxels;
+    census->has_blocks = false;
+  }
+}
+
+// So many nodes cost little however many boxes there are: a megabyte.
+constexpr uint64_t kFreeNodes = 65536;
+
+// Chooses the lowest level, `least` or above, whose nodes, with all nodes above them, are few, or at most a sixteenth
+// of the boxes. `level_begin[level - 1]` is the number of nodes of that level and above.
+int choose_block_level(int world_level, const uint32_t* level_begin, uint64_t boxes, int least) {
+  // A sixteenth suits most trees; a tree that is crowded in a corner wants more nodes.
+  const uint64_t quarter = boxes / 4 < kFreeNodes ? boxes / 4 : kFreeNodes;
+  const uint64_t most = boxes / 16 > quarter ? boxes / 16 : quarter > 4096 ? quarter : 4096;
+  int level = world_level < kCubeLevel ? world_level : kCubeLevel;
+  while (level > least && level_begin[level - 2] <= most) {
+    --level;
+  }
+  return level;
+}
+
+template <class T>
+T* array(Arena* arena, uint64_t count) {
+  return reinterpret_cast<T*>(arena->take(static_cast<size_t>(count) * sizeof(T), 64).data);
+}
+
+// Walks the tree down and across, in Morton order, and writes entries and block nodes.
+class ListWriter {
+ public:
+  ListWriter(const CompactTree& tree, const Census& census, int block_level, const ListTo& to)
+      : tree_(tree), census_(census), block_level_(block_level), to_(to), voxel_(tree.node_count()) {
+    for (int level = 1; level <= tree.level(); ++level) {
+      next_node_[level] = census.level_begin[level];
+    }
+  }
+
+  // Writes the lists of a tree that is not empty.
+  void write() {
+    int level = tree_.level();
+    enter(level);
+    for (;;) {
+      Visit& visit = visits_[level];
+      if (visit.mask != 0 && level > 0) {  // nodes of level 0 have no children
+        const unsigned octant = static_cast<unsigned>(__builtin_ctz(visit.mask));
+        visit.mask &= visit.mask - 1;
+        --level;
+        const uint32_t side = uint32_t{1} << level;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+          corner_[axis] = (corner_[axis] & ~(2 * side - 1)) | ((octant >> axis & 1U) != 0 ? side : 0);
+        }
+        enter(level);
+        continue;
+      }
+      if (level >= block_level_) {
+        BlockNode& node = to_.nodes[visit.node];
+        node.entries = written_ - node.first_entry;
+        node.area_or_mask = census_.has_blocks ? static_cast<uint32_t>(face_area_) - node.area_or_mask
+                                               : 0xFF00U | tree_.mask(visit.node);
+      }
+      if (level == tree_.level()) {
+        return;
+      }
+      ++level;
+    }
+  }
+
+  uint32_t written() const { return written_; }
+  uint64_t face_area() const { return face_area_; }
+
+ private:
+  struct Visit {
+    uint32_t node;
+    uint32_t mask;  // the children that are not visited yet
+  };
+
+  // Begins the visit of the next node of this level, and writes the entries that are its own.
+  void enter(int level) {
+    Visit& visit = visits_[level];
+    // Nodes of one level are visited in the order in which they stand, so counting up finds them.
+    visit.node = next_node_[level]++;
+    visit.mask = tree_.mask(visit.node);
+    const bool solid = visit.mask == 0;
+    if (level >= block_level_) {
+      to_.nodes[visit.node] = {written_, 0, level > 1 && !solid ? next_node_[level - 1] : 0,
+                               static_cast<uint32_t>(face_area_)};
+    }
+    if (solid) {
+      add_block(level, visit.node);
+    } else if (level == 1) {
+      for (; visit.mask != 0; visit.mask &= visit.mask - 1) {
+        const unsigned octant = static_cast<unsigned>(__builtin_ctz(visit.mask));
+        const uint32_t at[3] = {corner_[0] + (octant & 1U), corner_[1] + (octant >> 1 & 1U),
+                                corner_[2] + (octant >> 2)};
+        add(at, 0, to_.materials == nullptr ? 0 : tree_.voxel_material(voxel_), visit.node);
+        ++voxel_;
+      }
+    }
+  }
+
+  void add_block(int level, uint32_t node) {
+    const uint8_t material = to_.materials == nullptr ? 0 : tree_.block_material(node);
+    if (!census_.splits) {
+      for (uint32_t piece = 0; piece < pieces_of(level); ++piece) {
+        add(corner_, level < kCubeLevel ? level : kCubeLevel, material, node);
+      }
+      return;
+    }
+    for (uint32_t code = 0; code >> (3 * level) == 0; ++code) {
+      const Vec3i place = morton_voxel(code);
+      const uint32_t at[3] = {corner_[0] + static_cast<uint32_t>(place.x),
+                              corner_[1] + static_cast<uint32_t>(place.y),
+                              corner_[2] + static_cast<uint32_t>(place.z)};
+      add(at, 0, material, node);
+    }
+  }
+
+  void add(const uint32_t (&at)[3], int box_level, uint8_t material, uint32_t node) {
+    if (to_.materials != nullptr) {
+      to_.materials[written_] = material;
+    }
+    if (to_.merged != nullptr) {
+      to_.merged[written_] = tree_.is_merged(node) ? 1 : 0;
+    }
+    face_area_ += uint64_t{1} << (2 * box_level);
+    to_.entries[written_++] = packed(at, box_level);
+  }
+
+  const CompactTree& tree_;
+  const Census& census_;
+  int block_level_;
+  ListTo to_;
+  uint32_t next_node_[kMaxLevel + 1];
+  Visit visits_[kMaxLevel + 1];
+  uint32_t corner_[3] = {0, 0, 0};
+  uint32_t written_ = 0;
+  uint32_t voxel_;  // the number of the next single voxel
+  uint64_t face_area_ = 0;
+};
+
+// Which lists a tree gets.
+struct Plan {
+  Census census;  // of the boxes
+  SurfaceCount surface;
+  bool has_surface = false;
+  bool has_boxes = true;
+  int box_level = 0;      // the block level of either list
+  int surface_level = 0;  // the same
+
+  uint64_t box_nodes() const { return census.boxes == 0 ? 0 : census.level_begin[box_level - 1]; }
+  uint64_t surface_nodes() const { return surface.level_begin[surface_level - 1]; }
+};
+
+bool make_plan(const CompactTree& tree, ListKind kind, Plan* plan) {
+  Census& census = plan->census;
+  if (!count(tree, &census)) {
+    return false;
+  }
+  const bool may_be_surface = kind == ListKind::kFastest && !tree.merged() && tree.level() >= 2;
+  const bool is_solid = census.removable > census.volume / kVoxelsPerHidden;
+  if (may_be_surface && is_solid && !tree.empty()) {
+    plan->surface = count_surface(tree, census.level_begin);
+    plan->has_surface = plan->surface.entries < kMostSurface;
+  }
+  if (plan->has_surface) {
+    plan->has_boxes =
+        census.boxes <= kFewBoxesBeside || census.boxes <= plan->surface.entries / kVoxelsPerBoxBeside;
+    // Beside a surface a list of boxes is of use only if it has blocks, and is shorter.
+    plan->has_boxes = plan->has_boxes && census.has_blocks && census.boxes < plan->surface.entries;
+    plan->surface_level =
+        choose_block_level(tree.level(), plan->surface.level_begin, plan->surface.entries, 2);
+  } else {
+    split_blocks(tree, may_be_surface && !is_solid, &census);
+  }
+  plan->box_level = choose_block_level(tree.level(), census.level_begin, census.boxes, 1);
+  return true;
+}
+
+size_t bytes_of(uint64_t entries, uint64_t nodes, bool has_materials, bool has_merged) {
+  return static_cast<size_t>(entries * (sizeof(uint32_t) + (has_materials ? 1 : 0) + (has_merged ? 1 : 0)) +
+                             kEntriesAhead * sizeof(uint32_t) + nodes * sizeof(BlockNode) + 4 * 64);
+}
+
+// Takes room for a list. Returns whether there was enough.
+bool take_list(uint64_t entries, uint64_t nodes, bool has_materials, uint64_t materials_behind,
+               bool has_merged, Arena* arena, ListTo* to) {
+  to->entries = array<uint32_t>(arena, entries + kEntriesAhead);
+  to->nodes = array<BlockNode>(arena, nodes);
+  to->materials = has_materials ? array<uint8_t>(arena, entries + materials_behind) : nullptr;
+  to->merged = has_merged ? array<uint8_t>(arena, entries) : nullptr;
+  if (to->entries == nullptr || (to->nodes == nullptr && nodes != 0) ||
+      (to->materials == nullptr && has_materials && entries != 0) ||
+      (to->merged == nullptr && has_merged && entries != 0)) {
+    return false;
+  }
+  for (uint32_t i = 0; i < kEntriesAhead; ++i) {
+    to->entries[entries + i] = 0;
+  }
+  return true;
+}
+
+}  // namespace
+
+class ListMaker {
+ public:
+  ListMaker(const CompactTree& tree, const Plan& plan) : tree_(tree), plan_(plan) {}
+
+  bool make_boxes(Arena* arena, VoxelLists::List* list) const {
+    const Census& census = plan_.census;
+    ListTo to{};
+    if (!take_list(census.boxes, plan_.box_nodes(), tree_.many_materials(), 0, tree_.merged(), arena, &to)) {
+      return false;
+    }
+    ListWriter writer(tree_, census, plan_.box_level, to);
+    if (!tree_.empty()) {
+      writer.write();
+    }
+    fill(to, writer.written(), plan_.box_nodes(), 0, list);
+    list->block_level = plan_.box_level;
+    list->face_area = writer.face_area();
+    list->has_blocks = census.has_blocks;
+    return true;
+  }
+
+  bool make_surface(Arena* arena, VoxelLists::List* list) const {
+    const uint64_t entries = plan_.surface.entries;
+    ListTo to{};
+    if (!take_list(entries, plan_.surface_nodes(), tree_.many_materials(), kMaterials, false, arena, &to)) {
+      return false;
+    }
+    write_surface(tree_, plan_.census.level_begin, plan_.surface, plan_.surface_level, to);
+    for (uint32_t material = 0; to.materials != nullptr && material < kMaterials; ++material) {
+      to.materials[entries + material] = static_cast<uint8_t>(material);
+    }
+    fill(to, entries, plan_.surface_nodes(), kMaterials, list);
+    list->block_level = plan_.surface_level;
+    list->face_area = entries;
+    list->is_surface = true;
+    return true;
+  }
+
+ private:
+  static constexpr uint32_t kMaterials = 256;
+
+  static void fill(const ListTo& to, uint64_t entries, uint64_t nodes, uint64_t materials_behind,
+                   VoxelLists::List* list) {
+    const size_t size = static_cast<size_t>(entries);
+    list->entries = Span<const uint32_t>(to.entries, size);
+    list->nodes = Span<const BlockNode>(to.nodes, static_cast<size_t>(nodes));
+    list->merged = Span<const uint8_t>(to.merged, to.merged == nullptr ? 0 : size);
+    list->materials = Span<const uint8_t>(
+        to.materials, to.materials == nullptr ? 0 : size + static_cast<size_t>(materials_behind));
+  }
+
+  const CompactTree& tree_;
+  const Plan& plan_;
+};
+
+VoxelLists VoxelLists::boxes_beside() const {
+  VoxelLists other;
+  other.tree_ = tree_;
+  other.list_ = beside_;
+  return other;
+}
+
+size_t VoxelLists::bytes(const CompactTree& tree, ListKind kind) {
+  Plan plan;
+  if (!make_plan(tree, kind, &plan)) {
+    return 0;
+  }
+  const bool many = tree.many_materials();
+  return (plan.has_surface ? bytes_of(plan.surface.entries, plan.surface_nodes(), many, false) + 256 : 0) +
+         (plan.has_boxes ? bytes_of(plan.census.boxes, plan.box_nodes(), many, tree.merged()) : 0);
+}
+
+Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists, ListKind kind) {
+  Plan plan;
+  if (!make_plan(tree, kind, &plan)) {
+    return Status::kDamaged;
+  }
+  VoxelLists made;
+  made.tree_ = tree;
+  Arena taken = *arena;
+  const ListMaker maker(tree, plan);
+  if ((plan.has_surface && !maker.make_surface(&taken, &made.list_)) ||
+      (plan.has_boxes && !maker.make_boxes(&taken, plan.has_surface ? &made.beside_ : &made.list_))) {
+    return Status::kOutOfMemory;
+  }
+  *arena = taken;
+  *lists = made;
+  return Status::kOk;
+}
+
+}  // namespace thimble::wide

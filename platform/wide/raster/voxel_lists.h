@@ -1,0 +1,127 @@
+/// @file voxel_lists.h
+/// The boxes of a compact tree as flat lists in Morton order, which an object-order renderer reads.
+///
+/// An entry is one solid box, packed into 32 bits:
+///
+///     bits  0..9    x     lowest corner, in voxels, within the aligned cube of 1024 a side that holds it
+///     bits 10..19   y
+///     bits 20..29   z
+///     bits 30..31   side  0, 1, 2: 2^side voxels; 3: 2^(3 + the low three bits of x) voxels, corner 8-aligned
+///
+/// Lists of single voxels alone are drawn faster than blocks of several sizes. So where a tree holds solid blocks, or
+/// voxels so crowded that many are hidden, only its surface is listed: voxels with six solid neighbours are left out.
+/// A ray enters such a voxel either because it begins there, or through an edge or corner, between two listed voxels
+/// that it touches without hitting them; hidden_voxels.h says how these pixels are found. Where little would be left out (a
+/// quarter at most) all voxels are listed. Where a tree has far fewer boxes than voxels on its surface, a list of the
+/// boxes stands beside that of the surface, for views in which voxels look large. Trees that were coarsened are listed
+/// as their boxes: a merged block stays one.
+///
+/// A node covers a run of entries. The lists keep the nodes of `block_level` and above with their runs, so that whole
+/// blocks can be skipped, or drawn front to back. A list of boxes has the tree's nodes; a list of a surface has nodes
+/// of its own, also within solid blocks, and only such as have entries.
+#ifndef THIMBLE_PLATFORM_WIDE_RASTER_VOXEL_LISTS_H
+#define THIMBLE_PLATFORM_WIDE_RASTER_VOXEL_LISTS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "thimble/base/memory.h"
+#include "thimble/base/status.h"
+#include "thimble/tree/compact_tree.h"
+
+namespace thimble::wide {
+
+/// Worlds above this level are several cubes of entries.
+inline constexpr int kCubeLevel = 10;
+
+/// So many zeros follow the entries, so that whole vectors can be read up to the end.
+inline constexpr uint32_t kEntriesAhead = 64;
+
+/// A surface has fewer entries than this, since the numbers after them stand for materials 0 .. 255.
+inline constexpr uint64_t kMostSurface = (uint64_t{1} << 28) - 256;
+
+/// A node of the lists at block level or above.
+struct BlockNode {
+  uint32_t first_entry;
+  uint32_t entries;
+  uint32_t first_child;  ///< number of its first child
+  /// In lists with blocks: the sum over the node's entries of the area of a face, in square voxels, modulo 2^32. In
+  /// other lists: the mask of its children; and from bit 8 on a bit for each of the eight ways in which rays run (bit
+  /// 8 + way, where bit a of `way` means downwards along axis a), which says whether rays that run so may see any of
+  /// its voxels. They see none that has solid neighbours on all three sides that face the eye (hidden_voxels.h).
+  uint32_t area_or_mask;
+};
+
+/// Which lists are made.
+enum class ListKind : uint8_t {
+  kFastest,  ///< the lists that are drawn fastest
+  kBoxes,    ///< only the tree's boxes, cut into voxels where that adds at most an eighth
+};
+
+/// The lists of one tree, in bytes that the caller gave: 4 bytes a box, 1 more with several materials, 1 more with
+/// merged blocks, and 16 bytes a node of block_level and above. Of these nodes there is at most one for 16 boxes, or
+/// 4096, or one for 4 boxes up to 65536.
+class VoxelLists {
+ public:
+  /// Makes the lists; takes `bytes(tree, kind)` from the arena. Goes over the masks once and over the boxes once;
+  /// over a surface twice. Errors: kOutOfMemory, with nothing taken, when they do not fit; kDamaged for a tree that
+  /// does not validate.
+  static Status make(const CompactTree& tree, Arena* arena, VoxelLists* lists,
+                     ListKind kind = ListKind::kFastest);
+  /// The most bytes that `make` takes. Reads all masks, and walks the surface once.
+  static size_t bytes(const CompactTree& tree, ListKind kind = ListKind::kFastest);
+
+  const CompactTree& tree() const { return tree_; }
+  Span<const uint32_t> entries() const { return list_.entries; }
+  /// Materials of the entries; empty where the tree has one material. In a list of a surface all 256 materials follow,
+  /// in order.
+  Span<const uint8_t> materials() const { return list_.materials; }
+  /// 1 for entries that coarsening made: a hit on such an entry is a hit on the block, not on a voxel of it. Empty
+  /// where the tree has no such block.
+  Span<const uint8_t> merged() const { return list_.merged; }
+  Span<const BlockNode> nodes() const { return list_.nodes; }
+  int block_level() const { return list_.block_level; }
+  /// The sum over all entries of the area of a face, in square voxels.
+  uint64_t face_area() const { return list_.face_area; }
+  /// Whether any entry is larger than one voxel.
+  bool has_blocks() const { return list_.has_blocks; }
+  /// Whether voxels with six solid neighbours are left out. A hidden voxel that a ray hits all the same is numbered
+  /// entries().size + its material.
+  bool is_surface() const { return list_.is_surface; }
+  /// Whether a list of boxes stands beside that of the surface; and that list.
+  bool has_boxes_beside() const { return beside_.entries.size != 0; }
+  VoxelLists boxes_beside() const;
+
+  /// The mask of a node's children that have entries; at the block level the children themselves are not kept.
+  unsigned children(uint32_t node) const {
+    return list_.has_blocks ? tree_.mask(node) : list_.nodes[node].area_or_mask & 0xFFU;
+  }
+  /// The ways, out of eight, in which rays must run so that a voxel of the node may be the first that they hit
+  /// (BlockNode).
+  unsigned facing(const BlockNode& node) const {
+    return list_.has_blocks ? 0xFFU : node.area_or_mask >> 8 & 0xFFU;
+  }
+  uint32_t face_area(const BlockNode& node) const {
+    return list_.has_blocks ? node.area_or_mask : node.entries;
+  }
+
+ private:
+  friend class ListMaker;
+  struct List {
+    Span<const uint32_t> entries;
+    Span<const uint8_t> materials;
+    Span<const uint8_t> merged;
+    Span<const BlockNode> nodes;
+    uint64_t face_area = 0;
+    int block_level = 0;
+    bool has_blocks = false;
+    bool is_surface = false;
+  };
+  CompactTree tree_;
+  List list_;
+  List beside_;
+};
+
+}  // namespace thimble::wide
+
+#endif

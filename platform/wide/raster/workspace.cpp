@@ -1,0 +1,79 @@
+#include "wide/raster/workspace.h"
+
+#include <string.h>
+
+#include <new>
+
+#include "wide/raster/coverage.h"
+
+namespace thimble::wide {
+
+size_t Workspace::bytes(int32_t width_px, int32_t rows, int threads) {
+  const size_t copy = strips_of(width_px) * static_cast<size_t>(rows) * 32 * sizeof(uint64_t) +
+                      covered_words(width_px, rows) * sizeof(uint32_t) + 64;
+  return static_cast<size_t>(threads <= kMostCopies ? threads : 1) * copy +
+         strips_of(width_px) * patches_of(rows) + static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
+}
+
+Workspace::Workspace(Bytes memory, const Layout& layout)
+    : strips_(strips_of(layout.width_px)), rows_(layout.rows) {
+  Arena arena(memory);
+  for (int copy = 0; copy < layout.copies; ++copy) {
+    depths_[copy] = make_depths(layout, &arena);
+  }
+  full_patches_ = arena.take(strips_ * patches_of(rows_), 1).data;
+  const Bytes batches = arena.take(static_cast<size_t>(layout.threads) * sizeof(Batch), alignof(Batch));
+  for (int thread = 0; thread < layout.threads; ++thread) {
+    new (batches.data + static_cast<size_t>(thread) * sizeof(Batch)) Batch;
+  }
+  batches_ = std::launder(reinterpret_cast<Batch*>(batches.data));
+}
+
+Depths Workspace::make_depths(const Layout& layout, Arena* arena) const {
+  const size_t pixels = strips_ * static_cast<size_t>(rows_) * 32;
+  const Bytes nearest = arena->take(pixels * sizeof(uint64_t), 64);
+  Depths depths;
+  depths.nearest = reinterpret_cast<uint64_t*>(nearest.data);
+  depths.gray_scale = layout.gray_scale;
+  depths.shading = layout.shading;
+  depths.nearest_sum = reinterpret_cast<uint16_t*>(nearest.data);
+  depths.gray = nearest.data + pixels * sizeof(uint16_t);
+  depths.covered =
+      reinterpret_cast<uint32_t*>(arena->take(covered_words(layout.width_px, rows_) * sizeof(uint32_t)).data);
+  depths.marks = layout.by_blocks || layout.gray_scale == nullptr;
+  // Sparse pictures do not use the marks, so their bytes hold a byte and a number for each piece, of 32 that its marks
+  // would take.
+  depths.is_touched = nullptr;
+  depths.touched = nullptr;
+  if (layout.is_sparse) {
+    const size_t pieces = pixels / (32 * kPieceWords) + 1;
+    depths.touched = depths.covered;
+    depths.is_touched = reinterpret_cast<uint8_t*>(depths.covered + 1 + pieces);
+    depths.touched[0] = 0;
+    memset(depths.is_touched, 0, pieces);
+  }
+  depths.rows = rows_;
+  depths.first_row = layout.first_row;
+  return depths;
+}
+
+void Workspace::clear(const Depths& depths, int32_t y, int32_t rows) const {
+  for (size_t strip = 0; strip < strips_; ++strip) {
+    const size_t word = depths.word(static_cast<int32_t>(32 * strip), y);
+    if (depths.marks) {
+      memset(depths.covered + word, 0, static_cast<size_t>(rows) * sizeof(uint32_t));
+    }
+    if (depths.gray_scale != nullptr && depths.is_touched == nullptr) {
+      memset(depths.gray + 32 * word, 0, static_cast<size_t>(rows) * 32);
+    }
+  }
+}
+
+void Workspace::clear_patches(int32_t first, int32_t rows) const {
+  for (size_t strip = 0; strip < strips_; ++strip) {
+    memset(full_patches_ + strip * patches_of(rows_) + static_cast<size_t>(first / kPatchRows), 0,
+           patches_of(rows));
+  }
+}
+
+}  // namespace thimble::wide
