@@ -68,52 +68,47 @@ size_t map_bytes(const MapShape& shape, const MediaShape& media) {
                              (shape.words + media.words) * sizeof(uint64_t) + kPadding);
 }
 
-class MapWriter : TreeWalk {
+// Writes what a walk over the tree hands it.
+class MapWriter {
  public:
   MapWriter(const CompactTree& tree, const MapShape& shape, uint32_t* top, uint64_t* chunks)
-      : TreeWalk(tree, shape),
+      : tree_(tree),
         top_(top),
         chunks_(chunks),
         bits_(map_level(tree) - kChunkLevel),
         has_nodes_(has_nodes(tree)),
-        has_tags_(has_tags(tree)),
-        next_voxel_(tree.node_count()) {
-    std::copy(shape.block_begin, shape.block_begin + kMaxLevel + 1, next_block_);
+        has_tags_(has_tags(tree)) {
     std::fill(top, top + shape.top, kEmptyCube);
-    std::fill(chunk_, chunk_ + kLeaves, ~uint64_t{0});
-    put_chunk(UINT64_MAX);
+    put_solid_chunk(UINT64_MAX);
   }
 
-  void write() {
-    if (tree_.level() < kChunkLevel) {
-      write_chunk(next_node_[tree_.level()], tree_.level(), {0, 0, 0});
-    } else {
-      enter(tree_.level(), {0, 0, 0});
+  void take_block(const Corner& corner, int level, uint8_t material) {
+    fill_cubes(level, corner, has_tags_ ? solid_chunk(material) : 0);
+  }
+  void take_leaf(const Corner& leaf, uint64_t voxels, uint8_t material) {
+    chunk_[bit_of(leaf, kLeafLevel)] |= voxels;
+    if (has_tags_) {
+      tag_cells(leaf, voxels == ~uint64_t{0} ? 0xFF : 1U << LeafOrder::cell_of(bit_of(leaf, 0)), material);
     }
+  }
+  void take_voxels(const Corner& corner, unsigned mask, uint32_t number) {
+    chunk_[bit_of(corner, kLeafLevel)] |= spread(mask) << bit_of(corner, 0);
+    if (has_tags_) {
+      tag_voxels(corner, number, static_cast<unsigned>(__builtin_popcount(mask)));
+    }
+  }
+  void take_chunk(const Corner& corner, uint32_t node) {
+    *cube(corner.x >> kChunkLevel, corner.y >> kChunkLevel, corner.z >> kChunkLevel) = next_word_ << 4;
+    put_chunk(node);
   }
   uint64_t words() const { return next_word_; }
 
  private:
-  // Enters a node of the chunk's level or above.
-  void enter(int level, const Corner& corner) {
-    if (level == kChunkLevel && tree_.mask(next_node_[level]) != 0) {
-      write_chunk(next_node_[level], level, corner);
-      return;
-    }
-    visit(
-        level, [&](unsigned octant) { enter(level - 1, child_corner(corner, octant, level)); },
-        [&] { fill_cubes(level, corner, has_tags_ ? solid_chunk(next_material(level)) : 0); });
-  }
-
-  // The material of the next solid block of a level.
-  uint8_t next_material(int level) { return tree_.material_of_block(next_block_[level]++); }
-
   // Returns where the chunk begins that is solid through in a material; writes it first if need be.
   uint32_t solid_chunk(uint8_t material) {
     if (solid_[material] == 0) {
-      std::fill(chunk_, chunk_ + kLeaves, ~uint64_t{0});
       solid_[material] = next_word_;
-      put_chunk(kSolidChunk | material);
+      put_solid_chunk(kSolidChunk | material);
     }
     return solid_[material];
   }
@@ -131,15 +126,12 @@ class MapWriter : TreeWalk {
     }
   }
 
-  // Writes the chunk of `node`, which in a world smaller than a chunk is the root.
-  void write_chunk(uint32_t node, int level, const Corner& corner) {
-    std::fill(chunk_, chunk_ + kLeaves, 0);
-    std::fill(tags_, tags_ + kLeaves, Collected());
-    collect(level, corner);
-    *cube(corner.x >> kChunkLevel, corner.y >> kChunkLevel, corner.z >> kChunkLevel) = next_word_ << 4;
-    put_chunk(node);
+  void put_solid_chunk(uint64_t second) {
+    std::fill(chunk_, chunk_ + kLeaves, ~uint64_t{0});
+    put_chunk(second);
   }
 
+  // Writes what was collected of a chunk, and begins the next.
   void put_chunk(uint64_t node) {
     uint64_t& mask = chunks_[next_word_++];
     mask = 0;
@@ -157,6 +149,8 @@ class MapWriter : TreeWalk {
         chunks_[next_word_++] = tags_[leaf].is_plain ? tags_[leaf].whole() : tags_[leaf].tag.word();
       }
     }
+    std::fill(chunk_, chunk_ + kLeaves, 0);
+    std::fill(tags_, tags_ + kLeaves, Collected());
   }
 
   // What is known of a leaf's materials.
@@ -191,52 +185,24 @@ class MapWriter : TreeWalk {
     set = static_cast<uint8_t>(set | cells);
     to.take(material);
   }
-  void tag_voxels(const Corner& leaf, unsigned count) {
+  void tag_voxels(const Corner& leaf, uint32_t number, unsigned count) {
     Collected& to = tags_[bit_of(leaf, kLeafLevel)];
     if (!to.has_voxels) {
       to.has_voxels = true;
-      to.tag.first_voxel = next_voxel_;
+      to.tag.first_voxel = number;
     }
     for (unsigned i = 0; i < count; ++i) {
-      to.take(tree_.voxel_material(next_voxel_++));
+      to.take(tree_.voxel_material(number + i));
     }
   }
 
-  void collect(int level, const Corner& corner) {
-    if (level == 1) {
-      const unsigned mask = tree_.mask(next_node_[1]++);
-      chunk_[bit_of(corner, kLeafLevel)] |= spread(mask == 0 ? 0xFF : mask) << bit_of(corner, 0);
-      if (has_tags_ && mask == 0) {
-        tag_cells(corner, 1U << LeafOrder::cell_of(bit_of(corner, 0)), next_material(1));
-      } else if (has_tags_) {
-        tag_voxels(corner, static_cast<unsigned>(__builtin_popcount(mask)));
-      }
-      return;
-    }
-    visit(
-        level, [&](unsigned octant) { collect(level - 1, child_corner(corner, octant, level)); },
-        [&] {
-          const uint32_t side = level > kLeafLevel ? uint32_t{1} << (level - kLeafLevel) : 1;
-          const uint8_t material = has_tags_ ? next_material(level) : uint8_t{0};
-          for (uint32_t i = 0; i < side * side * side; ++i) {
-            const Corner leaf{corner.x + i % side * 4, corner.y + i / side % side * 4,
-                              corner.z + i / side / side * 4};
-            chunk_[bit_of(leaf, kLeafLevel)] = ~uint64_t{0};
-            if (has_tags_) {
-              tag_cells(leaf, 0xFF, material);
-            }
-          }
-        });
-  }
-
+  const CompactTree& tree_;
   uint32_t* top_;
   uint64_t* chunks_;
   int bits_;
   bool has_nodes_;
   bool has_tags_;
   uint32_t next_word_ = 0;
-  uint32_t next_voxel_;
-  uint32_t next_block_[kMaxLevel + 1];
   uint32_t solid_[kMaterials] = {};  // by material: where its solid chunk begins; 0: not written yet
   uint64_t chunk_[kLeaves];
   Collected tags_[kLeaves];
@@ -338,7 +304,7 @@ Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map, Span<con
   }
   MapWriter writer(tree, shape, top, chunks);
   if (!tree.empty()) {
-    writer.write();
+    TreeWalk(tree, shape, &writer).run();
   }
   write_media(tree, shape, layers, top + shape.top, chunks, writer.words());
   const int level = map_level(tree);

@@ -47,20 +47,77 @@ inline uint64_t spread(unsigned mask) {
          uint64_t{(mask >> 6) & 3U} << 20;
 }
 
-/// Walks the tree depth first, which meets the nodes of each level in the order in which they stand.
+/// Walks the tree depth first, which meets the nodes, blocks and voxels of each level in the order in which they stand,
+/// and hands `taker` what is solid:
+///
+///     take_block(corner, level, material)   a block of a chunk's size or larger
+///     take_leaf(corner, voxels, material)   within a chunk: bits of the leaf at `corner`, of one block
+///     take_voxels(corner, mask, number)     single voxels: the mask of their node, and the number of the first
+///     take_chunk(corner, node)              behind all that a chunk holds; in a smaller world it is the root
+template <class Taker>
 class TreeWalk {
  public:
-  TreeWalk(const CompactTree& tree, const MapShape& shape) : tree_(tree) {
+  TreeWalk(const CompactTree& tree, const MapShape& shape, Taker* taker)
+      : tree_(tree), taker_(*taker), next_voxel_(tree.node_count()) {
     std::copy(shape.level_begin, shape.level_begin + kMaxLevel + 1, next_node_);
+    std::copy(shape.block_begin, shape.block_begin + kMaxLevel + 1, next_block_);
   }
 
- protected:
-  // Calls enter_child(octant) for each child of the next node of `level`, or enter_block() where it is solid.
+  void run() {
+    if (tree_.level() < kChunkLevel) {
+      enter_chunk(tree_.level(), {0, 0, 0});
+    } else {
+      enter(tree_.level(), {0, 0, 0});
+    }
+  }
+
+ private:
+  void enter(int level, const Corner& corner) {
+    if (level == kChunkLevel && tree_.mask(next_node_[level]) != 0) {
+      enter_chunk(level, corner);
+      return;
+    }
+    visit(
+        level, [&](unsigned octant) { enter(level - 1, child_corner(corner, octant, level)); },
+        [&](uint8_t material) { taker_.take_block(corner, level, material); });
+  }
+
+  void enter_chunk(int level, const Corner& corner) {
+    const uint32_t node = next_node_[level];
+    collect(level, corner);
+    taker_.take_chunk(corner, node);
+  }
+
+  void collect(int level, const Corner& corner) {
+    const unsigned mask = tree_.mask(next_node_[level]);
+    if (level == 1 && mask != 0) {
+      ++next_node_[1];
+      taker_.take_voxels(corner, mask, next_voxel_);
+      next_voxel_ += static_cast<uint32_t>(__builtin_popcount(mask));
+      return;
+    }
+    visit(
+        level, [&](unsigned octant) { collect(level - 1, child_corner(corner, octant, level)); },
+        [&](uint8_t material) {
+          if (level < kLeafLevel) {
+            taker_.take_leaf(corner, spread(0xFF) << bit_of(corner, 0), material);
+            return;
+          }
+          const uint32_t side = uint32_t{1} << (level - kLeafLevel);
+          for (uint32_t i = 0; i < side * side * side; ++i) {
+            taker_.take_leaf(
+                {corner.x + i % side * 4, corner.y + i / side % side * 4, corner.z + i / side / side * 4},
+                ~uint64_t{0}, material);
+          }
+        });
+  }
+
+  // Calls enter_child(octant) for each child of the next node of `level`, or enter_block(material) where it is solid.
   template <class EnterChild, class EnterBlock>
   void visit(int level, const EnterChild& enter_child, const EnterBlock& enter_block) {
     unsigned mask = tree_.mask(next_node_[level]++);
     if (mask == 0) {
-      enter_block();
+      enter_block(tree_.material_of_block(next_block_[level]++));
     }
     for (; mask != 0; mask &= mask - 1) {
       enter_child(static_cast<unsigned>(__builtin_ctz(mask)));
@@ -68,7 +125,10 @@ class TreeWalk {
   }
 
   const CompactTree& tree_;
+  Taker& taker_;
   uint32_t next_node_[kMaxLevel + 1];
+  uint32_t next_block_[kMaxLevel + 1];
+  uint32_t next_voxel_;
 };
 
 /// The media of a map. Each has a numbering of cubes of its own, in which everything but the medium is solid.

@@ -7,86 +7,39 @@
 namespace thimble::wide {
 namespace {
 
-// Walks the tree and hands the solid voxels of media to `taker`.
+// Hands single voxels to a taker of leaves, each with its material.
 template <class Taker>
-class MediaWalk : TreeWalk {
- public:
-  MediaWalk(const CompactTree& tree, const MapShape& shape, Taker* taker)
-      : TreeWalk(tree, shape), taker_(*taker) {
-    std::copy(shape.block_begin, shape.block_begin + kMaxLevel + 1, next_block_);
-    next_voxel_ = next_node_[1] < tree.node_count() ? tree.first_child(next_node_[1]) : 0;
+void take_each(const CompactTree& tree, const Corner& corner, unsigned mask, uint32_t voxel, Taker* taker) {
+  for (; mask != 0; mask &= mask - 1, ++voxel) {
+    taker->take_leaf(corner, spread(mask & (0 - mask)) << bit_of(corner, 0),
+                     tree.many_materials() ? tree.voxel_material(voxel) : tree.uniform_material());
   }
-
-  void run() {
-    if (tree_.level() < kChunkLevel) {
-      collect(tree_.level(), {0, 0, 0});
-      taker_.take_cube({0, 0, 0});
-    } else {
-      enter(tree_.level(), {0, 0, 0});
-    }
-  }
-
- private:
-  uint8_t block_material(int level) { return tree_.material_of_block(next_block_[level]++); }
-  uint8_t next_voxel_material() {
-    return tree_.many_materials() ? tree_.voxel_material(next_voxel_++) : tree_.uniform_material();
-  }
-
-  void enter(int level, const Corner& corner) {
-    if (level == kChunkLevel && tree_.mask(next_node_[level]) != 0) {
-      collect(level, corner);
-      taker_.take_cube(corner);
-      return;
-    }
-    visit(
-        level, [&](unsigned octant) { enter(level - 1, child_corner(corner, octant, level)); },
-        [&] { taker_.take_block(corner, level, block_material(level)); });
-  }
-
-  void collect(int level, const Corner& corner) {
-    visit(
-        level,
-        [&](unsigned octant) {
-          if (level > 1) {
-            collect(level - 1, child_corner(corner, octant, level));
-          } else {
-            taker_.take_leaf(corner, spread(1U << octant) << bit_of(corner, 0), next_voxel_material());
-          }
-        },
-        [&] {
-          const uint8_t material = block_material(level);
-          if (level < kLeafLevel) {
-            taker_.take_leaf(corner, spread(0xFF) << bit_of(corner, 0), material);
-            return;
-          }
-          const uint32_t side = uint32_t{1} << (level - kLeafLevel);
-          for (uint32_t i = 0; i < side * side * side; ++i) {
-            taker_.take_leaf(
-                {corner.x + i % side * 4, corner.y + i / side % side * 4, corner.z + i / side / side * 4},
-                ~uint64_t{0}, material);
-          }
-        });
-  }
-
-  Taker& taker_;
-  uint32_t next_block_[kMaxLevel + 1];
-  uint32_t next_voxel_;
-};
+}
 
 // Collects which materials the tree holds.
 struct UsedMaterials {
+  const CompactTree& tree;
   bool of[256] = {};
   void take_leaf(const Corner& /*corner*/, uint64_t /*voxels*/, uint8_t material) { of[material] = true; }
+  void take_voxels(const Corner& corner, unsigned mask, uint32_t voxel) {
+    take_each(tree, corner, mask, voxel, this);
+  }
   void take_block(const Corner& /*corner*/, int /*level*/, uint8_t material) { of[material] = true; }
-  void take_cube(const Corner& /*corner*/) {}
+  void take_chunk(const Corner& /*corner*/, uint32_t /*node*/) {}
 };
 
 // Writes cubes and chunks; without a place to write it only counts words.
 class LayerWriter {
  public:
-  LayerWriter(const MediaShape& media, int bits, bool has_nodes, uint32_t* top, uint64_t* chunks,
+  LayerWriter(const CompactTree& tree, const MediaShape& media, uint32_t* top, uint64_t* chunks,
               uint64_t next_word)
-      : media_(media), bits_(bits), has_nodes_(has_nodes), top_(top), chunks_(chunks), next_word_(next_word) {
+      : tree_(tree),
+        media_(media),
+        bits_(map_level(tree) - kChunkLevel),
+        has_nodes_(has_nodes(tree)),
+        top_(top),
+        chunks_(chunks),
+        next_word_(next_word) {
     for (uint8_t layer = 0; layer < media.layers; ++layer) {
       layer_of_[media.materials[layer]] = layer;
     }
@@ -99,6 +52,9 @@ class LayerWriter {
       holds_[layer] = true;
     }
   }
+  void take_voxels(const Corner& corner, unsigned mask, uint32_t voxel) {
+    take_each(tree_, corner, mask, voxel, this);
+  }
   void take_block(const Corner& corner, int level, uint8_t material) {
     const uint8_t layer = layer_of_[material];
     const uint32_t side = uint32_t{1} << (level - kChunkLevel);
@@ -107,7 +63,7 @@ class LayerWriter {
                   kEmptyCube);
     }
   }
-  void take_cube(const Corner& corner) {
+  void take_chunk(const Corner& corner, uint32_t /*node*/) {
     for (uint8_t layer = 0; layer < media_.layers; ++layer) {
       if (holds_[layer]) {
         put(layer, corner);
@@ -161,6 +117,7 @@ class LayerWriter {
     }
   }
 
+  const CompactTree& tree_;
   const MediaShape& media_;
   int bits_;
   bool has_nodes_;
@@ -172,11 +129,6 @@ class LayerWriter {
   bool holds_[kMostMedia] = {};
 };
 
-template <class Taker>
-void walk_media(const CompactTree& tree, const MapShape& shape, Taker* taker) {
-  MediaWalk<Taker>(tree, shape, taker).run();
-}
-
 }  // namespace
 
 MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<const uint8_t> materials) {
@@ -184,17 +136,17 @@ MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<co
   if (materials.size == 0 || tree.empty() || tree.level() > kMostMediaLevel) {
     return media;
   }
-  UsedMaterials used;
-  walk_media(tree, shape, &used);
+  UsedMaterials used{tree};
+  TreeWalk(tree, shape, &used).run();
   for (size_t i = 0; i < materials.size && media.layers < kMostMedia; ++i) {
     if (used.of[materials.data[i]]) {
       used.of[materials.data[i]] = false;  // each material gets one layer
       media.materials[media.layers++] = materials.data[i];
     }
   }
-  LayerWriter counter(media, 0, has_nodes(tree), nullptr, nullptr, 0);
+  LayerWriter counter(tree, media, nullptr, nullptr, 0);
   if (media.layers != 0) {
-    walk_media(tree, shape, &counter);
+    TreeWalk(tree, shape, &counter).run();
   }
   // A chunk's first words are written before it is known to be empty.
   media.words = counter.words() + 2;
@@ -207,8 +159,8 @@ void write_media(const CompactTree& tree, const MapShape& shape, const MediaShap
     return;
   }
   std::fill(top, top + shape.top * media.layers, 0U);  // 0 is the first chunk, which is solid
-  LayerWriter writer(media, map_level(tree) - kChunkLevel, has_nodes(tree), top, chunks, next_word);
-  walk_media(tree, shape, &writer);
+  LayerWriter writer(tree, media, top, chunks, next_word);
+  TreeWalk(tree, shape, &writer).run();
 }
 
 }  // namespace thimble::wide
