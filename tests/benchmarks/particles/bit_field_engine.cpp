@@ -14,15 +14,13 @@ std::int32_t to_q16(double value) {
 
 class BitFieldEngine : public Engine {
  public:
-  BitFieldEngine(const Scene& scene, const EngineOptions& options) {
+  explicit BitFieldEngine(const Scene& scene) {
     ParticleConfig config;
     config.width = scene.width;
     config.height = scene.height;
     config.capacity = static_cast<std::uint32_t>(scene.balls.size());
     config.restitution_q16 = static_cast<std::uint32_t>(to_q16(scene.restitution));
     config.gravity_q16 = {0, to_q16(scene.gravity)};
-    config.substeps_log2 = options.substeps_log2;
-    config.subpixel_bits = options.subpixel_bits;
     words_.resize(particles_bytes(config) / 4 + 1);
     check(ParticleWorld::make(config, {reinterpret_cast<std::uint8_t*>(words_.data()), words_.size() * 4},
                               &world_));
@@ -69,8 +67,8 @@ class BitFieldEngine : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_bit_field_engine(const Scene& scene, const EngineOptions& options) {
-  return std::make_unique<BitFieldEngine>(scene, options);
+std::unique_ptr<Engine> make_bit_field_engine(const Scene& scene) {
+  return std::make_unique<BitFieldEngine>(scene);
 }
 
 }  // namespace thimble::benchmarks

@@ -34,13 +34,6 @@ struct Scene {
   std::vector<int> wall_columns;
 };
 
-/// What an engine may be asked to do otherwise than by default; only the bit field has `subpixel_bits`, and
-/// Box2D has neither.
-struct EngineOptions {
-  int substeps_log2 = 0;
-  int subpixel_bits = 15;
-};
-
 class Engine {
  public:
   virtual ~Engine() = default;
@@ -57,13 +50,12 @@ class Engine {
 /// The names that `make_engine` knows, this project's first; Box2D only where it was compiled in.
 std::vector<std::string> engine_names();
 /// Throws `std::invalid_argument` for another name, `std::runtime_error` when the scene does not fit.
-std::unique_ptr<Engine> make_engine(const std::string& name, const Scene& scene,
-                                    const EngineOptions& options = {});
+std::unique_ptr<Engine> make_engine(const std::string& name, const Scene& scene);
 
-std::unique_ptr<Engine> make_bit_field_engine(const Scene& scene, const EngineOptions& options);
-std::unique_ptr<Engine> make_grid_engine(const Scene& scene, const EngineOptions& options);
+std::unique_ptr<Engine> make_bit_field_engine(const Scene& scene);
+std::unique_ptr<Engine> make_grid_engine(const Scene& scene);
 /// The uniform grid in double precision: with many substeps, round balls as exact as one likes.
-std::unique_ptr<Engine> make_reference_engine(const Scene& scene, const EngineOptions& options);
+std::unique_ptr<Engine> make_reference_engine(const Scene& scene, int substeps);
 #ifdef THIMBLE_HAVE_BOX2D
 /// `bullets`: balls are looked for along their way, not only where they end.
 std::unique_ptr<Engine> make_box2d_engine(const Scene& scene, bool bullets);

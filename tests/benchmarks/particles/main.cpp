@@ -1,14 +1,11 @@
-// The particle world beside a uniform grid and Box2D 2.4: cost, agreement, quality, energy, accuracy, as
-// tables.
+// The particle world beside a uniform grid and Box2D 2.4: cost, agreement, quality, energy, as tables.
 //
 //   thimble_particle_table                     all tables, some minutes
-//   thimble_particle_table speed quality       some of: instructions speed scaling quality energy accuracy
+//   thimble_particle_table speed quality       some of: speed quality energy
 //   thimble_particle_table --csv DIR ...       each table also as DIR/NAME.csv
 //
 // Times are processor time of the stepping alone. Engines that stand in one table are run by turns, a few
-// steps each, so that the load of the machine falls on all. Instructions are counted by valgrind (cachegrind
-// without its caches), as the difference of two runs that are the same but for the number of steps: exact,
-// the same on every run, and nothing but the steps. Without valgrind that table is left out.
+// steps each, so that the load of the machine falls on all.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -95,117 +92,6 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-// --- Instructions
-
-// Runs `steps` steps of so many random scenes and prints nothing: what valgrind counts.
-int run_alone(const std::string& engine, const std::string& scene, int balls, int steps,
-              std::uint32_t scenes) {
-  for (std::uint32_t seed = 1; seed <= scenes; ++seed) {
-    const auto world = make_engine(engine, make_scene(scene, balls, seed));
-    for (int i = 0; i < steps; ++i) {
-      world->step();
-    }
-  }
-  return 0;
-}
-
-// Instructions of such a run, or -1 where valgrind is not to be had.
-double instructions_of(const std::string& self, const std::string& engine, const std::string& scene,
-                       int balls, int steps, int scenes) {
-  const std::string command = "valgrind --tool=cachegrind --cache-sim=no --cachegrind-out-file=/dev/null '" +
-                              self + "' --alone '" + engine + "' " + scene + " " + std::to_string(balls) +
-                              " " + std::to_string(steps) + " " + std::to_string(scenes) + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) {
-    return -1;
-  }
-  double result = -1;
-  std::array<char, 512> line{};
-  while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr) {
-    std::string text = line.data();
-    const std::size_t at = text.find("I   refs:");
-    if (at != std::string::npos) {
-      text.erase(std::remove(text.begin(), text.end(), ','), text.end());
-      result = std::strtod(text.c_str() + text.find(':', at) + 1, nullptr);
-    }
-  }
-  return pclose(pipe) == 0 ? result : -1;
-}
-
-// The line y = first + second * x that is nearest to the points.
-std::pair<double, double> line_through(const std::vector<double>& x, const std::vector<double>& y) {
-  double sum_x = 0;
-  double sum_y = 0;
-  double sum_xx = 0;
-  double sum_xy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sum_x += x[i];
-    sum_y += y[i];
-    sum_xx += x[i] * x[i];
-    sum_xy += x[i] * y[i];
-  }
-  const double n = static_cast<double>(x.size());
-  const double slope = (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
-  return {(sum_y - slope * sum_x) / n, slope};
-}
-
-void instructions(const std::string& self, const std::string& csv) {
-  // The same stretch of time for all, in many small scenes or one large one.
-  constexpr int kFrom = 10;
-  constexpr int kTo = 50;
-  Table table(
-      "instructions",
-      "Instructions a moving ball and step, at the paper's density, steps 11 to 50. Smaller boxes have more "
-      "walls",
-      {"scene", "balls", "scenes", "bit field", "against 693", "collisions a ball and step", "against fit",
-       "uniform grid"});
-  for (const std::string scene : {"gas", "falling"}) {
-    double at_693 = 0;
-    std::vector<std::vector<std::string>> rows;
-    std::vector<double> counts;
-    std::vector<double> rates;
-    for (const int balls : {10, 100, 693, 10000, 100000}) {
-      const int scenes = std::max(1, 20000 / balls);
-      const double moves = double{kTo - kFrom} * balls * scenes;
-      std::vector<std::string> row{scene, std::to_string(balls), std::to_string(scenes), "", "", "", "", ""};
-      for (const std::string engine : {"bit field", "uniform grid"}) {
-        const double more = instructions_of(self, engine, scene, balls, kTo, scenes);
-        const double fewer = instructions_of(self, engine, scene, balls, kFrom, scenes);
-        if (more < 0 || fewer < 0) {
-          std::cout << "left out: valgrind is not installed\n";
-          return;
-        }
-        row.at(engine == "bit field" ? 3 : 7) = number((more - fewer) / moves);
-        if (engine == "bit field") {
-          counts.push_back((more - fewer) / moves);
-          at_693 = balls == 693 ? counts.back() : at_693;
-        }
-      }
-      double collisions = 0;
-      for (int seed = 1; seed <= scenes; ++seed) {
-        const auto world =
-            make_engine("bit field", make_scene(scene, balls, static_cast<std::uint32_t>(seed)));
-        for (int i = 0; i < kTo; ++i) {
-          collisions -= i == kFrom ? static_cast<double>(world->collisions()) : 0;
-          world->step();
-        }
-        collisions += static_cast<double>(world->collisions());
-      }
-      row[5] = number(collisions / moves);
-      rates.push_back(collisions / moves);
-      rows.push_back(row);
-    }
-    const auto [move, collision] = line_through(rates, counts);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i][4] = number(counts[i] / at_693);
-      rows[i][6] = number(counts[i] / (move + collision * rates[i]));
-      table.add(rows[i]);
-    }
-    table.add({scene, "fit", "", number(move) + " + " + number(collision) + " a collision", "", "", "", ""});
-  }
-  table.print(csv);
-}
-
 // --- Speed
 
 struct Timed {
@@ -258,7 +144,7 @@ void speed(const std::string& csv) {
         names.push_back("Box2D 2.4, bullets");
       }
       const auto engines = race(scene, names, steps, 4);
-      const auto reference = make_reference_engine(scene, {6, 0});
+      const auto reference = make_reference_engine(scene, 64);
       const double true_changes = static_cast<double>(count_kinks(scene, *reference, steps));
       const double true_collisions = static_cast<double>(reference->collisions());
       for (const Timed& timed : engines) {
@@ -272,42 +158,6 @@ void speed(const std::string& csv) {
       }
       table.add({name, std::to_string(balls), std::to_string(steps), "reference", "", "", "",
                  number(true_collisions), "1", number(true_changes), "1"});
-    }
-  }
-  table.print(csv);
-}
-
-void scaling(const std::string& csv) {
-  Table table("scaling", "Time against the number of balls, at the paper's density",
-              {"scene", "balls", "field", "bit field ns a ball and step", "against 693", "uniform grid ns",
-               "collisions a ball and step"});
-  for (const std::string name : {"gas", "falling"}) {
-    double at_693 = 0;
-    std::vector<std::vector<std::string>> rows;
-    std::vector<double> times;
-    for (const int balls : {10, 100, 693, 10000, 100000}) {
-      const Scene scene = make_scene(name, balls);
-      // A fall lasts for 60 steps; small ones are repeated instead.
-      const int steps = name == "falling" ? 60 : std::max(40, 2000000 / balls);
-      const int repeats = name == "falling" ? std::max(1, 2000000 / balls / steps) : 1;
-      std::vector<double> seconds{0, 0};
-      double collisions = 0;
-      for (int i = 0; i < repeats; ++i) {
-        const auto engines = race(scene, {"bit field", "uniform grid"}, steps, balls < 1000 ? steps / 10 : 4);
-        seconds[0] += engines[0].seconds;
-        seconds[1] += engines[1].seconds;
-        collisions += static_cast<double>(engines[0].engine->collisions());
-      }
-      const double moves = static_cast<double>(steps) * balls * repeats;
-      times.push_back(1e9 * seconds[0] / moves);
-      at_693 = balls == 693 ? times.back() : at_693;
-      rows.push_back({name, std::to_string(balls),
-                      std::to_string(scene.width) + "x" + std::to_string(scene.height), number(times.back()),
-                      "", number(1e9 * seconds[1] / moves), number(collisions / moves)});
-    }
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i][4] = number(times[i] / at_693);
-      table.add(rows[i]);
     }
   }
   table.print(csv);
@@ -434,86 +284,7 @@ void energy(const std::string& csv) {
   table.print(csv);
 }
 
-// --- Accuracy
-
-struct Deviation {
-  double median = 0;
-  double rms = 0;
-};
-
-Deviation deviation(const std::vector<BallState>& a, const std::vector<BallState>& b) {
-  std::vector<double> distances;
-  double squares = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    distances.push_back(std::hypot(a[i].x - b[i].x, a[i].y - b[i].y));
-    squares += distances.back() * distances.back();
-  }
-  std::sort(distances.begin(), distances.end());
-  return {distances[distances.size() / 2], std::sqrt(squares / static_cast<double>(a.size()))};
-}
-
-void accuracy(const std::string& csv) {
-  Table table("accuracy",
-              "Accuracy against time: 693 balls falling, distance in pixels from round balls in double "
-              "precision with "
-              "256 substeps (median, RMS)",
-              {"engine", "substeps", "sub-pixel bits", "ns a ball and step", "median at 10", "RMS at 10",
-               "median at 30", "RMS at 30", "median at 60", "RMS at 60"});
-  const std::array<int, 3> marks{10, 30, 60};
-  const Scene scene = make_scene("falling", 693);
-  // States at the marks, and the time.
-  const auto run = [&](Engine& engine, double* seconds) {
-    std::vector<std::vector<BallState>> states;
-    const auto steps = [&] {
-      for (int i = 1; i <= marks.back(); ++i) {
-        engine.step();
-        if (std::find(marks.begin(), marks.end(), i) != marks.end()) {
-          states.push_back(engine.balls());
-        }
-      }
-    };
-    *seconds = seconds_of(steps, kProgramClock);
-    return states;
-  };
-  double seconds = 0;
-  const auto reference = run(*make_reference_engine(scene, {8, 0}), &seconds);
-  const auto row = [&](const std::string& name, const EngineOptions& options, bool has_bits) {
-    double least = 1e9;
-    std::vector<std::vector<BallState>> states;
-    for (int i = 0; i < 5; ++i) {
-      states = run(*make_engine(name, scene, options), &seconds);
-      least = std::min(least, seconds);
-    }
-    std::vector<std::string> cells{name, std::to_string(1 << options.substeps_log2),
-                                   has_bits ? std::to_string(options.subpixel_bits) : "",
-                                   number(1e9 * least / marks.back() / 693)};
-    for (std::size_t i = 0; i < marks.size(); ++i) {
-      const Deviation off = deviation(states[i], reference[i]);
-      cells.push_back(number(off.median));
-      cells.push_back(number(off.rms));
-    }
-    table.add(cells);
-  };
-  for (int substeps = 0; substeps <= 4; ++substeps) {
-    row("bit field", {substeps, 15}, true);
-  }
-  for (const int bits : {12, 10, 8, 6, 4, 2, 1}) {
-    row("bit field", {0, bits}, true);
-  }
-  for (const int substeps : {0, 2, 4, 6}) {
-    row("uniform grid", {substeps, 0}, false);
-  }
-#ifdef THIMBLE_HAVE_BOX2D
-  row("Box2D 2.4", {}, false);
-#endif
-  table.print(csv);
-}
-
 int main_of(const std::vector<std::string>& arguments) {
-  if (arguments.size() == 7 && arguments[1] == "--alone") {
-    return run_alone(arguments[2], arguments[3], std::stoi(arguments[4]), std::stoi(arguments[5]),
-                     static_cast<std::uint32_t>(std::stoi(arguments[6])));
-  }
   std::string csv;
   std::vector<std::string> wanted;
   for (std::size_t i = 1; i < arguments.size(); ++i) {
@@ -523,34 +294,19 @@ int main_of(const std::vector<std::string>& arguments) {
       wanted.push_back(arguments[i]);
     }
   }
-  const std::vector<std::string> known{"instructions", "speed", "scaling", "quality", "energy", "accuracy"};
+  constexpr std::array<std::pair<const char*, void (*)(const std::string& csv)>, 3> kTables{
+      {{"speed", speed}, {"quality", quality}, {"energy", energy}}};
   for (const std::string& name : wanted) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      std::cerr << "thimble_particle_table: no table " << name
-                << "; there are instructions, speed, scaling, quality, energy, accuracy\n";
+    if (std::none_of(kTables.begin(), kTables.end(),
+                     [&](const auto& table) { return name == table.first; })) {
+      std::cerr << "thimble_particle_table: no table " << name << "; there are speed, quality, energy\n";
       return 2;
     }
   }
-  const auto is_wanted = [&](const std::string& name) {
-    return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
-  };
-  if (is_wanted("instructions")) {
-    instructions(arguments[0], csv);
-  }
-  if (is_wanted("scaling")) {
-    scaling(csv);
-  }
-  if (is_wanted("speed")) {
-    speed(csv);
-  }
-  if (is_wanted("quality")) {
-    quality(csv);
-  }
-  if (is_wanted("energy")) {
-    energy(csv);
-  }
-  if (is_wanted("accuracy")) {
-    accuracy(csv);
+  for (const auto& [name, table] : kTables) {
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end()) {
+      table(csv);
+    }
   }
   return 0;
 }

@@ -83,13 +83,12 @@ std::vector<std::string> engine_names() {
   };
 }
 
-std::unique_ptr<Engine> make_engine(const std::string& name, const Scene& scene,
-                                    const EngineOptions& options) {
+std::unique_ptr<Engine> make_engine(const std::string& name, const Scene& scene) {
   if (name == "bit field") {
-    return make_bit_field_engine(scene, options);
+    return make_bit_field_engine(scene);
   }
   if (name == "uniform grid") {
-    return make_grid_engine(scene, options);
+    return make_grid_engine(scene);
   }
 #ifdef THIMBLE_HAVE_BOX2D
   if (name == "Box2D 2.4") {

@@ -2,7 +2,7 @@
 //
 //   thimble_peer_table                                      all rows, some minutes
 //   thimble_peer_table --points 1000,100000 --scene points  some
-//   thimble_peer_table --csv F --json F --plot F.svg --plot-bytes F.svg
+//   thimble_peer_table --csv F --plot F.svg --plot-bytes F.svg
 //                                                           the same for machines and readers
 //
 // Frames are those of `thimble table` (instruments/timed_frames.h). `faster` is the time of the fastest peer that counts over this renderer's.
@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "benchmarks/peers/contest.h"
@@ -26,7 +25,6 @@ struct Choice {
   int frames = tools::kTimedFrames;
   std::uint64_t most_bytes = 6'000'000'000;
   std::string csv_path;
-  std::string json_path;
   std::string plot_path;
   std::string bytes_plot_path;
 };
@@ -69,33 +67,6 @@ std::string csv_text(const std::vector<Result>& results) {
     }
   }
   return text;
-}
-
-std::string json_text(const std::vector<Result>& results) {
-  nlohmann::ordered_json all;
-  for (const auto& [key, value] : machine()) {
-    all["machine"][key] = value;
-  }
-  all["rows"] = nlohmann::ordered_json::array();
-  for (const Result& result : results) {
-    nlohmann::ordered_json row{{"scene", result.scene},
-                               {"points", result.points},
-                               {"voxels", result.voxels},
-                               {"projection", projection(result.orthographic)},
-                               {"hits", result.hits}};
-    for (const Entrant& entrant : result.entrants) {
-      row["engines"].push_back({{"engine", entrant.name},
-                                {"frame_ms", entrant.ms},
-                                {"warm_ms", entrant.warm_ms},
-                                {"build_seconds", entrant.build_seconds},
-                                {"bytes", entrant.bytes},
-                                {"differing_px", entrant.differing_px},
-                                {"counts", entrant.counts(Contest::kPixels)},
-                                {"times_slower", entrant.ms / result.entrants[0].ms}});
-    }
-    all["rows"].push_back(row);
-  }
-  return all.dump(2) + "\n";
 }
 
 // Where the fastest ray tracer overtakes the raster loop: between two rows, on straight lines of logarithms.
@@ -194,7 +165,6 @@ int run(int count, char** words) {
   app.add_option("--frames", choice.frames, "of each engine and row")->check(CLI::Range(1, 100));
   app.add_option("--most-bytes", choice.most_bytes, "leave out peers that would take more");
   app.add_option("--csv", choice.csv_path, "results as CSV");
-  app.add_option("--json", choice.json_path, "results and machine as JSON");
   app.add_option("--plot", choice.plot_path, "milliseconds against points as SVG");
   app.add_option("--plot-bytes", choice.bytes_plot_path, "memory against points as SVG");
   CLI11_PARSE(app, count, words);
@@ -211,7 +181,6 @@ int run(int count, char** words) {
       }
       // Rows are written as they come: the last ones take long.
       write_text(choice.csv_path, csv_text(results));
-      write_text(choice.json_path, json_text(results));
     }
   }
   if (!results.empty()) {

@@ -1,12 +1,14 @@
 // Rays in vectors against the core ray by ray: shadows, occlusion and what is seen, by every instruction set.
 //
 //   thimble_ray_table dragon.ply.gz@10 monu10.vox points:1000000@10
+//   thimble_ray_table --peers dragon.ply.gz@11      beside Embree and NanoVDB, from nearer by
 //
 // A scene is a file or a generator, @ and a depth. Its rays are those of its picture of 1280 x 800, framed as
 // `thimble render` frames it; from every second hit a shadow ray to one light; from every fourth hit four rays
 // anywhere in the half space above the face (occlusion), once without an end and once within a reach of 8 voxels.
 // All by turns on one thread, processor time, the least of so many turns. `wrong`: rays whose answer is not the
-// core's (in kind, voxel, axis, t and material where what is hit is asked for).
+// core's (in kind, voxel, axis, t and material where what is hit is asked for; a peer's in t, to 1e-4, or in
+// whether anything is hit). NanoVDB traces ray by ray, Embree in packets of 16: boxes, and a mesh's own triangles.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -14,10 +16,13 @@
 
 #include "benchmarks/peers/contest.h"
 #include "output/output_file.h"
+#include "readers/file_bytes.h"
+#include "readers/read_any.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
 #include "scene/host_memory.h"
 #include "scene/scene_source.h"
+#include "scene/world_fit.h"
 #include "thimble/trace/secondary_ray.h"
 #include "wide/raster/kernels.h"
 #include "wide/rays/ray_map.h"
@@ -141,12 +146,77 @@ std::size_t count_wrong(const Answers& expected, const Answers& found) {
   return wrong;
 }
 
+// The mesh's triangles where its voxels are; none where the scene is no mesh with y up.
+std::vector<float> corners_of(const std::string& path, int level) {
+  std::vector<float> corners;
+  const tools::Source source = tools::read_any(path, tools::share(tools::load_file(path)));
+  const auto* const mesh = std::get_if<tools::TriangleMesh>(&source);
+  if (mesh == nullptr || mesh->is_z_up) {
+    return corners;
+  }
+  const auto turned = [](const std::array<double, 3>& p) { return std::array{p[0], -p[2], p[1]}; };
+  tools::Bounds bounds;
+  for (const auto& position : mesh->positions) {
+    bounds.add(turned(position));
+  }
+  const tools::WorldFit fit(bounds, level);
+  for (const auto& triangle : mesh->triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      for (const std::int32_t unit : fit.units(turned(mesh->positions[vertex]))) {
+        corners.push_back(static_cast<float>(unit) / 256);
+      }
+    }
+  }
+  return corners;
+}
+
+std::vector<std::unique_ptr<Peer>> make_peers(const std::string& path, const tools::BuiltScene& built) {
+  const std::vector<Voxel> voxels = voxels_of(built);
+  std::vector<std::unique_ptr<Peer>> peers;
+  peers.push_back(make_embree(voxels));
+  if (const std::vector<float> corners = corners_of(path, built.level()); !corners.empty()) {
+    peers.push_back(make_embree_triangles(corners));
+  }
+  peers.push_back(make_nanovdb(voxels));
+  std::erase(peers, nullptr);
+  return peers;
+}
+
+std::vector<FloatRay> as_floats(const std::vector<Ray>& rays) {
+  std::vector<FloatRay> floats(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      floats[i].origin[axis] = static_cast<float>(rays[i].origin[axis].raw) / 256;
+      floats[i].direction[axis] = static_cast<float>(rays[i].direction[axis]);
+    }
+  }
+  return floats;
+}
+
+std::size_t count_wrong(const Answers& expected, const std::vector<float>& t) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const bool met = t[i] < 1e30F;
+    if (expected.hits.empty()) {
+      wrong += met == (expected.any[i] != 0) ? 0U : 1U;
+      continue;
+    }
+    const Hit& hit = expected.hits[i];
+    const bool is_hit = hit.kind == HitKind::kHit;
+    const float entered =
+        is_hit ? static_cast<float>(hit.t_numerator) / static_cast<float>(hit.t_denominator) : 0;
+    wrong += met == is_hit && (!met || std::abs(t[i] - entered) <= 1e-4F * entered) ? 0U : 1U;
+  }
+  return wrong;
+}
+
 struct SetBack {
   ~SetBack() { wide::use_instruction_set(-1); }
 };
 
 void measure(const std::string& name, const tools::BuiltScene& built, const wide::RayMap& map,
-             const Kind& kind, int turns, int most_sets, std::string* csv) {
+             const std::vector<std::unique_ptr<Peer>>& peers, const Kind& kind, int turns, int most_sets,
+             std::string* csv) {
   if (kind.rays.empty()) {
     return;
   }
@@ -157,6 +227,12 @@ void measure(const std::string& name, const tools::BuiltScene& built, const wide
   double core = 1e30;
   std::vector<double> best(static_cast<std::size_t>(sets), 1e30);
   std::vector<std::size_t> wrong(static_cast<std::size_t>(sets), 0);
+  // No peer has rays that end.
+  const std::size_t peer_count = kind.before.empty() ? peers.size() : 0;
+  const std::vector<FloatRay> floats = peer_count > 0 ? as_floats(kind.rays) : std::vector<FloatRay>();
+  std::vector<float> t(floats.size());
+  std::vector<double> peer_best(peer_count, 1e30);
+  std::vector<std::size_t> peer_wrong(peer_count, 0);
   for (int turn = 0; turn < turns; ++turn) {
     core = std::min(core, seconds_of([&] { trace_by_core(built.compact(), kind, &expected); }));
     for (int set = 0; set < sets; ++set) {
@@ -165,10 +241,15 @@ void measure(const std::string& name, const tools::BuiltScene& built, const wide
       least = std::min(least, seconds_of([&] { trace_by_map(map, kind, &found); }));
       wrong[static_cast<std::size_t>(set)] += count_wrong(expected, found);
     }
+    for (std::size_t peer = 0; peer < peer_count; ++peer) {
+      const double seconds = seconds_of([&] { peers[peer]->trace(floats, kind.any, t.data()); });
+      peer_best[peer] = std::min(peer_best[peer], seconds);
+      peer_wrong[peer] = count_wrong(expected, t);
+    }
   }
   const auto put = [&](const std::string& engine, double seconds, std::size_t mistakes) {
     const double rate = static_cast<double>(kind.rays.size()) / seconds / 1e6;
-    std::printf("%-22s %-10s %-8s %9zu %9.2f %8.2f %7zu\n", name.c_str(), kind.name.c_str(), engine.c_str(),
+    std::printf("%-22s %-10s %-17s %9zu %9.2f %8.2f %7zu\n", name.c_str(), kind.name.c_str(), engine.c_str(),
                 kind.rays.size(), rate, core / seconds, mistakes);
     *csv += "\"" + name + "\"," + kind.name + "," + engine + "," + std::to_string(kind.rays.size()) + "," +
             std::to_string(rate) + "," + std::to_string(core / seconds) + "," + std::to_string(mistakes) +
@@ -179,6 +260,9 @@ void measure(const std::string& name, const tools::BuiltScene& built, const wide
     wide::use_instruction_set(set);
     put(wide::instruction_set(), best[static_cast<std::size_t>(set)], wrong[static_cast<std::size_t>(set)]);
   }
+  for (std::size_t peer = 0; peer < peer_count; ++peer) {
+    put(peers[peer]->name(), peer_best[peer], peer_wrong[peer]);
+  }
   std::fflush(stdout);
 }
 
@@ -187,15 +271,17 @@ int run(int count, char** words) {
   std::string csv_path;
   int turns = 3;
   int most_sets = 100;
+  bool has_peers = false;
   CLI::App app("Rays a second by the map and by the core");
   app.add_option("SCENE@DEPTH", scenes, "files or generators")->required();
   app.add_option("--turns", turns, "of each way of tracing")->check(CLI::Range(1, 100));
   app.add_option("--sets", most_sets, "only so many instruction sets, the best first")
       ->check(CLI::Range(1, 100));
+  app.add_flag("--peers", has_peers, "beside Embree and NanoVDB, in a nearer view");
   app.add_option("--csv", csv_path, "the table as CSV");
   CLI11_PARSE(app, count, words);
-  std::printf("%-22s %-10s %-8s %9s %9s %8s %7s\n", "scene", "rays", "engine", "number", "Mrays/s", "to core",
-              "wrong");
+  std::printf("%-22s %-10s %-17s %9s %9s %8s %7s\n", "scene", "rays", "engine", "number", "Mrays/s",
+              "to core", "wrong");
   std::string csv = "scene,kind,engine,rays,mega_rays_a_second,to_core,wrong\n";
   for (const std::string& scene : scenes) {
     tools::SceneArguments arguments;
@@ -222,9 +308,18 @@ int run(int count, char** words) {
     tools::ViewWishes view;
     view.width_px = kWidthPx;
     view.height_px = kHeightPx;
+    std::vector<std::unique_ptr<Peer>> peers;
+    if (has_peers) {
+      // A surface fills the picture, as in the gallery.
+      const double unit = (1 << built.level()) / 1024.0;
+      view.eye = tools::Real3{300 * unit, -500 * unit, 560 * unit};
+      view.target = tools::Real3{512 * unit, 512 * unit, 470 * unit};
+      view.fov_degrees = 44;
+      peers = make_peers(arguments.scene, built);
+    }
     const Camera camera = tools::frame_box(view, built.level(), built.bounds()).camera;
     for (const Kind& kind : make_rays(built, camera)) {
-      measure(name, built, map, kind, turns, most_sets, &csv);
+      measure(name, built, map, peers, kind, turns, most_sets, &csv);
     }
   }
   write_text(csv_path, csv);
