@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install \
   uninstall deb packages release sanitize clang fuzz check test test-all coverage bench firmware emulate flash test-boards test-packages \
-  bench-frames bench-small3dlib test-framebuffer test-threads mutants ranges soak web test-web bench-web format tidy clean
+  bench-frames test-framebuffer test-threads mutants ranges soak web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
 # Everything that is ours and formatted by clang-format.
@@ -154,11 +154,6 @@ test-boards: ## Run the tests of the firmware on every board under QEMU; says fi
 	@sh tests/boards/deps.sh
 	@$(MAKE) --no-print-directory all
 	@sh tests/boards/run.sh
-
-bench-small3dlib: deps-bench ## Time small3dlib beside the core and count its wrong pixels: SMALL3DLIB=DIR has its header
-	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON $(LEAN) "-DTHIMBLE_SMALL3DLIB=$(abspath $(SMALL3DLIB))" >/dev/null
-	@.ci/build "benchmark" build/release thimble_small3d_table
-	@build/release/thimble_small3d_table $(BENCH_ARGS)
 
 bench-frames: ## Count the instructions of frames of every size on Cortex-M0 to M7 (WRITE=--write: the table)
 	@sh tests/boards/deps.sh
