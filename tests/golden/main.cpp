@@ -4,7 +4,7 @@
 //   thimble_golden_tests                 run all; exit status 1 when anything differs
 //   thimble_golden_tests --arena BYTES   the same with that much memory, as a small board has
 //   thimble_golden_tests --print    write a new golden/golden_table.h to stdout (from the first variant)
-//   thimble_golden_tests --trees    write a new portable/golden_trees.inc to stdout
+//   thimble_golden_tests --trees    write a new portable/golden_trees.bin to stdout
 //   thimble_golden_tests --crc      write a new portable/result_crc.h to stdout
 //   thimble_golden_tests --sizes    bytes of every scene in every structure, as CSV
 //   thimble_golden_tests --frame NAME   that frame's pixels, as stored, to stdout: to look at a difference
@@ -210,13 +210,12 @@ int print_trees() {
       fprintf(stderr, "%s: %s\n", scene_info(static_cast<SceneId>(scene)).name, status_text(status));
       return 1;
     }
-    printf("alignas(4) constexpr uint8_t kTree%d[] = {", scene);
-    int column = 200;
-    for (size_t i = 0; i < world.compact.size_bytes(); ++i) {
-      column = column > 104 ? printf("\n   ") : column;
-      column += printf(" %d,", world.compact.bytes()[i]);
+    const uint8_t padding[3] = {};
+    const size_t size = world.compact.size_bytes();
+    if (fwrite(world.compact.bytes(), 1, size, stdout) != size ||
+        fwrite(padding, 1, -size % 4, stdout) != -size % 4) {
+      return 1;
     }
-    printf("\n};\n");
   }
   return 0;
 }
