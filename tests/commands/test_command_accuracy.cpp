@@ -30,20 +30,12 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 using Json = nlohmann::ordered_json;
-using Words = std::vector<std::string>;
 
 // What all runs here share, for accuracy and for render.
 const Words kView{"spheres", "--depth", "5", "--size", "40x30", "--shade", "color"};
 
-Words with(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 CommandResult accuracy(const Words& words) {
-  CommandResult result = run_command(with({"accuracy"}, words));
-  CAPTURE(result.describe());
-  REQUIRE(result.status == 0);
+  CommandResult result = check_done(Words{"accuracy"} + words);
   CHECK(result.err.empty());
   for (const std::string& line : lines_of(result.out)) {
     CAPTURE(line);
@@ -53,7 +45,7 @@ CommandResult accuracy(const Words& words) {
 }
 
 Json rows_of(const TemporaryFolder& folder, const Words& words, std::string* out = nullptr) {
-  const CommandResult result = accuracy(with(words, {"--json", folder.path("a.json"), "--rounds", "2"}));
+  const CommandResult result = accuracy(words + Words{"--json", folder.path("a.json"), "--rounds", "2"});
   if (out != nullptr) {
     *out = result.out;
   }
@@ -61,7 +53,7 @@ Json rows_of(const TemporaryFolder& folder, const Words& words, std::string* out
 }
 
 void check_accuracy_refused(const Words& words, int status, const Words& named) {
-  check_refused(with({"accuracy"}, words), status, named);
+  check_refused(Words{"accuracy"} + words, status, named);
 }
 
 double decibels(const Json& row) {
@@ -81,9 +73,9 @@ struct Drawn {
 
 Drawn draw(const TemporaryFolder& folder, const std::string& options) {
   const CommandResult result =
-      run_command(with(with(with({"render", "--view", "paper", "--fov", "60"}, kView), words_of(options)),
-                       {"--engine", "ray64", "--quiet", "-o", folder.path("r.ppm"), "--depth-image",
-                        folder.path("r.pfm"), "--stats", folder.path("r.json")}));
+      run_command(Words{"render", "--view", "paper", "--fov", "60"} + kView + words_of(options) +
+                  Words{"--engine", "ray64", "--quiet", "-o", folder.path("r.ppm"), "--depth-image",
+                        folder.path("r.pfm"), "--stats", folder.path("r.json")});
   CAPTURE(result.describe());
   REQUIRE(result.status == 0);
   const std::string picture = read_text(folder.path("r.ppm"));
@@ -232,8 +224,8 @@ TEST_CASE(
     "accuracy: the front -> exactly the settings that no other one beats, by time and by what is counted") {
   const TemporaryFolder folder;
   check_front(rows_of(folder, kView), "ms_median", 0.03);
-  check_front(rows_of(folder, with(kView, {"--against", "visits"})), "node_visits");
-  check_front(rows_of(folder, with(kView, {"--against", "instructions"})), "lm3s6965evb_instructions");
+  check_front(rows_of(folder, kView + Words{"--against", "visits"}), "node_visits");
+  check_front(rows_of(folder, kView + Words{"--against", "instructions"}), "lm3s6965evb_instructions");
 }
 
 TEST_CASE(
@@ -254,7 +246,7 @@ TEST_CASE(
   std::sort(times.begin(), times.end());
   // Wide enough that the second run has settings on both sides.
   const double limit = times[times.size() / 2];
-  Json rows = rows_of(folder, with(kView, {"--for-ms", std::to_string(limit)}), &out);
+  Json rows = rows_of(folder, kView + Words{"--for-ms", std::to_string(limit)}, &out);
   const Json* best = nullptr;
   for (const Json& row : rows) {
     const double given = std::stod(std::to_string(limit));
@@ -269,7 +261,7 @@ TEST_CASE(
 
   for (const char* error : {"0", "2.5", "12"}) {
     CAPTURE(error);
-    rows = rows_of(folder, with(kView, {"--for-error", error}), &out);
+    rows = rows_of(folder, kView + Words{"--for-error", error}, &out);
     best = nullptr;
     for (const Json& row : rows) {
       if (row["row"] == "setting" && row["rms_error"] <= std::stod(error) &&
@@ -280,50 +272,9 @@ TEST_CASE(
     REQUIRE(best != nullptr);
     CHECK(answer_of(out) == (*best)["options"]);
   }
-  check_accuracy_refused(with(kView, {"--rounds", "1", "--for-ms", "1e-7", "--csv", folder.path("no.csv")}),
+  check_accuracy_refused(kView + Words{"--rounds", "1", "--for-ms", "1e-7", "--csv", folder.path("no.csv")},
                          1, {"1e-07 ms", "fastest"});
   CHECK(folder.names() == Words{"a.json"});
-}
-
-TEST_CASE("accuracy: CSV, JSON and plot -> the same rows, null as empty cells, and a plot that names all") {
-  const TemporaryFolder folder;
-  const std::string path = folder.write("a<&\">.xyz", "0 0 0\n3 1 2\n2 2 2\n");
-  const Json rows = rows_of(folder, {path, "--as-voxels", "--size", "20x20", "--projection", "orthographic",
-                                     "--csv", folder.path("a.csv"), "--plot", folder.path("a.svg")});
-  const Words csv = lines_of(read_text(folder.path("a.csv")));
-  REQUIRE(csv.size() == rows.size() + 1);
-  std::string header;
-  for (const auto& [name, value] : rows[0].items()) {
-    header += (header.empty() ? "" : ",") + name;
-  }
-  CHECK(csv[0] == header);
-  // Every name is in the help.
-  const std::string help = run_command({"accuracy", "--help"}).out;
-  for (const std::string& name : split(header)) {
-    CAPTURE(name);
-    CHECK(help.find(name) != std::string::npos);
-    for (const Json& row : rows) {
-      CHECK(row.contains(name));
-    }
-  }
-  for (const std::string& line : csv) {
-    CHECK(split(line).size() == split(header).size());
-  }
-  const std::string svg = read_text(folder.path("a.svg"));
-  CHECK(svg.starts_with("<svg"));
-  CHECK(elements_of(svg) > 60);
-  CHECK(svg.find("a&lt;&amp;\"&gt;.xyz") != std::string::npos);
-  CHECK(svg.find("prefers-color-scheme: dark") != std::string::npos);
-  for (const char* words : {"PSNR", "dB", "ms", "log scale", "The front", "cut-off alone", "samples alone",
-                            "knobs together", "stopped early", "equal to the reference"}) {
-    CAPTURE(words);
-    CHECK(svg.find(words) != std::string::npos);
-  }
-  // Data on standard output: no table between.
-  const CommandResult piped =
-      run_command({"accuracy", "points:20,depth=3", "--csv", "-", "--size", "8x8", "--rounds", "1"});
-  CHECK(piped.out.starts_with("row,group,options,"));
-  CHECK(piped.out.find("reference:") == std::string::npos);
 }
 
 TEST_CASE(
@@ -336,7 +287,7 @@ TEST_CASE(
       "box wall from 0 0 0 to 32 32 3\nbox steel from 6 6 3 to 14 26 16\nbox steel from 18 6 3 to 20 26 "
       "20\n");
   const Words view{path, "--size", "24x18", "--shade", "color"};
-  const Json rows = rows_of(folder, with(view, {"--plot", folder.path("l.svg")}));
+  const Json rows = rows_of(folder, view + Words{"--plot", folder.path("l.svg")});
   CHECK(elements_of(read_text(folder.path("l.svg"))) > 100);
   CHECK(read_text(folder.path("l.svg")).find("bounces 8") != std::string::npos);
 
@@ -409,12 +360,12 @@ TEST_CASE(
   CHECK(front >= 2);
   CHECK(has_error);
   std::string out;
-  rows_of(folder, with(view, {"--for-error", "0"}), &out);
+  rows_of(folder, view + Words{"--for-error", "0"}, &out);
   CHECK(out.find("light: occlusion rays 32, roughness rays 4, bounces 8\n") != std::string::npos);
   CHECK(out.find("with --shade as given here") != std::string::npos);
   CHECK(out.find("--bounces 8 of thimble render") != std::string::npos);
   // No light asked for, none measured.
-  for (const Json& row : rows_of(folder, with(view, {"--effects", "none"}))) {
+  for (const Json& row : rows_of(folder, view + Words{"--effects", "none"})) {
     CHECK(row["row"] != "light");
   }
   check_accuracy_refused({"spheres", "--effects", "magic"}, 2, {"--effects", "\"magic\""});
@@ -460,27 +411,9 @@ TEST_CASE("accuracy: wrong options and files -> a sentence, and no file") {
   check_accuracy_refused({"--hard-cases", "--size", "8x8"}, 2, {"--hard-cases", "--size"});
   check_accuracy_refused({"--hard-cases", "--rays", "0"}, 2, {"--rays", "\"0\""});
   check_accuracy_refused({"nothing.vox"}, 1, {"nothing.vox"});
-  check_accuracy_refused({"spheres", "--csv", "-", "--json", "-"}, 1, {"standard output"});
-  check_accuracy_refused({"spheres", "--csv", "/no/such/a.csv"}, 1, {"/no/such/a.csv"});
   check_accuracy_refused({"spheres", "--eye", "1,2,3", "--target", "1,2,3", "--csv", folder.path("a.csv")}, 1,
                          {"--eye"});
   CHECK(folder.names().empty());
-}
-
-TEST_CASE("accuracy: an interrupt half way -> no file, no part of one") {
-  const TemporaryFolder folder;
-  CommandLimits limits;
-  limits.program = "/usr/bin/timeout";
-  for (const Words& words :
-       {Words{"spheres", "--size", "800x600", "--rounds", "99"}, Words{"--hard-cases"}}) {
-    const CommandResult result =
-        run_command(with(with({"-s", "INT", "0.4", THIMBLE_COMMAND_PATH, "accuracy"}, words),
-                         {"--csv", folder.path("a.csv"), "--json", folder.path("a.json")}),
-                    limits);
-    CAPTURE(result.describe());
-    CHECK(result.status == 124);  // timeout's own: it did interrupt
-    CHECK(folder.names().empty());
-  }
 }
 
 TEST_CASE("accuracy --simulation particles -> the lag of a falling ball, halved by twice the substeps") {

@@ -18,14 +18,9 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 
 CommandResult boards(const Words& words) {
-  Words all{"boards"};
-  all.insert(all.end(), words.begin(), words.end());
-  CommandResult result = run_command(all);
-  CAPTURE(result.describe());
-  REQUIRE(result.status == 0);
+  CommandResult result = check_done(Words{"boards"} + words);
   CHECK(result.err.empty());
   return result;
 }

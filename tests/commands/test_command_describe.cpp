@@ -12,7 +12,6 @@
 namespace {
 
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 
 // What the last of these words may become, without meanings.
 Words completed(const Words& words) {

@@ -11,7 +11,7 @@
 #include "scene/built_scene.h"
 #include "scene/lit_setup.h"
 #include "scene/scene_source.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/camera.h"
 
@@ -19,7 +19,6 @@ namespace {
 
 using namespace thimble::tests;
 using nlohmann::json;
-using Words = std::vector<std::string>;
 using thimble::EffectSet;
 namespace tools = thimble::tools;
 
@@ -41,12 +40,9 @@ ball glow at 26 26 5 radius 3
 
 json rows_of(const std::string& scene, const Words& more = {}) {
   const TemporaryFolder folder;
-  Words words{
-      "effects", scene, "--size", "48x36", "--frames", "1", "--quiet", "--json", folder.path("e.json")};
-  words.insert(words.end(), more.begin(), more.end());
-  const CommandResult result = run_command(words);
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
+  const CommandResult result = check_done(Words{"effects", scene, "--size", "48x36", "--frames", "1",
+                                                "--quiet", "--json", folder.path("e.json")} +
+                                          more);
   CHECK(result.err.empty());
   const json rows = json::parse(read_text(folder.path("e.json")));
   REQUIRE(rows.size() == thimble::Effect::kCount);
@@ -210,66 +206,15 @@ TEST_CASE("effects: why -> the material, the lights, the line of the scene") {
   check_nothing(asked[2]);
 }
 
-TEST_CASE("effects: table, CSV, JSON and SVG -> all of them, in lines that fit a terminal") {
-  const TemporaryFolder folder;
-  const std::string csv_path = folder.path("e.csv");
-  const std::string svg_path = folder.path("e.svg");
-  const CommandResult result = run_command({"effects", "water", "--size", "48x36", "--frames", "2", "--csv",
-                                            csv_path, "--plot", svg_path, "--bounces", "2"});
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
-  for (const std::string& line : lines_of(result.out)) {
-    CAPTURE(line);
-    CHECK(line.size() <= 100);
-  }
-  const std::vector<std::string> lines = lines_of(read_text(csv_path));
-  REQUIRE(lines.size() == 16);
-  CHECK(lines[0] ==
-        "effect,called_for,why,primary_rays,shadow_rays,occlusion_rays,mirror_rays,glass_rays,media_rays,"
-        "water_rays,rays,node_visits,ms,q25_ms,q75_ms,with_ms,without_ms,ram_bytes,flash_bytes");
-  const std::string svg = read_text(svg_path);
-  CHECK(svg.starts_with("<svg "));
-  CHECK(svg.ends_with("</svg>\n"));
-  for (int bit = 0; bit < thimble::Effect::kCount; ++bit) {
-    const std::string name = thimble::effect_name(EffectSet{1} << bit);
-    CAPTURE(name);
-    CHECK(lines[static_cast<std::size_t>(bit) + 1].starts_with(name + ","));
-    CHECK(svg.find(">" + name + "<") != std::string::npos);
-    CHECK(result.out.find("\n" + name + " ") != std::string::npos);
-  }
-  // As many tags opened as closed, no number that is none.
-  const auto count = [&](const std::string& what) {
-    std::size_t number = 0;
-    for (std::size_t at = svg.find(what); at != std::string::npos; at = svg.find(what, at + 1)) {
-      ++number;
-    }
-    return number;
-  };
-  CHECK(count("<text") == count("</text>"));
-  CHECK(count("<rect") == 16);
-  CHECK(count("nan") + count("inf") == 0);
-
-  // Data on standard output stand alone.
-  const CommandResult data =
-      run_command({"effects", "spheres", "--size", "16x16", "--frames", "1", "--json", "-"});
-  CHECK(json::parse(data.out).size() == 15);
-}
-
 TEST_CASE("effects: wrong usage -> status 2 and a sentence") {
   for (const Words& more : {Words{"--frames", "0"},
                             {"--frames", "x"},
                             {"--effects", "gloss"},
                             {"--bounces", "9"},
                             {"--memory", "64K"}}) {
-    Words words{"effects", "spheres"};
-    words.insert(words.end(), more.begin(), more.end());
-    const CommandResult result = run_command(words);
-    CAPTURE(result.describe());
-    CHECK(result.status == 2);
-    CHECK(is_one_sentence(result.err));
-    CHECK(result.err.find(more[0]) != std::string::npos);
+    check_refused(Words{"effects", "spheres"} + more, 2, {more[0]});
   }
-  CHECK(run_command({"effects"}).status == 2);
+  check_refused({"effects"}, 2, {"SCENE"});
 }
 
 }  // namespace

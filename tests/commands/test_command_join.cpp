@@ -14,14 +14,13 @@
 #include "output/part_file.h"
 #include "readers/input_error.h"
 #include "scene/random.h"
+#include "support/check_command.h"
 #include "support/counts.h"
-#include "support/run_command.h"
 
 namespace {
 
 using namespace thimble::tests;
 using namespace thimble::tools;
-using Words = std::vector<std::string>;
 
 constexpr const char* kTower = R"(depth 5
 material wall color 200 60 40
@@ -31,17 +30,6 @@ box wall from 8 8 6 to 24 20 18
 box roof from 6 6 18 to 26 22 22
 box lamp from 10 6 8 to 12 8 10
 )";
-
-Words together(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
-void run_well(const Words& words) {
-  const CommandResult result = run_command(words);
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
-}
 
 // Fails with that status and a sentence that holds all of `named`, and leaves no output.
 void check_fails(const Words& words, int status, const Words& named, const std::string& output) {
@@ -124,22 +112,22 @@ TEST_CASE("join: rows drawn apart, in any order -> byte for byte the picture of 
       continue;
     }
     const std::string ending = each.endings[static_cast<std::size_t>(number++) % each.endings.size()];
-    const Words render = together({"render", each.scene, "--size", "45x40", "--quiet"}, each.options);
+    const Words render = Words{"render", each.scene, "--size", "45x40", "--quiet"} + each.options;
     CAPTURE(render);
     CAPTURE(ending);
     const std::string whole = folder.path("whole." + ending);
-    run_well(together(render, {"-o", whole}));
+    check_done(render + Words{"-o", whole});
     Words parts;
     for (std::int32_t first = 0; first < 40;) {
       const std::int32_t count = std::min(random.between(1, 25), 40 - first);
       const std::string part = folder.path(std::to_string(first) + "." + ending + ".part");
-      run_well(together(render, {"--rows", std::to_string(first) + ":" + std::to_string(count), "-o", part,
-                                 "--threads", std::to_string(random.between(1, 3))}));
+      check_done(render + Words{"--rows", std::to_string(first) + ":" + std::to_string(count), "-o", part,
+                                "--threads", std::to_string(random.between(1, 3))});
       parts.insert(random.below(2) == 0 ? parts.begin() : parts.end(), part);
       first += count;
     }
     const std::string joined = folder.path("joined." + ending);
-    run_well(together(together({"join"}, parts), {"-o", joined}));
+    check_done(Words{"join"} + parts + Words{"-o", joined});
     CHECK(read_text(joined) == read_text(whole));
     std::filesystem::remove(joined);
   }
@@ -149,22 +137,21 @@ TEST_CASE("join: who draws and how fast is not in a part, what changes the pictu
   const TemporaryFolder folder;
   const std::string tower = folder.write("tower.scene", kTower);
   const auto part = [&](const Words& options, const std::string& name) {
-    run_well(
-        together({"render", tower, "--size", "40x30", "--rows", "7:9", "-o", folder.path(name)}, options));
+    check_done(Words{"render", tower, "--size", "40x30", "--rows", "7:9", "-o", folder.path(name)} + options);
     return read_text(folder.path(name));
   };
   const Words depth{"--shade", "depth", "--quiet"};
   const std::string one = part(depth, "a.part");
-  CHECK(part(together(depth, {"--engine", "ray64", "--threads", "1"}), "b.part") == one);
-  CHECK(part(together(depth, {"--engine", "wide", "--threads", "2", "--stats", folder.path("s.json")}),
+  CHECK(part(depth + Words{"--engine", "ray64", "--threads", "1"}, "b.part") == one);
+  CHECK(part(depth + Words{"--engine", "wide", "--threads", "2", "--stats", folder.path("s.json")},
              "b.part") == one);
-  CHECK(part(together(depth, {"--memory", "4M", "--structure", "pool"}), "b.part") == one);
+  CHECK(part(depth + Words{"--memory", "4M", "--structure", "pool"}, "b.part") == one);
   const auto stats = nlohmann::json::parse(read_text(folder.path("s.json")));
   CHECK(stats["rays"] == 9 * 40);
   const std::string rest = folder.path("rest.part");
   const std::string out = folder.path("out.png");
   const auto check_other = [&](const Words& options, const std::string& why) {
-    run_well(together({"render", tower, "--rows", "0:20", "-o", rest, "--quiet"}, options));
+    check_done(Words{"render", tower, "--rows", "0:20", "-o", rest, "--quiet"} + options);
     check_fails({"join", folder.path("a.part"), rest, "-o", out}, 1, {"rest.part", "a.part", why}, out);
   };
   check_other({"--shade", "depth", "--size", "40x30", "--turn", "5"}, "camera");
@@ -175,13 +162,14 @@ TEST_CASE("join: who draws and how fast is not in a part, what changes the pictu
   check_other({"--size", "40x30"}, "options");
   const std::string other =
       folder.write("other.scene", std::string(kTower) + "box roof from 1 1 1 to 2 2 2\n");
-  run_well({"render", other, "--shade", "depth", "--size", "40x30", "--rows", "0:20", "-o", rest, "--quiet"});
+  check_done(
+      {"render", other, "--shade", "depth", "--size", "40x30", "--rows", "0:20", "-o", rest, "--quiet"});
   check_fails({"join", folder.path("a.part"), rest, "-o", out}, 1, {"rest.part", "scene"}, out);
   // Light alone makes another scene too.
   const std::string night =
       folder.write("night.scene", std::string(kTower) + "sun toward 1 2 3 brightness 2\n");
-  run_well({"render", tower, "--size", "40x30", "--rows", "0:20", "-o", folder.path("a.part"), "--quiet"});
-  run_well({"render", night, "--size", "40x30", "--rows", "20:10", "-o", rest, "--quiet"});
+  check_done({"render", tower, "--size", "40x30", "--rows", "0:20", "-o", folder.path("a.part"), "--quiet"});
+  check_done({"render", night, "--size", "40x30", "--rows", "20:10", "-o", rest, "--quiet"});
   check_fails({"join", folder.path("a.part"), rest, "-o", out}, 1, {"rest.part", "scene"}, out);
 }
 
@@ -195,7 +183,7 @@ TEST_CASE("join: parts that lack rows, agree or disagree -> what is missing and 
   check_fails({"join", a, b, "-o", out}, 1, {"2:1", "4:2", "6 rows"}, out);
   check_fails({"join", c, "-o", out}, 1, {"0:1"}, out);
   check_fails({"join", a, c, d, "-o", out}, 1, {"d.part", "c.part", "row 5"}, out);
-  run_well({"join", b, c, a, a, "-o", out});
+  check_done({"join", b, c, a, a, "-o", out});
   CHECK(read_text(out) == "P5\n8 6\n255\n" + std::string(48, '\x07'));
   PartHeader finer = rows(0, 6);
   finer.has_finer_shades = true;
@@ -205,7 +193,7 @@ TEST_CASE("join: parts that lack rows, agree or disagree -> what is missing and 
   PartHeader mono = rows(0, 6);
   mono.pixels = PartPixels::kMono;
   const std::string f = write_part(folder, "f.part", mono, 0xF0);
-  run_well({"join", f, "-o", folder.path("o.pbm")});
+  check_done({"join", f, "-o", folder.path("o.pbm")});
   CHECK(read_text(folder.path("o.pbm")) == "P4\n8 6\n" + std::string(6, '\x0F'));
   check_fails({"join", f, "-o", folder.path("o.png")}, 2, {".pbm"}, folder.path("o.png"));
   PartHeader clear = rows(0, 6);
@@ -283,9 +271,9 @@ TEST_CASE("join: a film of 48 frames by four processes, one killed and drawn aga
   const std::string tower = folder.write("tower.scene", kTower);
   const Words render{"render", tower, "--size", "48x36", "--turntable", "48", "--quiet"};
   const auto part_words = [&](int first) {
-    return together(
-        render, {"--part", std::to_string(first) + ":12", "-o", folder.path(std::to_string(first) + ".part"),
-                 "--threads", first == 0 ? "2" : "1"});
+    return render + Words{"--part",    std::to_string(first) + ":12",
+                          "-o",        folder.path(std::to_string(first) + ".part"),
+                          "--threads", first == 0 ? "2" : "1"};
   };
   // All four at once; the third is killed while it draws.
   std::string script;
@@ -306,12 +294,12 @@ TEST_CASE("join: a film of 48 frames by four processes, one killed and drawn aga
   const std::string out = folder.path("out.gif");
   std::filesystem::remove(parts[2]);  // should it have been faster
   check_fails({"join", parts[3], parts[0], parts[1], "-o", out}, 1, {"24:12", "48 frames"}, out);
-  run_well(part_words(24));
+  check_done(part_words(24));
   for (const std::string ending : {"gif", "y4m"}) {
     const std::string whole = folder.path("whole." + ending);
     const std::string joined = folder.path("joined." + ending);
-    run_well(together(render, {"-o", whole}));
-    run_well({"join", parts[3], parts[1], parts[0], parts[2], "-o", joined});
+    check_done(render + Words{"-o", whole});
+    check_done({"join", parts[3], parts[1], parts[0], parts[2], "-o", joined});
     CHECK(read_text(joined) == read_text(whole));
   }
   check_fails({"join", parts[0], parts[1], parts[2], parts[3], "-o", folder.path("o.png")}, 2, {".gif"},
@@ -328,23 +316,23 @@ TEST_CASE("render: --camera-path -> a frame a line, as --eye and the rest show i
                                         "0,-30,30,16,16,10,1,0,1,5e1");
   const Words render{"render", tower, "--size", "40x30", "--quiet"};
   const std::string film = folder.path("film.y4m");
-  run_well(together(render, {"--camera-path", path, "-o", film}));
+  check_done(render + Words{"--camera-path", path, "-o", film});
   const std::string bytes = read_text(film);
   const std::size_t head = bytes.find('\n') + 1;
   CHECK(bytes.substr(0, head).find(" F25:1 ") != std::string::npos);
   CHECK(bytes.size() == head + 3 * (6 + 3 * 40 * 30));
   // The first frame sets the exposure, so that one compares with a picture.
-  run_well(together(render, {"--eye", "-20,-30,20", "--target", "16,16,10", "--up", "0,0,1", "--fov", "40",
-                             "-o", folder.path("a.ppm")}));
-  run_well(together(render, {"--camera-path", path, "--part", "0:1", "-o", folder.path("0.part")}));
+  check_done(render + Words{"--eye", "-20,-30,20", "--target", "16,16,10", "--up", "0,0,1", "--fov", "40",
+                            "-o", folder.path("a.ppm")});
+  check_done(render + Words{"--camera-path", path, "--part", "0:1", "-o", folder.path("0.part")});
   const std::string part = read_text(folder.path("0.part"));
   CHECK(part.substr(48, 3 * 40 * 30) == read_text(folder.path("a.ppm")).substr(13));
-  run_well(together(render, {"--camera-path", path, "--part", "1:2", "-o", folder.path("1.part")}));
-  run_well({"join", folder.path("1.part"), folder.path("0.part"), "-o", folder.path("joined.y4m")});
+  check_done(render + Words{"--camera-path", path, "--part", "1:2", "-o", folder.path("1.part")});
+  check_done({"join", folder.path("1.part"), folder.path("0.part"), "-o", folder.path("joined.y4m")});
   CHECK(read_text(folder.path("joined.y4m")) == bytes);
   // Six columns and no header will do.
   const std::string bare = folder.write("bare.csv", "-20,-30,20,16,16,10\n");
-  run_well(together(render, {"--camera-path", bare, "--fov", "40", "-o", folder.path("bare.gif")}));
+  check_done(render + Words{"--camera-path", bare, "--fov", "40", "-o", folder.path("bare.gif")});
 }
 
 TEST_CASE("render: camera paths that are none -> status 1, file and line named") {
@@ -353,7 +341,7 @@ TEST_CASE("render: camera paths that are none -> status 1, file and line named")
   const auto check_bad = [&](const std::string& text, const Words& named) {
     const std::string path = folder.write("path.csv", text);
     check_fails({"render", "spheres", "--size", "20x15", "--camera-path", path, "-o", out}, 1,
-                together({"path.csv"}, named), out);
+                Words{"path.csv"} + named, out);
   };
   const std::string good = "0,-90,30,32,32,32\n";
   check_bad("", {"empty"});
@@ -377,7 +365,7 @@ TEST_CASE("render: --rows, --part and --camera-path asked for wrongly -> status 
   const auto check_refused = [&](const Words& options, const Words& named,
                                  const std::string& name = "a.part") {
     const std::string out = folder.path(name);
-    check_fails(together({"render", "spheres", "--size", "20x15", "-o", out}, options), 2, named, out);
+    check_fails(Words{"render", "spheres", "--size", "20x15", "-o", out} + options, 2, named, out);
   };
   check_refused({"--rows", "0:16"}, {"0:16", "15 rows"});
   check_refused({"--rows", "15:1"}, {"15:1", "14"});

@@ -22,14 +22,9 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 using Json = nlohmann::ordered_json;
-using Words = std::vector<std::string>;
 
 CommandResult memory(const Words& words) {
-  Words all{"memory"};
-  all.insert(all.end(), words.begin(), words.end());
-  CommandResult result = run_command(all);
-  CAPTURE(result.describe());
-  REQUIRE(result.status == 0);
+  CommandResult result = check_done(Words{"memory"} + words);
   CHECK(result.err.empty());
   for (const std::string& line : lines_of(result.out)) {
     CAPTURE(line);
@@ -264,38 +259,6 @@ TEST_CASE("memory: --budget-sweep -> the deepest depth that fits each budget, an
   CHECK(elements_of(read_text(folder.path("m.svg"))) > 20);
 }
 
-TEST_CASE("memory: CSV, JSON and plot -> the same rows, null as empty cells, and well-formed XML") {
-  const TemporaryFolder folder;
-  const std::string path = folder.write("a<&\">.xyz", "0 0 0\n3 1 2\n");
-  const Json rows = rows_of(folder, {path, "--as-voxels", "--size", "20x20", "--projection", "orthographic",
-                                     "--csv", folder.path("m.csv"), "--plot", folder.path("m.svg")});
-  const Words csv = lines_of(read_text(folder.path("m.csv")));
-  REQUIRE(csv.size() == rows.size() + 1);
-  std::string header;
-  for (const auto& [name, value] : rows[0].items()) {
-    header += (header.empty() ? "" : ",") + name;
-  }
-  CHECK(csv[0] == header);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    CHECK(std::count(csv[i + 1].begin(), csv[i + 1].end(), ',') ==
-          std::count(header.begin(), header.end(), ','));
-  }
-  CHECK(csv[1].starts_with("depth,1,"));
-  CHECK(csv[3].starts_with("paper,,800x600x1,480000,bit,,,,,,60000,,"));
-  const std::string svg = read_text(folder.path("m.svg"));
-  CHECK(svg.starts_with("<svg"));
-  CHECK(elements_of(svg) > 20);
-  CHECK(svg.find("a&lt;&amp;\"&gt;.xyz") != std::string::npos);
-  CHECK(svg.find("prefers-color-scheme: dark") != std::string::npos);
-  for (const char* words : {"bytes", "depth (a world", "dense grid", "pool", "compact tree", "DAG"}) {
-    CHECK(svg.find(words) != std::string::npos);
-  }
-  // Data on standard output: no table between.
-  const CommandResult piped = run_command({"memory", "points:20,depth=3", "--csv", "-", "--size", "8x8"});
-  CHECK(piped.out.starts_with("row,depth,grid,"));
-  CHECK(lines_of(piped.out).size() == 1 + 3 + 12);
-}
-
 TEST_CASE("memory: empty, full and smallest worlds -> rows, not errors") {
   const TemporaryFolder folder;
   const Json empty = rows_of(folder, {"points:0,depth=3", "--size", "16x12", "--budget-sweep"});
@@ -325,22 +288,7 @@ TEST_CASE("memory: wrong options and files -> a sentence, and no file") {
   check_refused({"memory", "spheres", "--budget-sweep=3"}, 2, {"--budget-sweep takes no value"});
   check_refused({"memory", "spheres", "--structure", "dense"}, 2, {"--structure"});
   check_refused({"memory", "nothing.vox"}, 1, {"nothing.vox"});
-  check_refused({"memory", "spheres", "--csv", "-", "--json", "-"}, 1, {"standard output"});
-  check_refused({"memory", "spheres", "--csv", "/no/such/m.csv"}, 1, {"/no/such/m.csv"});
   check_refused({"memory", "spheres", "--eye", "1,2,3", "--target", "1,2,3", "--csv", folder.path("m.csv")},
                 1, {"--eye"});
-  CHECK(folder.names().empty());
-}
-
-TEST_CASE("memory: an interrupt half way -> no file, no part of one") {
-  const TemporaryFolder folder;
-  CommandLimits limits;
-  limits.program = "/usr/bin/timeout";
-  const CommandResult result =
-      run_command({"-s", "INT", "0.4", THIMBLE_COMMAND_PATH, "memory", "points:3000000,depth=11", "--frames",
-                   "99", "--csv", folder.path("m.csv"), "--plot", folder.path("m.svg")},
-                  limits);
-  CAPTURE(result.describe());
-  CHECK(result.status == 124);  // timeout's own: it did interrupt
   CHECK(folder.names().empty());
 }

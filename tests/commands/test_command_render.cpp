@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "commands/engine_options.h"
+#include "support/check_command.h"
 #include "support/counts.h"
 #include "support/hit_rows.h"
 #include "support/ray_cases.h"
-#include "support/run_command.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -40,13 +40,7 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 using nlohmann::json;
-
-Words operator+(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
 
 // What these cases look at is the core's own picture: its shading is named where the words do not.
 Words shaded(Words words) {
@@ -56,10 +50,7 @@ Words shaded(Words words) {
 }
 
 CommandResult render(const Words& words) {
-  const CommandResult result = run_command(shaded(Words{"render"} + words));
-  CAPTURE(result.describe());
-  CHECK(result.status == 0);
-  return result;
+  return check_done(shaded(Words{"render"} + words));
 }
 
 std::string crc_of(std::string_view bytes) {
@@ -296,161 +287,6 @@ TEST_CASE("render: --span -> the picture's width in voxels; a wall of voxels is 
         std::string("P6\n64 48\n255\n").size() + 3 * static_cast<std::size_t>(row.py * 64 + row.px);
     REQUIRE(static_cast<unsigned char>(all.picture[at]) == (row.hit ? 255 : 0));
   }
-}
-
-TEST_CASE("render: --fov -> vertical; 90 degrees see as far up and down as the wall is away") {
-  const TemporaryFolder folder;
-  std::vector<reference::Voxel> voxels;
-  for (int x = 0; x < 32; ++x) {
-    for (int z = 0; z < 32; ++z) {
-      voxels.push_back({x, 16, z});
-    }
-  }
-  const std::string scene = folder.write("wall.xyz", as_xyz(voxels));
-  for (const auto& [width, height] : {std::pair(40, 20), std::pair(20, 40), std::pair(30, 30)}) {
-    const Rendered all =
-        render_all(folder, {scene, "--as-voxels", "--eye", "16,0,16", "--target", "16,1,16", "--fov", "90",
-                            "--size", std::to_string(width) + "x" + std::to_string(height)});
-    const double pixel = 32.0 / height;
-    int judged = 0;
-    for (const HitRow& row : all.hits) {
-      const double x = 16 + (row.px + 0.5 - width / 2.0) * pixel;
-      const double z = 16 - (row.py + 0.5 - height / 2.0) * pixel;
-      const auto unsure = [&](double v) { return std::abs(v - std::round(v)) < pixel / 8; };
-      if (unsure(x) || unsure(z)) {
-        continue;
-      }
-      ++judged;
-      const bool inside = x > 0 && x < 32 && z > 0 && z < 32;
-      REQUIRE(row.hit == inside);
-      if (inside) {
-        REQUIRE(row.voxel == reference::Voxel{static_cast<int>(x), 16, static_cast<int>(z)});
-      }
-    }
-    CHECK(judged > width * height / 8);
-  }
-}
-
-namespace {
-
-using Triple = std::array<double, 3>;
-
-// Solves c = k0 * a + k1 * b + k2 * d.
-Triple solve(const Triple& a, const Triple& b, const Triple& d, const Triple& c) {
-  const auto det = [](const Triple& u, const Triple& v, const Triple& w) {
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) - v[0] * (u[1] * w[2] - u[2] * w[1]) +
-           w[0] * (u[1] * v[2] - u[2] * v[1]);
-  };
-  const double all = det(a, b, d);
-  return {det(c, b, d) / all, det(a, c, d) / all, det(a, b, c) / all};
-}
-
-Triple origin_of(const HitRow& row) {
-  Triple result{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    result[axis] = static_cast<double>(row.ray.origin_q8[axis]) / 256;
-  }
-  return result;
-}
-Triple direction_of(const HitRow& row) {
-  Triple result{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    result[axis] = static_cast<double>(row.ray.direction[axis]);
-  }
-  return result;
-}
-Triple minus(const Triple& a, const Triple& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-}  // namespace
-
-TEST_CASE("render: the default camera -> every corner of what is occupied is in the picture") {
-  const TemporaryFolder folder;
-  struct Case {
-    reference::Voxel low;
-    reference::Voxel high;  // inclusive
-    std::string depth;
-  };
-  const std::vector<Case> cases{
-      {{0, 0, 0}, {31, 31, 31}, "5"},     {{3, 3, 3}, {3, 3, 3}, "4"},
-      {{0, 0, 7}, {255, 255, 7}, "8"},    {{5, 200, 9}, {5, 200, 255}, "8"},
-      {{0, 17, 17}, {255, 17, 17}, "8"},  {{2000, 2000, 2000}, {2019, 2009, 2039}, "12"},
-      {{4090, 0, 0}, {4095, 3, 9}, "12"}, {{0, 0, 0}, {4095, 4095, 4095}, "12"}};
-  int runs = 0;
-  int notes = 0;
-  for (const Case& one : cases) {
-    const std::string scene = folder.write("box.xyz", as_xyz({one.low, one.high}));
-    for (const auto& [width, height] :
-         {std::pair(9, 7), std::pair(80, 60), std::pair(60, 80), std::pair(90, 9), std::pair(7, 63)}) {
-      for (const char* fov : {"1", "5", "30", "60", "90", "120", ""}) {
-        const bool parallel = std::string(fov).empty();
-        if (++runs % 7 != 0 && thimble::tests::takes_few()) {
-          continue;
-        }
-        Words words{"render",
-                    scene,
-                    "--as-voxels",
-                    "--depth",
-                    one.depth,
-                    "--size",
-                    std::to_string(width) + "x" + std::to_string(height),
-                    "-o",
-                    "/dev/null"};
-        words[words.size() - 1] = folder.path("p.pbm");
-        words = words + Words{"--hits", folder.path("h.csv")} +
-                (parallel ? Words{"--projection", "orthographic"} : Words{"--fov", fov});
-        const CommandResult result = run_command(shaded(words));
-        CAPTURE(one.depth);
-        CAPTURE(one.low[0]);
-        CAPTURE(width);
-        CAPTURE(height);
-        CAPTURE(fov);
-        CAPTURE(result.describe());
-        REQUIRE(result.status == 0);
-        const std::vector<HitRow> rows = parse_hits(read_text(folder.path("h.csv")), true);
-        const HitRow& top_left = rows[0];
-        const HitRow& top_right = rows[static_cast<std::size_t>(width - 1)];
-        const HitRow& bottom_left = rows[static_cast<std::size_t>((height - 1) * width)];
-        bool inside = true;
-        for (unsigned corner = 0; corner < 16; ++corner) {
-          const auto& voxel = corner < 8 ? one.low : one.high;
-          Triple point{};
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            point[axis] = voxel[axis] + static_cast<double>((corner >> axis) & 1U);
-          }
-          double x = 0;  // 0 at the first pixel centre, 1 at the last
-          double y = 0;
-          if (parallel) {
-            const Triple k = solve(minus(origin_of(top_right), origin_of(top_left)),
-                                   minus(origin_of(bottom_left), origin_of(top_left)), direction_of(top_left),
-                                   minus(point, origin_of(top_left)));
-            x = k[0];
-            y = k[1];
-            inside = inside && k[2] > 0;
-          } else {
-            const Triple first = direction_of(top_left);
-            const Triple k =
-                solve(first, minus(direction_of(top_right), first), minus(direction_of(bottom_left), first),
-                      minus(point, origin_of(top_left)));
-            x = k[1] / k[0];
-            y = k[2] / k[0];
-            inside = inside && k[0] > 0;
-          }
-          const double px = x * (width - 1);
-          const double py = y * (height - 1);
-          inside = inside && px > -0.5 && px < width - 0.5 && py > -0.5 && py < height - 0.5;
-        }
-        // Where rays may not start far enough away, the command says so, and only there.
-        const bool noted = result.err.find("note: ") != std::string::npos;
-        CHECK(inside != noted);
-        const bool narrow = width == 90 || width == 7 || std::string(fov) == "1" || std::string(fov) == "5";
-        CHECK((!noted || narrow));
-        notes += noted ? 1 : 0;
-      }
-    }
-  }
-  CHECK(notes < runs / 4);
 }
 
 TEST_CASE("render: the paper's first tracer, 800 x 600 x 1 -> 60,000 bytes, and the picture is the grid") {
@@ -699,60 +535,6 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
           CHECK(stats["frame_crc32"] == exact["frame_crc32"]);
         }
       }
-    }
-  }
-}
-
-TEST_CASE(
-    "render: --coarsen -> from some budget on a picture that only has more in it, never a ray that hits "
-    "later") {
-  const TemporaryFolder folder;
-  for (const Words& one :
-       {Words{"spheres,depth=6"}, Words{"points:2000,depth=7"}, Words{"cluster:3000,depth=7"}}) {
-    for (const char* structure : {"compact", "pool"}) {
-      const Words words = one + Words{"--size", "48x36",     "--structure", structure,
-                                      "--eye",  "20,-30,40", "--target",    "30,30,30"};
-      const Rendered full = render_all(folder, words);
-      const CommandResult none =
-          run_command(shaded(Words{"render", "-o", folder.path("p.ppm"), "--memory", "0"} + words));
-      const std::uint64_t needed = number_after(none.err, "needs ");
-      int pictures = 0;
-      for (std::uint64_t budget = needed - 1; budget > 0;
-           budget = thimble::tests::takes_few() ? budget / 2 : budget * 3 / 5) {
-        CAPTURE(one.front());
-        CAPTURE(structure);
-        CAPTURE(budget);
-        const CommandResult result = run_command(shaded(
-            Words{"render", "-o", folder.path("p.ppm"), "--memory", std::to_string(budget), "--coarsen",
-                  "--hits", folder.path("h.csv"), "--stats", folder.path("s.json"), "--quiet"} +
-            words));
-        CAPTURE(result.describe());
-        if (result.status != 0) {
-          CHECK(result.status == 1);
-          CHECK(is_one_sentence(result.err));
-          CHECK(number_after(result.err, "needs ") == needed);
-          continue;
-        }
-        ++pictures;
-        const json stats = json::parse(read_text(folder.path("s.json")));
-        CHECK(stats["high_water_bytes"] <= budget);
-        CHECK(stats["budget_bytes"] == budget);
-        const auto true_voxels = full.stats["voxels"].get<std::uint64_t>();
-        CHECK(stats["voxels"] == true_voxels + stats["solid_added"].get<std::uint64_t>());
-        const std::vector<HitRow> rows = parse_hits(read_text(folder.path("h.csv")), true);
-        REQUIRE(rows.size() == full.hits.size());
-        int lost = 0;
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-          const bool later =
-              full.hits[i].hit && rows[i].hit && std::stod(rows[i].t) > std::stod(full.hits[i].t);
-          lost += (full.hits[i].hit && !rows[i].hit) || later || !(rows[i].ray == full.hits[i].ray) ? 1 : 0;
-        }
-        CHECK(lost == 0);
-        if (budget < needed / 2) {
-          CHECK(stats["solid_added"] > 0);
-        }
-      }
-      CHECK(pictures >= 3);
     }
   }
 }

@@ -10,32 +10,23 @@
 #include <utility>
 #include <vector>
 
+#include "support/check_command.h"
 #include "support/counts.h"
-#include "support/run_command.h"
 #include "thimble/picture/render.h"
 
 namespace {
 
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 
 struct Picture {
   std::vector<std::uint8_t> rgb;
   nlohmann::json stats;
 };
 
-Words operator+(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 Picture render(const Words& words, const std::string& size) {
   const TemporaryFolder folder;
-  const CommandResult result = run_command(
-      Words{"render"} + words +
-      Words{"--size", size, "--quiet", "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")});
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
+  check_done(Words{"render"} + words +
+             Words{"--size", size, "--quiet", "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")});
   const std::string text = read_text(folder.path("a.ppm"));
   const std::string pixels = text.substr(text.find("255\n") + 4);
   return {{pixels.begin(), pixels.end()}, nlohmann::json::parse(read_text(folder.path("a.json")))};
@@ -181,23 +172,6 @@ TEST_CASE("render --samples auto: models -> nearer to 64 samples than one by hal
     CHECK(rms(edges, best) < 0.6 * rms(one, best));
     CHECK(edges.stats["rays"].get<double>() < 3 * one.stats["rays"].get<double>());
   }
-}
-
-TEST_CASE("render --samples auto: one film of parts, and stars -> as ever") {
-  const TemporaryFolder folder;
-  const Words film{"render", "castle", "--size", "40x30", "--turntable", "3", "--samples", "auto", "--quiet"};
-  const auto run_well = [](const Words& words) {
-    const CommandResult result = run_command(words);
-    INFO(result.describe());
-    REQUIRE(result.status == 0);
-  };
-  run_well(film + Words{"-o", folder.path("whole.gif")});
-  run_well(film + Words{"--part", "0:1", "-o", folder.path("a.part"), "--threads", "1"});
-  run_well(film + Words{"--part", "1:2", "-o", folder.path("b.part"), "--threads", "2"});
-  run_well({"join", folder.path("b.part"), folder.path("a.part"), "-o", folder.path("joined.gif")});
-  CHECK(read_text(folder.path("joined.gif")) == read_text(folder.path("whole.gif")));
-  CHECK(render({"points:900,depth=7", "--samples", "auto"}, "60x40").rgb ==
-        render({"points:900,depth=7"}, "60x40").rgb);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "scene/built_scene.h"
 #include "scene/lit_setup.h"
 #include "scene/scene_source.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/camera.h"
 
@@ -18,7 +18,6 @@ namespace {
 
 using namespace thimble::tests;
 using nlohmann::json;
-using Words = std::vector<std::string>;
 
 // A little of everything but water.
 constexpr const char* kScene = R"(depth 5
@@ -48,40 +47,21 @@ struct Picture {
 Picture render(const std::string& scene, const Words& more, const std::string& ending = ".ppm",
                const std::string& size = "48x36") {
   const TemporaryFolder folder;
-  Words words{"render",
-              scene,
-              "--size",
-              size,
-              "--quiet",
-              "-o",
-              folder.path("a" + ending),
-              "--stats",
-              folder.path("a.json")};
-  words.insert(words.end(), more.begin(), more.end());
+  Words words = Words{"render", scene, "--size", size, "--quiet", "-o", folder.path("a" + ending)} +
+                Words{"--stats", folder.path("a.json")} + more;
   // What the scene calls for and no more: the core's own picture, not the default one.
   const auto is_how = [](const std::string& word) { return word == "--effects" || word == "--shade"; };
   if (std::none_of(more.begin(), more.end(), is_how)) {
     words.insert(words.end(), {"--effects", "auto"});
   }
-  const CommandResult result = run_command(words);
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
+  check_done(words);
   return {read_text(folder.path("a" + ending)), json::parse(read_text(folder.path("a.json")))};
 }
 
-void check_refused(const std::string& scene, const Words& more, int status, const Words& named) {
+void check_lit_refused(const std::string& scene, const Words& more, int status, const Words& named) {
   const TemporaryFolder folder;
-  Words words{"render", scene, "--size", "48x36", "-o", folder.path("a.ppm")};
-  words.insert(words.end(), more.begin(), more.end());
-  const CommandResult result = run_command(words);
-  INFO(result.describe());
-  CHECK(result.status == status);
-  CHECK(is_one_sentence(result.err));
+  check_refused(Words{"render", scene, "--size", "48x36", "-o", folder.path("a.ppm")} + more, status, named);
   CHECK(folder.names().empty());
-  for (const std::string& name : named) {
-    CAPTURE(name);
-    CHECK(result.err.find(name) != std::string::npos);
-  }
 }
 
 // The pixels that the core gives for a scene with a camera of its own, without the command's help.
@@ -120,15 +100,11 @@ TEST_CASE("render effects: any number of threads -> the same picture and counts,
     // Slopes are kept by each thread: in a picture so large that every one has some.
     const std::string size = more == Words{"--effects", "all"} ? "160x121" : "50x37";
     for (const char* ending : {".ppm", ".pbm"}) {
-      Words alone = more;
-      alone.insert(alone.end(), {"--threads", "1"});
-      const Picture one = render(scene, alone, ending, size);
+      const Picture one = render(scene, more + Words{"--threads", "1"}, ending, size);
       CHECK(one.stats["threads"] == 1);
       for (const char* threads : {"2", "5"}) {
         CAPTURE(threads);
-        Words words = more;
-        words.insert(words.end(), {"--threads", threads});
-        const Picture many = render(scene, words, ending, size);
+        const Picture many = render(scene, more + Words{"--threads", threads}, ending, size);
         CHECK(many.bytes == one.bytes);
         CHECK(many.stats["rays_by_kind"] == one.stats["rays_by_kind"]);
         CHECK(many.stats["node_visits_by_kind"] == one.stats["node_visits_by_kind"]);
@@ -228,18 +204,6 @@ TEST_CASE("render effects: every format -> the pixels that the core gives; greys
   }
 }
 
-TEST_CASE("render effects: baked, or read again -> the same picture") {
-  const TemporaryFolder folder;
-  const std::string scene = folder.write("a.scene", kScene);
-  const Picture drawn = render(scene, {});
-  CHECK(drawn.stats["effects"].size() == 10);
-  REQUIRE(run_command({"bake", scene, "--quiet", "-o", folder.path("a.oct")}).status == 0);
-  const Picture baked = render(folder.path("a.oct"), {});
-  CHECK(baked.bytes == drawn.bytes);
-  CHECK(baked.stats["effects"] == drawn.stats["effects"]);
-  CHECK(baked.stats["rays"] == drawn.stats["rays"]);
-}
-
 TEST_CASE("render effects: a short budget -> the same picture in bands of fewer rows, or a sentence") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kScene);
@@ -261,8 +225,8 @@ TEST_CASE("render effects: a short budget -> the same picture in bands of fewer 
   CHECK(least.bytes == drawn.bytes);
   CHECK(least.stats["high_water_bytes"] <= high);
   CHECK(high < drawn.stats["high_water_bytes"]);
-  check_refused(scene, {"--effects", "auto", "--memory", std::to_string(low)}, 1,
-                {std::to_string(high % 1000), "--memory"});
+  check_lit_refused(scene, {"--effects", "auto", "--memory", std::to_string(low)}, 1,
+                    {std::to_string(high % 1000), "--memory"});
   // What the effects keep is in the budget: without them it may be smaller by just that.
   const Picture plain = render(scene, {"--effects", "none", "--engine", "ray64", "--threads", "1"});
   namespace lit = thimble;
@@ -276,36 +240,15 @@ TEST_CASE("render effects: a short budget -> the same picture in bands of fewer 
   CHECK(difference <= more + 7);
 }
 
-TEST_CASE("render effects: several samples a pixel -> the mean of the same view drawn larger") {
-  const Picture large = render("water", {});
-  const Picture averaged = render("water", {"--samples", "4"}, ".ppm", "24x18");
-  CHECK(averaged.stats["samples"] == 4);
-  CHECK(averaged.stats["rays"] == large.stats["rays"]);
-  const std::string fine = large.bytes.substr(large.bytes.find("255\n") + 4);
-  const std::string mean = averaged.bytes.substr(averaged.bytes.find("255\n") + 4);
-  REQUIRE(mean.size() == 24U * 18 * 3);
-  int wrong = 0;
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    const std::size_t x = i / 3 % 24;
-    const std::size_t y = i / 72;
-    unsigned sum = 2;
-    for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{144}, std::size_t{147}}) {
-      sum += static_cast<std::uint8_t>(fine[y * 288 + x * 6 + i % 3 + place]);
-    }
-    wrong += static_cast<std::uint8_t>(mean[i]) == sum / 4 ? 0 : 1;
-  }
-  CHECK(wrong == 0);
-}
-
 TEST_CASE("render effects: what makes no sense, or cannot be honoured -> status 2, a sentence, no file") {
   for (const char* wrong :
        {"", "shadow", "auto,sky", "sky,", "sky,sky", "Shadows", "none,sky", "all,sky", "ao,ao"}) {
-    check_refused("spheres", {"--effects", wrong}, 2,
-                  {std::string("--effects: \"") + wrong + "\"", "auto, none", "ambient-occlusion"});
+    check_lit_refused("spheres", {"--effects", wrong}, 2,
+                      {std::string("--effects: \"") + wrong + "\"", "auto, none", "ambient-occlusion"});
   }
-  check_refused("spheres", {"--effects", "sky,shadow"}, 2, {"(did you mean shadows?)"});
+  check_lit_refused("spheres", {"--effects", "sky,shadow"}, 2, {"(did you mean shadows?)"});
   for (const char* wrong : {"-1", "9", "x", "", "1.5"}) {
-    check_refused("spheres", {"--bounces", wrong}, 2, {"--bounces", "0 to 8"});
+    check_lit_refused("spheres", {"--bounces", wrong}, 2, {"--bounces", "0 to 8"});
   }
   for (const Words& more : {Words{"--samples", "4"},
                             {"--samples", "auto"},
@@ -313,9 +256,7 @@ TEST_CASE("render effects: what makes no sense, or cannot be honoured -> status 
                             {"--max-depth", "3"},
                             {"--effects", "sky"},
                             {"--bounces", "2"}}) {
-    Words words{"--engine", "wide"};
-    words.insert(words.end(), more.begin(), more.end());
-    check_refused("spheres", words, 2, {"--engine wide", more[0]});
+    check_lit_refused("spheres", Words{"--engine", "wide"} + more, 2, {"--engine wide", more[0]});
   }
   for (const Words& more : {Words{"--structure", "pool"},
                             {"--structure", "dense"},
@@ -323,13 +264,11 @@ TEST_CASE("render effects: what makes no sense, or cannot be honoured -> status 
                             {"--engine", "wide"},
                             {"--cutoff", "2"},
                             {"--max-depth", "3"}}) {
-    check_refused("water", more, 2, {more[0], "water", "--effects none"});
-    Words without = more;
-    without.insert(without.end(), {"--effects", "none"});
-    render("water", without);
+    check_lit_refused("water", more, 2, {more[0], "water", "--effects none"});
+    render("water", more + Words{"--effects", "none"});
   }
   for (const char* shade : {"depth", "normal", "mono"}) {
-    check_refused("water", {"--shade", shade, "--effects", "sky"}, 2, {std::string("--shade ") + shade});
+    check_lit_refused("water", {"--shade", shade, "--effects", "sky"}, 2, {std::string("--shade ") + shade});
   }
 }
 

@@ -9,13 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "support/run_command.h"
+#include "support/check_command.h"
 
 namespace {
 
 using namespace thimble::tests;
 using nlohmann::json;
-using Words = std::vector<std::string>;
 
 // Coloured boxes on legs, so that there is something to cast a shadow.
 constexpr const char* kLookScene = R"(depth 5
@@ -40,25 +39,17 @@ struct Drawn {
 
 Drawn draw(const std::string& scene, const Words& more, const std::string& size = "80x60") {
   const TemporaryFolder folder;
-  Words words{"render", scene, "--size", size, "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")};
-  words.insert(words.end(), more.begin(), more.end());
-  const CommandResult result = run_command(words);
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
+  const CommandResult result = check_done(
+      Words{"render", scene, "--size", size, "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")} +
+      more);
   const std::string file = read_text(folder.path("a.ppm"));
   return {file.substr(file.find("255\n") + 4), json::parse(read_text(folder.path("a.json"))), result.err};
 }
 
-void check_refused(const std::string& scene, const Words& more, const std::string& named,
-                   const std::string& output = "a.png") {
+void check_look_refused(const std::string& scene, const Words& more, const std::string& named,
+                        const std::string& output = "a.png") {
   const TemporaryFolder folder;
-  Words words{"render", scene, "--size", "16x12", "-o", folder.path(output)};
-  words.insert(words.end(), more.begin(), more.end());
-  const CommandResult result = run_command(words);
-  INFO(result.describe());
-  CHECK(result.status == 2);
-  CHECK(is_one_sentence(result.err));
-  CHECK(result.err.find(named) != std::string::npos);
+  check_refused(Words{"render", scene, "--size", "16x12", "-o", folder.path(output)} + more, 2, {named});
   CHECK(folder.names().empty());
 }
 
@@ -274,46 +265,39 @@ TEST_CASE(
   CHECK(red.pixels.substr(0, 3) == std::string("\xff\x20\x10"));
   const Drawn shadow = draw(scene, {"--quiet", "--background", "ff2010", "--ground", "on"});
   CHECK(shadow.pixels != red.pixels);
-  const CommandResult result = run_command(
+  check_done(
       {"render", scene, "--size", "80x60", "--background", "none", "--quiet", "-o", folder.path("a.png")});
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
   const std::string png = read_text(folder.path("a.png"));
   CHECK(byte_at(png, 25) == 6);  // colour type: r, g, b and alpha
-  check_refused(scene, {"--background", "none"}, "png", "a.ppm");
-  check_refused(scene, {"--background", "blue"}, "\"blue\"");
-  check_refused(scene, {"--background", "ff2010", "--shade", "color"}, "--background");
-  check_refused(scene, {"--ground", "on", "--engine", "ray64"}, "--ground");
-  check_refused(scene, {"--ground", "wet"}, "\"wet\"");
+  check_look_refused(scene, {"--background", "none"}, "png", "a.ppm");
+  check_look_refused(scene, {"--background", "blue"}, "\"blue\"");
+  check_look_refused(scene, {"--background", "ff2010", "--shade", "color"}, "--background");
+  check_look_refused(scene, {"--ground", "on", "--engine", "ray64"}, "--ground");
+  check_look_refused(scene, {"--ground", "wet"}, "\"wet\"");
 }
 
 TEST_CASE("render look: --view, --turn and --tilt -> other pictures, and the same by another name") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kLookScene);
   const auto pixels = [&](const Words& words) {
-    Words all{"--quiet"};
-    all.insert(all.end(), words.begin(), words.end());
-    return draw(scene, all, "40x30").pixels;
+    return draw(scene, Words{"--quiet"} + words, "40x30").pixels;
   };
   CHECK(pixels({"--view", "best"}) == pixels({}));
   CHECK(pixels({"--view", "front"}) != pixels({}));
   CHECK(pixels({"--view", "front", "--turn", "90"}) == pixels({"--view", "right"}));
   CHECK(pixels({"--view", "front", "--turn", "-90"}) == pixels({"--view", "left"}));
   CHECK(pixels({"--view", "front", "--tilt", "90"}) == pixels({"--view", "top"}));
-  check_refused(scene, {"--view", "below"}, "\"below\"");
-  check_refused(scene, {"--turn", "nan"}, "\"nan\"");
-  check_refused(scene, {"--tilt", "181"}, "-180 to 180");
-  check_refused(scene, {"--view", "front", "--eye", "1,2,3"}, "--eye");
+  check_look_refused(scene, {"--view", "below"}, "\"below\"");
+  check_look_refused(scene, {"--turn", "nan"}, "\"nan\"");
+  check_look_refused(scene, {"--tilt", "181"}, "-180 to 180");
+  check_look_refused(scene, {"--view", "front", "--eye", "1,2,3"}, "--eye");
 }
 
 TEST_CASE("render look: --turntable -> a GIF of so many frames that decode, each near its own picture") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kLookScene);
   const std::string path = folder.path("a.gif");
-  const CommandResult result =
-      run_command({"render", scene, "--size", "90x70", "--turntable", "7", "-o", path, "--quiet"});
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
+  check_done({"render", scene, "--size", "90x70", "--turntable", "7", "-o", path, "--quiet"});
   const Gif gif = decode(read_text(path));
   CHECK(gif.width == 90);
   CHECK(gif.height == 70);
@@ -323,9 +307,7 @@ TEST_CASE("render look: --turntable -> a GIF of so many frames that decode, each
     CHECK(gif.frames[i] != gif.frames[i - 1]);
   }
   // The same frames without a palette.
-  const CommandResult film = run_command(
-      {"render", scene, "--size", "90x70", "--turntable", "7", "-o", folder.path("a.y4m"), "--quiet"});
-  REQUIRE(film.status == 0);
+  check_done({"render", scene, "--size", "90x70", "--turntable", "7", "-o", folder.path("a.y4m"), "--quiet"});
   const std::string y4m = read_text(folder.path("a.y4m"));
   const std::size_t header = y4m.find('\n') + 1;
   CHECK(y4m.size() == header + 7U * (6 + 3 * 90 * 70));
@@ -344,10 +326,10 @@ TEST_CASE("render look: --turntable -> a GIF of so many frames that decode, each
 }
 
 TEST_CASE("render look: films and pictures asked for wrongly -> status 2, and no file") {
-  check_refused("spheres", {"--turntable", "5"}, ".gif");
-  check_refused("spheres", {}, "--turntable", "a.gif");
-  check_refused("spheres", {"--turntable", "1"}, "2 to 1000", "a.gif");
-  check_refused("spheres", {"--turntable", "5", "--shade", "depth"}, "--shade", "a.gif");
-  check_refused("spheres", {"--turntable", "5", "--eye", "1,2,3"}, "--eye", "a.y4m");
-  check_refused("spheres", {"--turntable", "5", "--background", "none"}, "png", "a.gif");
+  check_look_refused("spheres", {"--turntable", "5"}, ".gif");
+  check_look_refused("spheres", {}, "--turntable", "a.gif");
+  check_look_refused("spheres", {"--turntable", "1"}, "2 to 1000", "a.gif");
+  check_look_refused("spheres", {"--turntable", "5", "--shade", "depth"}, "--shade", "a.gif");
+  check_look_refused("spheres", {"--turntable", "5", "--eye", "1,2,3"}, "--eye", "a.y4m");
+  check_look_refused("spheres", {"--turntable", "5", "--background", "none"}, "png", "a.gif");
 }

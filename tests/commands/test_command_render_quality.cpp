@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "support/run_command.h"
+#include "support/check_command.h"
 
 namespace {
 
@@ -22,31 +22,18 @@ struct QualityPicture {
   json stats;
 };
 
-QualityPicture render_ppm(const std::vector<std::string>& more, const std::string& scene = "spheres") {
+QualityPicture render_ppm(const Words& more, const std::string& scene = "spheres") {
   const TemporaryFolder folder;
-  std::vector<std::string> words{"render",
-                                 scene,
-                                 "--engine",
-                                 "ray64",
-                                 "--size",
-                                 "64x48",
-                                 "--quiet",
-                                 "-o",
-                                 folder.path("a.ppm"),
-                                 "--stats",
-                                 folder.path("a.json")};
-  words.insert(words.end(), more.begin(), more.end());
-  const CommandResult result = run_command(words);
-  INFO(result.describe());
-  REQUIRE(result.status == 0);
+  check_done(Words{"render", scene, "--engine", "ray64", "--size", "64x48", "--quiet", "-o",
+                   folder.path("a.ppm"), "--stats", folder.path("a.json")} +
+             more);
   return {read_text(folder.path("a.ppm")), json::parse(read_text(folder.path("a.json")))};
 }
 
 TEST_CASE("render quality: the least of each option -> the very picture and counts without it") {
   for (const char* projection : {"perspective", "orthographic"}) {
     const QualityPicture plain = render_ppm({"--projection", projection, "--shade", "color"});
-    for (const std::vector<std::string>& option :
-         {std::vector<std::string>{"--samples", "1"}, {"--cutoff", "0"}, {"--max-depth", "6"}}) {
+    for (const Words& option : {Words{"--samples", "1"}, {"--cutoff", "0"}, {"--max-depth", "6"}}) {
       INFO(option[0]);
       const QualityPicture same =
           render_ppm({"--projection", projection, "--shade", "color", option[0], option[1]});
@@ -83,32 +70,30 @@ TEST_CASE("render quality: more of each -> samples multiply rays, a cut-off and 
   CHECK(all.stats["rays"] == 4 * 64 * 48);
 }
 
-TEST_CASE("render quality: samples -> the mean of the same view drawn larger, pixel by pixel") {
+TEST_CASE(
+    "render quality: samples, plain and lit -> the mean of the same view drawn larger, pixel by pixel") {
   const TemporaryFolder folder;
-  const std::vector<std::string> view{"--eye", "-40,-60,80", "--target", "32,32,30", "--shade", "depth"};
-  const auto draw = [&](const std::string& size, const std::string& samples, const std::string& file) {
-    std::vector<std::string> words{"render",    "spheres", "--quiet", "--size",         size,
-                                   "--samples", samples,   "-o",      folder.path(file)};
-    words.insert(words.end(), view.begin(), view.end());
-    REQUIRE(run_command(words).status == 0);
-    const std::string text = read_text(folder.path(file));
-    return text.substr(text.find("255\n") + 4);
-  };
-  const std::string mean = draw("40x30", "4", "mean.ppm");
-  const std::string fine = draw("80x60", "1", "fine.ppm");
-  REQUIRE(mean.size() == 3U * 40 * 30);
-  REQUIRE(fine.size() == 4 * mean.size());
-  const auto at = [&](std::size_t x, std::size_t y, std::size_t channel) {
-    return static_cast<int>(static_cast<unsigned char>(fine[3 * (y * 80 + x) + channel]));
-  };
-  for (std::size_t y = 0; y < 30; ++y) {
-    for (std::size_t x = 0; x < 40; ++x) {
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        const int sum = at(2 * x, 2 * y, channel) + at(2 * x + 1, 2 * y, channel) +
-                        at(2 * x, 2 * y + 1, channel) + at(2 * x + 1, 2 * y + 1, channel);
-        REQUIRE(static_cast<int>(static_cast<unsigned char>(mean[3 * (y * 40 + x) + channel])) ==
-                (sum + 2) / 4);
+  for (const Words& scene :
+       {Words{"spheres", "--eye", "-40,-60,80", "--target", "32,32,30", "--shade", "depth"},
+        Words{"water", "--effects", "auto"}}) {
+    CAPTURE(scene[0]);
+    const auto draw = [&](const std::string& size, const std::string& samples, const std::string& file) {
+      check_done(Words{"render"} + scene +
+                 Words{"--quiet", "--size", size, "--samples", samples, "-o", folder.path(file)});
+      const std::string text = read_text(folder.path(file));
+      return text.substr(text.find("255\n") + 4);
+    };
+    const std::string mean = draw("40x30", "4", "mean.ppm");
+    const std::string fine = draw("80x60", "1", "fine.ppm");
+    REQUIRE(mean.size() == 3U * 40 * 30);
+    REQUIRE(fine.size() == 4 * mean.size());
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const std::size_t at = 3 * (i / 120 * 2 * 80 + i / 3 % 40 * 2) + i % 3;
+      int sum = 2;
+      for (const std::size_t place : {at, at + 3, at + 240, at + 243}) {
+        sum += static_cast<unsigned char>(fine[place]);
       }
+      REQUIRE(static_cast<int>(static_cast<unsigned char>(mean[i])) == sum / 4);
     }
   }
 }
@@ -116,29 +101,19 @@ TEST_CASE("render quality: samples -> the mean of the same view drawn larger, pi
 TEST_CASE("render quality: samples that are no square -> the next square's picture, and it is said") {
   CHECK(render_ppm({"--samples", "8"}).bytes == render_ppm({"--samples", "9"}).bytes);
   CHECK(render_ppm({"--samples", "50"}).stats["samples"] == 64);
-  const std::vector<std::string> words{"render", "spheres", "--size", "8x6", "--samples", "8", "-o", "-"};
+  const Words words{"render", "spheres", "--size", "8x6", "--samples", "8", "-o", "-"};
   CHECK(run_command(words).err.find("note: --samples 8 is not a square; 9 are taken") != std::string::npos);
-  std::vector<std::string> quiet = words;
+  Words quiet = words;
   quiet.emplace_back("--quiet");
   CHECK(run_command(quiet).err.empty());
 }
 
 TEST_CASE("render quality: --hits with a cut-off -> lowest corners of blocks, never farther than without") {
   const TemporaryFolder folder;
-  const auto hits = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"render",
-                                   "spheres",
-                                   "--quiet",
-                                   "--size",
-                                   "32x24",
-                                   "-o",
-                                   folder.path("a.ppm"),
-                                   "--hits",
-                                   folder.path("h.csv"),
-                                   "--shade",
-                                   "depth"};
-    words.insert(words.end(), more.begin(), more.end());
-    REQUIRE(run_command(words).status == 0);
+  const auto hits = [&](const Words& more) {
+    check_done(Words{"render", "spheres", "--quiet", "--size", "32x24", "-o", folder.path("a.ppm"), "--hits",
+                     folder.path("h.csv"), "--shade", "depth"} +
+               more);
     return lines_of(read_text(folder.path("h.csv")));
   };
   const auto plain = hits({});
@@ -159,14 +134,8 @@ TEST_CASE("render quality: --hits with a cut-off -> lowest corners of blocks, ne
 }
 
 TEST_CASE("render quality: bad values -> status 2; what cannot be done -> status 1; each a sentence") {
-  const auto refused = [](const std::vector<std::string>& more, int status, const std::string& named) {
-    std::vector<std::string> words{"render", "spheres", "--quiet", "-o", "-"};
-    words.insert(words.end(), more.begin(), more.end());
-    const CommandResult result = run_command(words);
-    INFO(result.describe());
-    CHECK(result.status == status);
-    CHECK(is_one_sentence(result.err));
-    CHECK(result.err.find(named) != std::string::npos);
+  const auto refused = [](const Words& more, int status, const std::string& named) {
+    check_refused(Words{"render", "spheres", "--quiet", "-o", "-"} + more, status, {named});
   };
   for (const char* value : {"0", "-1", "65", "81", "x", "", "4.0"}) {
     refused({"--samples", value}, 2, "1 to 64");
@@ -193,9 +162,9 @@ TEST_CASE(
   REQUIRE(run_command({"bake", "spheres", "--quiet", "-o", baked}).status == 0);
   const QualityPicture plain = render_ppm({"--shade", "color", "--cutoff", "0"}, baked);
   const std::string budget = std::to_string(plain.stats["high_water_bytes"].get<std::uint64_t>());
-  const auto with = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"render", baked,      "--size", "64x48",    "--quiet", "-o",
-                                   "-",      "--memory", budget,   "--cutoff", "2"};
+  const auto with = [&](const Words& more) {
+    Words words{"render", baked,      "--size", "64x48",    "--quiet", "-o",
+                "-",      "--memory", budget,   "--cutoff", "2"};
     words.insert(words.end(), more.begin(), more.end());
     return run_command(words);
   };

@@ -76,19 +76,6 @@ TEST_CASE("sim: one pixel changed by hand -> that pixel is named, with both valu
   CHECK(result.err.find("1 of 8,192 pixels differs; the first is at 5,62: #") != std::string::npos);
 }
 
-TEST_CASE("sim: the picture that the application sends over the UART -> the display's own, pixel by pixel") {
-  const TemporaryFolder folder;
-  const std::string keys = folder.write("keys.txt", "0: down left\n5: up left\n8: type p\n");
-  const std::string shot = folder.path("a.pgm");
-  const CommandResult result = sim({kSimScene, "--frames", "8", "--keys", keys, "--shot", shot, "--quiet"});
-  CHECK(result.status == 0);
-  // `p` comes before the ninth frame, which is not drawn, so what is sent is the eighth.
-  const CommandResult sent = sim({kSimScene, "--frames", "9", "--keys", keys, "--quiet"});
-  const std::size_t at = sent.out.find("P5\n128 64\n255\n");
-  REQUIRE(at != std::string::npos);
-  CHECK(pixels_of(sent.out.substr(at)).substr(0, 8192) == pixels_of(read_text(shot)));
-}
-
 TEST_CASE("sim: --keys -> buttons change the picture, the same script gives the same one, q ends") {
   const TemporaryFolder folder;
   const std::string keys = folder.write("keys.txt", "0: down left\n");
@@ -123,21 +110,6 @@ TEST_CASE("sim: --record -> a YUV4MPEG2 file of so many frames, the last one as 
   CHECK(read_text(color).size() == color_header.size() + 2 * (6 + 3 * 640 * 480));
 }
 
-TEST_CASE("sim: every board -> its own arena, a whole frame, and use within the limits") {
-  for (const char* const board : {"lm3s6965evb", "microbit", "mps2-an500", "netduinoplus2", "pico",
-                                  "pico-lcd-2", "raspi0", "sifive_e", "stm32vldiscovery"}) {
-    const CommandResult result = sim({kSimScene, "--board", board});
-    CAPTURE(board);
-    CAPTURE(result.describe());
-    CHECK(result.status == 0);
-    CHECK(result.out.find(std::string("thimble demo on ") + board + ":") != std::string::npos);
-    CHECK(result.err.find(std::string("demo on ") + board + ": 1 frame,") != std::string::npos);
-    CHECK(result.err.find("RAM ") != std::string::npos);
-    CHECK(result.err.find("flash: scene ") != std::string::npos);
-    CHECK(result.err.find("not the chip's") != std::string::npos);
-  }
-}
-
 TEST_CASE("sim: a baked scene -> the same picture as the scene that it was baked from") {
   const TemporaryFolder folder;
   const std::string baked = folder.path("a.oct");
@@ -145,23 +117,6 @@ TEST_CASE("sim: a baked scene -> the same picture as the scene that it was baked
   REQUIRE(run_command({"bake", kSimScene, "--board", "lm3s6965evb", "-o", baked, "--quiet"}).status == 0);
   REQUIRE(sim({kSimScene, "--frames", "3", "--shot", shot, "--quiet"}).status == 0);
   CHECK(sim({baked, "--frames", "3", "--check", shot, "--quiet"}).status == 0);
-}
-
-TEST_CASE("sim: the core's own cases on every board -> all passed, one result") {
-  std::string result_line;
-  for (const char* const board : {"lm3s6965evb", "stm32vldiscovery", "mps2-an500"}) {
-    const CommandResult result = sim({"--app", "selftest", "--board", board, "--quiet"});
-    CAPTURE(board);
-    CAPTURE(result.describe());
-    CHECK(result.status == 0);
-    CHECK(result.out.find(" passed, 0 failed\n") != std::string::npos);
-    const std::size_t at = result.out.find("result crc ");
-    REQUIRE(at != std::string::npos);
-    const std::string line = result.out.substr(at, 19);
-    CHECK((result_line.empty() || line == result_line));
-    result_line = line;
-  }
-  check_sim_refused({kSimScene, "--app", "selftest"}, 2, {"\"spheres,depth=4\"", "selftest"});
 }
 
 TEST_CASE("sim: an application that goes wrong -> status 97, what it did, and no files") {
@@ -218,17 +173,6 @@ TEST_CASE(
   check_sim_refused({"points:200000,depth=8", "--board", "stm32vldiscovery"}, 1,
                     {"stm32vldiscovery has ", " bytes of flash for a scene", "--coarsen"});
   CHECK(folder.names() == Words{"bad.png", "keys.txt", "small.ppm"});
-}
-
-TEST_CASE("sim: a damaged baked scene -> status 1, and no picture is written") {
-  const TemporaryFolder folder;
-  const std::string baked = folder.path("a.oct");
-  REQUIRE(run_command({"bake", kSimScene, "-o", baked, "--quiet"}).status == 0);
-  std::string bytes = read_text(baked);
-  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
-  const std::string damaged = folder.write("b.oct", bytes);
-  check_sim_refused({damaged, "--shot", folder.path("b.png")}, 1, {"b.oct"});
-  CHECK(folder.names() == Words{"a.oct", "b.oct"});
 }
 
 TEST_CASE(

@@ -12,15 +12,35 @@
 
 namespace thimble::tests {
 
-/// The command with `words` is refused: that status, nothing but one sentence, which holds each of `named`.
-inline void check_refused(const std::vector<std::string>& words, int status,
-                          const std::vector<std::string>& named) {
-  const CommandResult result = run_command(words);
+using Words = std::vector<std::string>;
+
+inline Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+/// A line of these words, for messages.
+inline std::string line_of_words(const Words& words) {
   std::string line;
   for (const std::string& word : words) {
     line += word + " ";
   }
-  CAPTURE(line);
+  return line;
+}
+
+/// What the command with `words` does, which is to end well.
+inline CommandResult check_done(const Words& words) {
+  CommandResult result = run_command(words);
+  CAPTURE(line_of_words(words));
+  CAPTURE(result.describe());
+  REQUIRE(result.status == 0);
+  return result;
+}
+
+/// The command with `words` is refused: that status, nothing but one sentence, which holds each of `named`.
+inline void check_refused(const Words& words, int status, const Words& named) {
+  const CommandResult result = run_command(words);
+  CAPTURE(line_of_words(words));
   CAPTURE(result.describe());
   CHECK(result.status == status);
   CHECK(result.out.empty());
