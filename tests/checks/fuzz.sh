@@ -27,6 +27,11 @@ if [ -n "${THIMBLE_DATA:-}" ]; then
 else
   echo "THIMBLE_DATA is not set: starting without real files"
 fi
+# Those that come along are seeds, too.
+case $topic in
+  scene_text) cp -f "$(dirname "$0")"/../../tools/gallery/scenes/*.scene "$work/seeds" ;;
+  vox) cp -f "$(dirname "$0")"/../../tools/gallery/scenes/*.vox "$work/seeds" ;;
+esac
 chmod -R u+w "$work/seeds"
 if ! "$program" -max_total_time="$seconds" -rss_limit_mb=1024 -malloc_limit_mb=512 -timeout=10 -max_len=65536 \
   -artifact_prefix="$work/" -print_final_stats=1 "$work/corpus" "$work/seeds" >"$work/log" 2>&1; then

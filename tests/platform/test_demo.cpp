@@ -340,22 +340,6 @@ TEST_CASE("demo light: effects that are slow -> a fast frame, a lit one, and non
   CHECK(crcs_of(plain.out, "frame").size() == 3);
 }
 
-TEST_CASE("demo light: p on a lit picture -> sends what is shown") {
-  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
-  const Run run = run_demo(board, bytes_of(lit_scene().bytes), 5, {{2, "p"}}, true);
-  const std::string header = "P5\n128 64\n255\n";
-  const std::size_t start = run.out.find(header);
-  REQUIRE(start != std::string::npos);
-  REQUIRE(run.out.size() >= start + header.size() + 128 * 64);
-  const auto& shown = run.pictures[1].bytes;
-  int differ = 0;
-  for (std::size_t i = 0; i < 128 * 64; ++i) {
-    const int level = i % 2 == 0 ? shown[i / 2] >> 4 : shown[i / 2] & 15;
-    differ += static_cast<unsigned char>(run.out[start + header.size() + i]) == level * 17 ? 0 : 1;
-  }
-  CHECK(differ == 0);
-}
-
 TEST_CASE("demo view: any buttons for any time -> a camera, and never one in something solid") {
   const BakedScene& scene = demo_scene().scene;
   for (const apps::Orbit& orbit : {apps::orbit_of(scene), apps::orbit_of(scene.tree().bounds())}) {

@@ -198,25 +198,3 @@ TEST_CASE(
   CHECK(json_of(folder.path("again.json")).at("state_crc32") == json_of(stats).at("state_crc32"));
   CHECK(json_of(stats).at("particles").get<int>() > 50);
 }
-
-TEST_CASE("particles in a terminal: a signal -> the terminal is given back") {
-  Pty pty(80, 27, [] {
-    ::setenv("TERM", "xterm", 1);
-    ::execl(THIMBLE_COMMAND_PATH, "thimble", "particles", "--display", "terminal",
-            static_cast<char*>(nullptr));
-    return 127;
-  });
-  REQUIRE(pty.wait_for("Total Colliders: 693"));
-  pty.send_signal(SIGTERM);
-  CHECK(pty.wait_for_end());
-  CHECK(pty.end_signal() == SIGTERM);
-  CHECK(pty.output().find("\x1b[?1049l") != std::string::npos);
-}
-
-TEST_CASE("particles: a window or a terminal that is not there -> status 1 and a sentence") {
-  ::unsetenv("DISPLAY");
-  const CommandResult window = run_command({"particles", "--display", "window"});
-  CHECK(window.status == 1);
-  CHECK(is_one_sentence(window.err));
-  CHECK(window.err.find("DISPLAY is not set") != std::string::npos);
-}

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <random>
 #include <string>
 #include <thread>
@@ -16,6 +14,7 @@
 
 #include "readers/file_bytes.h"
 #include "support/file_bytes.h"
+#include "support/run_command.h"
 
 using namespace thimble::tools;
 
@@ -23,30 +22,12 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A folder of its own, removed with all in it.
-class TemporaryFolder {
+/// A folder for files of bytes.
+class BytesFolder : public thimble::tests::TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "thimble_test_XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
   std::string write(const std::string& name, const Bytes& bytes) const {
-    std::ofstream file(path_ / name, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    REQUIRE(file.good());
-    return path(name);
+    return TemporaryFolder::write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 Bytes noise(std::size_t count, std::uint32_t seed) {
@@ -120,7 +101,7 @@ Bytes loaded_from_pipe(const Bytes& bytes) {
 }  // namespace
 
 TEST_CASE("load_file: plain files of any length -> their bytes") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   for (const std::size_t size : {1u, 2u, 65535u, 65536u, 65537u, 131072u, 300000u}) {
     CAPTURE(size);
     const Bytes bytes = noise(size, 1);
@@ -129,7 +110,7 @@ TEST_CASE("load_file: plain files of any length -> their bytes") {
 }
 
 TEST_CASE("load_file: gzip by name or only by signature -> what it holds") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   for (const std::size_t size : {1u, 65536u, 300000u}) {
     CAPTURE(size);
     const Bytes bytes = noise(size, 2);
@@ -141,7 +122,7 @@ TEST_CASE("load_file: gzip by name or only by signature -> what it holds") {
 }
 
 TEST_CASE("load_file: gzip of several members and zero padding -> all members in order") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   const Bytes a = noise(70000, 3), b = noise(5, 4);
   const Bytes none;
   CHECK(loaded(folder.write("two.gz", gzip(a) + gzip(b))) == a + b);
@@ -157,7 +138,7 @@ TEST_CASE("load_file: a pipe, plain or gzip -> read to its end") {
 }
 
 TEST_CASE("load_file: exactly the limit -> read, one byte more -> refused with the limit") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   for (const std::size_t size : {1u, 1000u, 65536u, 200000u}) {
     CAPTURE(size);
     const Bytes bytes = noise(size + 1, 6);
@@ -171,21 +152,21 @@ TEST_CASE("load_file: exactly the limit -> read, one byte more -> refused with t
 }
 
 TEST_CASE("load_file: a gzip bomb -> refused at the limit, without the memory it asks for") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   const Bytes bomb = gzip(Bytes(32u << 20, 0));
   REQUIRE(bomb.size() < 64 * 1024);
   CHECK(contains(refusal(folder.write("bomb.gz", bomb), 1 << 20), "limit of 1048576 bytes"));
 }
 
 TEST_CASE("load_file: a sparse file over the limit -> refused before it is read") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   const std::string path = folder.write("sparse", {'a'});
   REQUIRE(::truncate(path.c_str(), off_t{1} << 40) == 0);
   CHECK(contains(refusal(path), "limit of 4294967296 bytes"));
 }
 
 TEST_CASE("load_file: what cannot be read -> a sentence with the reason") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   CHECK(refusal(folder.path("missing")) == "cannot be opened: No such file or directory");
   CHECK(refusal(folder.path("")) == "is a directory, not a file");
   CHECK(refusal(folder.write("empty", {})) == "is empty");
@@ -208,7 +189,7 @@ TEST_CASE("load_file: what cannot be read -> a sentence with the reason") {
 }
 
 TEST_CASE("load_file: gzip cut off anywhere -> refused") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   const Bytes whole = gzip(noise(500, 8));
   for (std::size_t length = 2; length < whole.size(); ++length) {
     CAPTURE(length);
@@ -219,7 +200,7 @@ TEST_CASE("load_file: gzip cut off anywhere -> refused") {
 }
 
 TEST_CASE("load_file: gzip with any one bit flipped -> refused, or the same bytes where it was decoration") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   const Bytes bytes = noise(40, 9);
   Bytes damaged = gzip(bytes);
   int refused = 0;
@@ -240,7 +221,7 @@ TEST_CASE("load_file: gzip with any one bit flipped -> refused, or the same byte
 }
 
 TEST_CASE("load_file: something else behind gzip data -> refused with the offset") {
-  const TemporaryFolder folder;
+  const BytesFolder folder;
   const Bytes member = gzip(noise(50, 10));
   const std::string sentence = refusal(folder.write("tail.gz", member + Bytes{0, 0, 'x'}));
   CHECK(contains(sentence, "byte offset " + std::to_string(member.size() + 2)));

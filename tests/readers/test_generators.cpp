@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <zlib.h>
 
 #include <array>
 #include <cmath>
@@ -13,41 +14,25 @@ namespace {
 
 using namespace thimble::tools;
 
-/// CRC-32 as zlib computes it, of x, y, z as two bytes each, low byte first, and the material.
-class StreamCrc {
- public:
-  void add(int x, int y, int z, std::uint8_t material) {
-    for (const int component : {x, y, z}) {
-      byte(static_cast<std::uint8_t>(component));
-      byte(static_cast<std::uint8_t>(component >> 8));
-    }
-    byte(material);
-  }
-  std::uint32_t value() const { return ~state_; }
-
- private:
-  void byte(std::uint8_t value) {
-    state_ ^= value;
-    for (int bit = 0; bit < 8; ++bit) {
-      state_ = state_ >> 1 ^ (0xEDB88320U & (0U - (state_ & 1U)));
-    }
-  }
-  std::uint32_t state_ = 0xFFFFFFFFU;
-};
-
 struct Digest {
   std::uint64_t calls = 0;
   std::uint32_t crc = 0;
 };
 
+/// The CRC-32 is of x, y, z as two bytes each, low byte first, and the material.
 Digest digest(const std::string& text) {
   Digest result;
-  StreamCrc crc;
   generate(*parse_generator(text), [&](int x, int y, int z, std::uint8_t material) {
     ++result.calls;
-    crc.add(x, y, z, material);
+    const std::array<std::uint8_t, 7> bytes{static_cast<std::uint8_t>(x),
+                                            static_cast<std::uint8_t>(x >> 8),
+                                            static_cast<std::uint8_t>(y),
+                                            static_cast<std::uint8_t>(y >> 8),
+                                            static_cast<std::uint8_t>(z),
+                                            static_cast<std::uint8_t>(z >> 8),
+                                            material};
+    result.crc = static_cast<std::uint32_t>(crc32(result.crc, bytes.data(), bytes.size()));
   });
-  result.crc = crc.value();
   return result;
 }
 

@@ -340,19 +340,3 @@ TEST_CASE("kvx: slabs -> voxels with z up and six-bit colours") {
   file[4] = '\0';
   CHECK(contains(error_of(read_kvx, file), "a side of 0"));
 }
-
-TEST_CASE("data: real grids -> as many voxels as they have") {
-  const std::filesystem::path data = data_folder();
-  if (data.empty()) {
-    return;
-  }
-  CHECK(outcome_of(read_binvox, contents_of(data / "map/chair.binvox")) > 100);
-  CHECK(outcome_of(read_npy, contents_of(data / "terrain/jacksboro_fault_dem.npz")) > 403 * 344);
-  int schematics = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(data / "map/mts")) {
-    INFO(entry.path().filename().string());
-    CHECK(outcome_of(read_mts, contents_of(entry.path())) > 0);
-    ++schematics;
-  }
-  CHECK(schematics == 24);
-}

@@ -328,30 +328,3 @@ TEST_CASE("gltf: what leaves its place, is not there or comes round again -> a s
   }
   CHECK(outcome_of(read_alone, gltf_json(kTriangleData, many + "]}" + rest + "]")) == 450000);
 }
-
-TEST_CASE("data: real scans and meshes -> as many points and triangles as they have") {
-  const std::filesystem::path data = data_folder();
-  if (data.empty()) {
-    return;
-  }
-  CHECK(outcome_of(read_pcd, contents_of(data / "cloud/pcl_bun4.pcd")) == 361);
-  CHECK(outcome_of(read_pcd, contents_of(data / "cloud/pcl_chef.pcd")) == 5092);
-  CHECK(outcome_of(read_pcd, contents_of(data / "cloud/pcl_milk.pcd")) == 13704);
-  CHECK(outcome_of(read_pcd, contents_of(data / "cloud/pcl_rops_cloud.pcd")) == 32087);
-  CHECK(outcome_of(read_las, contents_of(data / "cloud/pdal_simple.las")) == 1065);
-  CHECK(outcome_of(read_las, contents_of(data / "cloud/pdal_1.2-with-color.las")) == 1065);
-  CHECK(cloud_has_color(read_las, contents_of(data / "cloud/pdal_1.2-with-color.las")));
-  CHECK(outcome_of(read_las, contents_of(data / "cloud/urban.las")) == 13511);
-  CHECK(contains(error_of(read_las, contents_of(data / "cloud/pdal_simple.laz")), "LAZ"));
-  CHECK(read_mesh(read_stl, contents_of(data / "mesh/trimesh_20mm-xyz-cube.stl")).triangles.size() == 260);
-  CHECK(read_mesh(read_stl, contents_of(data / "mesh/assimp_Spider_ascii.stl")).triangles.size() == 1368);
-  CHECK(read_mesh(read_stl, contents_of(data / "hostile/assimp_triangle_with_empty_solid.stl"))
-            .triangles.size() == 1);
-  const TriangleMesh duck = read_mesh(read_alone, contents_of(data / "mesh/trimesh_Duck.glb"));
-  CHECK(duck.triangles.size() == 4212);
-  CHECK(duck.colors.size() == duck.positions.size());  // from its picture
-  CHECK(read_mesh(read_alone, contents_of(data / "mesh/trimesh_monkey.glb")).triangles.size() == 968);
-  CHECK(read_mesh(read_alone, contents_of(data / "mesh/trimesh_nested.glb")).triangles.size() == 36);
-  CHECK(outcome_of(read_alone, contents_of(data / "hostile/assimp_RecursiveNodes.gltf")) == -1);
-  CHECK(outcome_of(read_alone, contents_of(data / "hostile/assimp_AllIndicesOutOfRange.gltf")) == -1);
-}

@@ -5,7 +5,6 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <random>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -17,7 +16,6 @@
 #include "readers/scene_text.h"
 #include "scene/scene_source.h"
 #include "scene/text_scene.h"
-#include "support/counts.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
 
@@ -27,8 +25,6 @@ using namespace thimble;
 using namespace thimble::tools;
 using tests::TemporaryFolder;
 using tools::test::contains;
-
-const int kRounds = thimble::tests::many_or_few(60000, 4000);
 
 std::shared_ptr<const SceneText> parse(const std::string& text) {
   return std::get<std::shared_ptr<const SceneText>>(read_scene_text(SharedBytes::own(text)));
@@ -305,46 +301,6 @@ TEST_CASE("scene text: one more than each limit -> refused by its number; the li
   text.resize(kSceneTextBytes, 'x');
   CHECK(parse(text)->parts.size() == 1);
   CHECK(contains(error_of(text + "x"), "the limit of a .scene file is 1,048,576"));
-}
-
-TEST_CASE("scene text: random changes of a good file -> a scene or an error with a place") {
-  const std::string good =
-      "depth 6\ncamera eye 8 -30 40 target 32,32,12 fov 45\nsun toward -5 -9 16 color 255 240 220\nsky "
-      "zenith 1 2 "
-      "3\nwater level 3 from 1 1 to 9 9\nmaterial a glass index 1.5 density 0.1\nbox a from 0 0 0 to 9 9 "
-      "2\nball a "
-      "at 3 3 3 radius 2\nmodel \"x y\" at 1 2 3 turn z 1 replace 3 a\neffects off sky\nfog density 0.1\n";
-  const std::uint32_t seed = 7;
-  CAPTURE(seed);
-  std::mt19937 random(seed);
-  int read = 0;
-  for (int round = 0; round < kRounds; ++round) {
-    std::string text = good;
-    for (unsigned change = 0; change <= random() % 3; ++change) {
-      const std::size_t at = random() % text.size();
-      switch (random() % 4) {
-        case 0:
-          text[at] = static_cast<char>(random());
-          break;
-        case 1:
-          text.erase(at, 1 + random() % 9);
-          break;
-        case 2:
-          text.insert(at, good.substr(random() % good.size(), random() % 20));
-          break;
-        default:
-          text[at] = "0 9-.,#\"\n"[random() % 9];
-      }
-      if (text.empty()) {
-        text = "x";
-      }
-    }
-    const std::string error = error_of(text);
-    read += error.empty() ? 1 : 0;
-    CAPTURE(text);
-    REQUIRE((error.empty() || error.starts_with("line ")));
-  }
-  CHECK(read > kRounds / 100);
 }
 
 TEST_CASE(

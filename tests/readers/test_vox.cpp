@@ -774,7 +774,8 @@ bool reads(const Bytes& bytes) {
 
 }  // namespace
 
-TEST_CASE("vox: a file cut off at each length -> refused, never more than that") {
+TEST_CASE(
+    "vox: a file cut off at each length -> refused; with any bit changed -> refused or read, never more") {
   const Bytes whole = sampler();
   REQUIRE(reads(whole));
   for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -786,33 +787,11 @@ TEST_CASE("vox: a file cut off at each length -> refused, never more than that")
     CAPTURE(length);
     reads(file(Bytes(whole.begin() + 20, whole.begin() + static_cast<std::ptrdiff_t>(length))));
   }
-}
-
-TEST_CASE("vox: a file with bytes changed -> refused or read, never more than that") {
-  const std::uint32_t seed = 99;
-  CAPTURE(seed);
-  std::mt19937 random(seed);
-  const Bytes whole = sampler();
   for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
     Bytes damaged = whole;
     damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
     reads(damaged);
   }
-  int read_count = 0;
-  const int rounds = 20000;
-  for (int round = 0; round < rounds; ++round) {
-    Bytes damaged = whole;
-    for (std::uint32_t change = static_cast<std::uint32_t>(random() % 4); change < 4; ++change) {
-      const std::uint32_t what = static_cast<std::uint32_t>(random());
-      // Small numbers and all ones hit more checks than noise does.
-      damaged[random() % damaged.size()] = static_cast<std::uint8_t>(what % 3 == 0   ? what >> 8 & 7
-                                                                     : what % 3 == 1 ? 0xff - (what >> 8 & 1)
-                                                                                     : what >> 8);
-    }
-    read_count += reads(damaged) ? 1 : 0;
-  }
-  CHECK(read_count > 0);
-  CHECK(read_count < rounds);
 }
 
 namespace {
@@ -895,59 +874,4 @@ TEST_CASE("vox: real files -> the voxels that another program finds in them") {
     CHECK(count == real.voxels);
     CHECK(crc32(0, stream.bytes.data(), static_cast<uInt>(stream.bytes.size())) == real.crc32);
   }
-}
-
-TEST_CASE("vox: real palettes and materials -> as the files say, the default one as MagicaVoxel writes it") {
-  const std::string folder = data_folder();
-  if (folder.empty()) {
-    return;
-  }
-  const auto fallback = read_vox(share(load_file(folder + "vox/ephtracy/chr_cat.vox")));  // has no RGBA
-  const auto written = read_vox(share(load_file(folder + "vox/dot_vox/metal-material.vox")));
-  for (std::size_t c = 1; c < 256; ++c) {
-    CAPTURE(c);
-    CHECK(fallback->palette()[c].color == written->palette()[c].color);
-  }
-  const Palette& metal = written->palette();
-  CHECK(metal[79].kind == SurfaceKind::kMetal);
-  CHECK(metal[85].weight == 0.526316);
-  CHECK(metal[85].roughness == 0.252632);
-  CHECK(metal[249].kind == SurfaceKind::kGlass);
-  CHECK(metal[249].ior == doctest::Approx(1.547368));
-  CHECK(metal[249].attenuation == 0.021053);
-
-  const auto bevy = read_vox(share(load_file(folder + "vox/bevy/test.vox")));
-  CHECK(bevy->palette()[1].color == Rgb{255, 255, 255});
-  CHECK(bevy->palette()[2].color == Rgb{0xdc, 0x9f, 0xb4});
-  CHECK(bevy->palette()[181].kind == SurfaceKind::kGlass);
-  CHECK(bevy->palette()[181].transparency == 0.98);
-  CHECK(bevy->palette()[232].kind == SurfaceKind::kEmit);
-  CHECK(bevy->palette()[232].emission == 0.4);
-  CHECK(bevy->palette()[238].kind == SurfaceKind::kMedia);
-
-  const auto deer = read_vox(share(load_file(folder + "vox/ephtracy/deer.vox")));  // MATT
-  CHECK(deer->palette()[1].roughness == doctest::Approx(0.1));
-  CHECK(deer->palette()[1].specular == 0.5);
-}
-
-TEST_CASE("vox: hostile files -> a sentence") {
-  const std::string folder = data_folder();
-  if (folder.empty()) {
-    return;
-  }
-  const auto sentence = [&](const char* name) -> std::string {
-    try {
-      read_vox(share(load_file(folder + "hostile/" + name)));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  const std::string overrun = sentence("vox_xyzi_count_overrun.vox");
-  CAPTURE(overrun);
-  CHECK(overrun.find("XYZI chunk at byte offset 44: 2147483647 voxels") == 0);
-  const std::string outside = sentence("vox_ogt59_voxel_outside_size.vox");
-  CAPTURE(outside);
-  CHECK(outside.find("XYZI chunk at byte offset 44: the voxel at byte offset ") == 0);
-  CHECK(sentence("dot_vox_not_a.vox").find("not a MagicaVoxel file") != std::string::npos);
 }
