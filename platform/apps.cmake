@@ -2,7 +2,8 @@
 # Applications and what they share; the frames and cases that the tests share with them.
 function(thimble_list_app_sources result)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/apps/*.cpp
-    ${PROJECT_SOURCE_DIR}/tests/portable/*.cpp ${PROJECT_SOURCE_DIR}/tests/golden/scenes.cpp)
+    ${PROJECT_SOURCE_DIR}/tests/boards/apps/*.cpp ${PROJECT_SOURCE_DIR}/tests/portable/*.cpp
+    ${PROJECT_SOURCE_DIR}/tests/golden/scenes.cpp)
   # Not what no image asks for: the tests' cases and the larger applications take longer to compile than the demonstration.
   foreach(app bench dig water)
     if(NOT app IN_LIST THIMBLE_APP)
@@ -14,7 +15,7 @@ function(thimble_list_app_sources result)
   include(${PROJECT_SOURCE_DIR}/tests/portable/golden_trees.cmake)
   thimble_golden_trees()
   if(NOT cases)
-    list(FILTER sources EXCLUDE REGEX "/tests/(portable|golden)/")
+    list(FILTER sources EXCLUDE REGEX "/tests/(portable|golden)/|/boards/apps/cases[.]cpp$")
   endif()
   set(${result} ${sources} PARENT_SCOPE)
 endfunction()

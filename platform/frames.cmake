@@ -54,7 +54,7 @@ function(thimble_choose_frames)
     target_compile_definitions(thimble_apps PRIVATE THIMBLE_MEASURED)
   endif()
   if(NOT THIMBLE_CASE_STEP EQUAL 1)
-    set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/cases.cpp PROPERTIES
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/tests/boards/apps/cases.cpp PROPERTIES
       COMPILE_DEFINITIONS THIMBLE_CASE_STEP=${THIMBLE_CASE_STEP})
   endif()
 endfunction()

@@ -65,7 +65,7 @@ case $board in lm3s6965evb | microbit | mps2-an500 | netduinoplus2 | sifive_e) d
 # The applications that there are; faults is judged by itself below.
 apps=
 for app in ${THIMBLE_TEST_APPS:-$default}; do
-  [ -f "platform/apps/$app.cpp" ] && apps="$apps $app"
+  { [ -f "platform/apps/$app.cpp" ] || grep -q "^int $app()" tests/boards/apps/cases.cpp; } && apps="$apps $app"
 done
 list=faults
 for app in $apps; do

@@ -8,7 +8,7 @@
 #   tools, platform  no header of src
 #   tools            files and pictures (output, readers), then scene and particles, then viewer, web and instruments, then
 #                    commands: a folder sees itself and those before it
-#   platform         nothing of the tests but "portable/..." in the applications that run them on boards
+#   platform         nothing of the tests
 #   tests/portable   what a board has: <stdint.h>, <stddef.h>, "thimble/..." and themselves; so do the golden scenes
 #   tests/reference  nothing of the product: neither the core's nor the tools' headers
 set -eu
@@ -105,12 +105,8 @@ for room in output readers scene particles instruments viewer web; do
 done
 complain "tools and platform see public headers only, never src" \
   "$(includes tools platform | grep -E '["/]src/' || true)"
-tests_on_boards='^platform/apps/(selftest|golden|formats|lit|worlds|bricks|map_light|cases)\.(cpp|h):'
-complain "platform sees no test; only the applications selftest, golden, formats, lit, worlds, bricks and map_light run those of tests/portable" \
-  "$({
-    includes platform | grep -E '["/](golden|portable|support|reference|tests)/' | grep -vE "$tests_on_boards"
-    includes platform | grep -E "$tests_on_boards" | grep -E '["/](golden|support|reference|tests)/'
-  } || true)"
+complain "platform sees no test; the applications that do stand in tests/boards/apps" \
+  "$(includes platform | grep -E '["/](golden|portable|support|reference|tests)/' || true)"
 board='#[[:space:]]*include[[:space:]]*(<stdint\.h>|<stddef\.h>|"(thimble|portable|golden)/[a-z0-9_/]+\.(h|inc)")'
 complain "the cases that run on boards include more than <stdint.h>, <stddef.h>, \"thimble/...\" and one another" \
   "$(includes tests/portable tests/golden | grep -v '^tests/golden/main\.cpp:' | grep -vE "$board" || true)"

@@ -1,5 +1,5 @@
 // The cases that run everywhere (tests/portable), the golden frames among them, by the application that runs
-// them on a board (platform/apps/selftest.cpp), over a port that is a block of bytes and standard output.
+// them on a board (tests/boards/apps/cases.cpp), over a port that is a block of bytes and standard output.
 //
 //   thimble_golden_tests                 run all; exit status 1 when anything differs
 //   thimble_golden_tests --arena BYTES   the same with that much memory, as a small board has

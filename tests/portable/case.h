@@ -3,7 +3,7 @@
 ///
 /// A case is a function that is handed a `Check`: the memory it may use, a few objects that are too large for
 /// a small stack, and functions that compare. Everything here is freestanding: no heap, no static variables,
-/// no library. platform/apps/selftest.cpp runs the cases.
+/// no library. tests/boards/apps/cases.cpp runs them.
 ///
 /// Every value that is compared goes into a CRC-32, as 8 bytes whatever its type, so that two machines with
 /// one CRC have not only passed the same cases but computed the same numbers. So a case compares nothing

@@ -1,7 +1,18 @@
-#include "apps/cases.h"
-
+// The applications that run cases (tests/portable) on the target: the same lists and the same numbers on every board and
+// on the host. They report over the UART: a line a topic, a line for each case that failed, the names of those whose
+// memory this board does not have, and
+//
+//     result crc XXXXXXXX of N cases run
+//     result crc XXXXXXXX of the N cases that every board runs
+//     N skipped
+//     N passed, N failed
+//
+// Several, because all together fit into no small chip's flash.
+#include "apps/apps.h"
 #include "apps/text.h"
 #include "port.h"
+#include "portable/groups.h"
+#include "portable/result_crc.h"
 #include "portable/runner.h"
 
 namespace thimble::apps {
@@ -168,10 +179,10 @@ int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
   return failed == 0 ? 0 : 1;
 }
 
-}  // namespace
-
+// The CRC-32s are those of result_crc.h: of all cases, which is compared where none was skipped, and of those that every
+// board runs; a board has `common_arena_bytes` for a case or more. Returns the exit status.
 int run_cases(const char* title, Span<const Group* const> groups, uint32_t all_crc32, uint32_t common_crc32,
-              uint32_t common_arena_bytes) {
+              uint32_t common_arena_bytes = portable::kCommonArenaBytes) {
   put(title);
   put(" on ");
   put(port::facts().name);
@@ -188,6 +199,46 @@ int run_cases(const char* title, Span<const Group* const> groups, uint32_t all_c
     put_group(*runner, *group);
   }
   return put_results(*runner, groups, all_crc32, common_crc32);
+}
+
+}  // namespace
+
+int selftest() {
+  return run_cases("selftest", portable::kCoreGroups, portable::kCoreCrc32, portable::kCoreCrc32);
+}
+
+// From compact trees in flash and, where the RAM holds them, from octrees and dense grids that are built here.
+int golden() {
+  return run_cases("golden", portable::kGoldenGroups, portable::kGoldenCrc32, portable::kCommonGoldenCrc32);
+}
+
+// In an image that has them: PANEL_FORMATS=0x3fe0 of build.sh.
+int formats() {
+  return run_cases("formats", portable::kPanelGroups, portable::kPanelCrc32, portable::kPanelCrc32);
+}
+
+int lit() {
+  return run_cases("lit", portable::kLitGroups, portable::kLitCrc32, portable::kLitCrc32,
+                   portable::kLitArenaBytes);
+}
+
+int worlds() {
+  return run_cases("worlds", portable::kWorldGroups, portable::kWorldCrc32, portable::kWorldCrc32);
+}
+
+int bricks() {
+#ifdef THIMBLE_DEEP_WORLDS
+  constexpr uint32_t kAll = portable::kBrickCrc32;
+#else
+  constexpr uint32_t kAll = portable::kCommonBrickCrc32;
+#endif
+  return run_cases("bricks", portable::kBrickGroups, kAll, portable::kCommonBrickCrc32,
+                   portable::kLitArenaBytes);
+}
+
+int map_light() {
+  return run_cases("map_light", portable::kMapLightGroups, portable::kMapLightCrc32, portable::kMapLightCrc32,
+                   portable::kLitArenaBytes);
 }
 
 }  // namespace thimble::apps
