@@ -10,9 +10,11 @@ const CASES = {selftest: 'kCoreCrc32', golden: 'kCommonGoldenCrc32', lit: 'kLitC
   worlds: 'kWorldCrc32', bricks: 'kCommonBrickCrc32', map_light: 'kMapLightCrc32'};
 const FORMATS_BYTES = 4608;  // kCommonArenaBytes (tests/portable/groups.h): 8 KiB less a stack that draws are not enough
 
+// All cases on the board with the least RAM and on the one with the most: of a board they know only that.
 // `run(board, app)`: the status, the output and the RAM used of an application that runs until it ends.
 async function judgeCases(boards, run) {
-  for (const board of boards) {
+  const rooms = [...boards].sort((a, b) => (a.ram - a.stack) - (b.ram - b.stack));
+  for (const board of [rooms[0], rooms[rooms.length - 1]]) {
     for (const [app, crc] of Object.entries(CASES)) {
       if (app === 'formats' && board.ram - board.stack < FORMATS_BYTES) continue;
       await test(`${app} on ${board.name}`, async () => {
