@@ -12,6 +12,7 @@
 #include "thimble/picture/camera.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
+#include "thimble/plane/particles.h"
 #include "thimble/trace/ray.h"
 #include "thimble/trace/secondary_ray.h"
 #include "thimble/tree/brick_map.h"
@@ -21,6 +22,24 @@
 #include "thimble/tree/shared_tree.h"
 
 namespace thimble::tests {
+
+/// A world of balls whose numbers `number(low, high)` gives, sound or not.
+template <class Number>
+ParticleConfig particles_of(OddValues& odd, const Number& number) {
+  ParticleConfig config;
+  config.width = number(0, 110);
+  config.height = number(0, 110);
+  config.capacity = static_cast<std::uint32_t>(number(0, 12));
+  config.least_diameter = number(1, 8);
+  config.most_diameter = number(8, kMaxBallDiameter);
+  config.restitution_q16 = static_cast<std::uint32_t>(number(0, 65536));
+  config.gravity_q16 = {number(-kMaxAccelerationQ16, kMaxAccelerationQ16),
+                        number(-kMaxAccelerationQ16, kMaxAccelerationQ16)};
+  config.seed = odd.any<std::uint32_t>();
+  config.substeps_log2 = number(0, 4);
+  config.subpixel_bits = number(1, 15);
+  return config;
+}
 
 /// One world in each of the structures; the compact and shared bytes may be damaged afterwards.
 struct OddWorld {

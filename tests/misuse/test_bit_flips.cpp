@@ -1,8 +1,8 @@
 // Every bit of baked scenes and of a shared tree, one at a time, with the checksums as they were and put right:
 // refused, or read, traced and drawn by every renderer inside the bytes and to an end.
 //
-// A run takes every flip through the core, and each fifth through the host's renderers and light; with
-// THIMBLE_FLIPS=all each takes every one.
+// `make test-all` takes every flip through the core and each fifth through the host's renderers and light, `make test`
+// each eleventh of those; with THIMBLE_FLIPS=all each takes every one.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 
 #include "misuse/odd_values.h"
 #include "support/baked_damage.h"
+#include "support/counts.h"
 #include "support/run_command.h"
 #include "support/scene_under_test.h"
 #include "support/small_scene.h"
@@ -33,6 +34,12 @@ namespace {
 constexpr int kFlipLevel = 3;
 // Odd, so that neither half of the flips, repaired or not, is left out.
 constexpr std::size_t kFewLit = 5;
+// A sanitized run, which sees what is read outside, takes every one.
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::size_t kFewFlips = 1;
+#else
+constexpr std::size_t kFewFlips = 11;
+#endif
 constexpr std::size_t kFewCommands = 211;
 
 bool all_flips() {
@@ -237,26 +244,27 @@ void flip_each(ConstBytes sound, std::size_t step, void (*repair)(Bytes), const 
 void flip_scene(ConstBytes sound) {
   int drawn = 0;
   int told = 0;
-  flip_each(sound, 1, repair_baked_checksums, [&](ConstBytes bytes, bool is_repaired, std::size_t number) {
-    std::uint32_t place = 0;
-    const char* const fault = BakedScene::validate(bytes, &place);
-    if (!is_repaired) {
-      REQUIRE(fault != nullptr);
-    }
-    told += fault != nullptr ? 1 : 0;
-    const char* const broken = use_damaged(bytes, {3, -5, 7});
-    REQUIRE(std::string(broken == nullptr ? "" : broken) == "");
-    BakedScene scene;
-    if (BakedScene::open(bytes, &scene) != Status::kOk) {
-      return;
-    }
-    (void)BakedLighting::validate(scene.section(SectionKind::kLighting), scene.tree().level());
-    draw_by_core(scene);
-    if (all_flips() || number % kFewLit == 0) {
-      draw_wide_and_lit(scene);
-    }
-    ++drawn;
-  });
+  flip_each(sound, many_or_few<std::size_t>(1, kFewFlips), repair_baked_checksums,
+            [&](ConstBytes bytes, bool is_repaired, std::size_t number) {
+              std::uint32_t place = 0;
+              const char* const fault = BakedScene::validate(bytes, &place);
+              if (!is_repaired) {
+                REQUIRE(fault != nullptr);
+              }
+              told += fault != nullptr ? 1 : 0;
+              const char* const broken = use_damaged(bytes, {3, -5, 7});
+              REQUIRE(std::string(broken == nullptr ? "" : broken) == "");
+              BakedScene scene;
+              if (BakedScene::open(bytes, &scene) != Status::kOk) {
+                return;
+              }
+              (void)BakedLighting::validate(scene.section(SectionKind::kLighting), scene.tree().level());
+              draw_by_core(scene);
+              if (all_flips() || number % kFewLit == 0) {
+                draw_wide_and_lit(scene);
+              }
+              ++drawn;
+            });
   CHECK(drawn > told / 2);
 }
 

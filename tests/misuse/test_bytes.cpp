@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "misuse/odd_values.h"
+#include "misuse/odd_worlds.h"
 #include "thimble/picture/render.h"
 #include "thimble/plane/bitfield.h"
 #include "thimble/plane/particles.h"
@@ -44,17 +45,7 @@ TEST_CASE(
     const auto number = [&odd](std::int32_t low, std::int32_t high) {
       return odd.one_in(12) ? odd.any<std::int32_t>() : odd.between_32(low, high);
     };
-    ParticleConfig config;
-    config.width = number(0, 110);
-    config.height = number(0, 110);
-    config.capacity = static_cast<std::uint32_t>(number(0, 12));
-    config.least_diameter = number(1, 8);
-    config.most_diameter = number(8, kMaxBallDiameter);
-    config.restitution_q16 = static_cast<std::uint32_t>(number(0, 65536));
-    config.gravity_q16 = {number(-kMaxAccelerationQ16, kMaxAccelerationQ16),
-                          number(-kMaxAccelerationQ16, kMaxAccelerationQ16)};
-    config.substeps_log2 = number(0, 4);
-    config.subpixel_bits = number(1, 15);
+    const ParticleConfig config = particles_of(odd, number);
     hold_to(particles_bytes(config), [&config](Bytes bytes) {
       ParticleWorld world;
       return ParticleWorld::make(config, bytes, &world);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "misuse/odd_values.h"
+#include "misuse/odd_worlds.h"
 #include "thimble/plane/bitfield.h"
 #include "thimble/plane/particles.h"
 
@@ -168,18 +169,7 @@ TEST_CASE("misuse: particle worlds of any numbers -> refused or done, inside the
     const auto number = [&](std::int32_t low, std::int32_t high) {
       return sane || odd.one_in(2) ? odd.between_32(low, high) : odd.any<std::int32_t>();
     };
-    ParticleConfig config;
-    config.width = number(0, 110);
-    config.height = number(0, 110);
-    config.capacity = static_cast<std::uint32_t>(number(0, 12));
-    config.least_diameter = number(1, 8);
-    config.most_diameter = number(8, kMaxBallDiameter);
-    config.restitution_q16 = static_cast<std::uint32_t>(number(0, 65536));
-    config.gravity_q16 = {number(-kMaxAccelerationQ16, kMaxAccelerationQ16),
-                          number(-kMaxAccelerationQ16, kMaxAccelerationQ16)};
-    config.seed = odd.any<std::uint32_t>();
-    config.substeps_log2 = number(0, 4);
-    config.subpixel_bits = number(1, 15);
+    const ParticleConfig config = particles_of(odd, number);
     ExactBytes bytes(odd_size(odd, particles_bytes(config)));
     ParticleWorld world;
     const Status status = ParticleWorld::make(config, bytes.bytes(), &world);

@@ -12,18 +12,10 @@
 #include <vector>
 
 #include "reference/reference.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/trace/ray.h"
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define THIMBLE_UNDER_SANITIZER 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__)
-#define THIMBLE_UNDER_SANITIZER 1
-#endif
 
 namespace {
 
@@ -36,13 +28,7 @@ std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
 }
 
 std::int64_t default_rays() {
-#if defined(THIMBLE_UNDER_SANITIZER)
-  return 200000;
-#elif !defined(__OPTIMIZE__)
-  return 100000;
-#else
-  return 10000000;
-#endif
+  return many_or_few(10000000, 200000);
 }
 
 // Solid aligned blocks of several sizes among single voxels: trees with leaves on many levels.
