@@ -156,6 +156,9 @@ void run(const SceneOptions& options) {
 
   row("scene", printable(options.arguments.scene));
   row("kind", source->kind());
+  for (const std::string& note : source->notes()) {
+    row("note", note);
+  }
   row("depth", std::to_string(built.level()) + " (a world of " + std::to_string(1 << built.level()) +
                    " voxels a side)");
   if (source->points() != 0) {

@@ -1,6 +1,7 @@
 #include "commands/scene_options.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "commands/arguments.h"
 #include "output/progress.h"
@@ -95,8 +96,15 @@ void add_board(CLI::App& app, const platform::BoardFacts** board, const std::str
 }
 
 std::unique_ptr<SceneSource> SceneOptions::open() const {
-  ProgressBar bar("reading", quiet);
-  return open_scene(arguments, [&](double done) { bar.update(done); });
+  std::unique_ptr<SceneSource> scene;
+  {
+    ProgressBar bar("reading", quiet);
+    scene = open_scene(arguments, [&](double done) { bar.update(done); });
+  }
+  for (const std::string& note : quiet ? Notes() : scene->notes()) {
+    std::fprintf(stderr, "note: %s\n", note.c_str());
+  }
+  return scene;
 }
 
 BuiltScene SceneOptions::build(const SceneSource& source, const DrawingBytes& drawing) const {

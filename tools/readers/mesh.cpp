@@ -10,7 +10,7 @@ namespace {
 
 class VertexCloud final : public PointCloud {
  public:
-  explicit VertexCloud(TriangleMesh mesh) : mesh_(std::move(mesh)) {}
+  explicit VertexCloud(TriangleMesh mesh) : mesh_(std::move(mesh)) { notes = std::move(mesh_.notes); }
 
   void for_each(const Visit& visit) const override {
     CloudPoint point;
@@ -44,6 +44,20 @@ void TriangleStrip::add(std::uint32_t corner) {
   older_ = last_;
   last_ = corner;
   ++corners_;
+}
+
+Notes notes_of(const Source& source) {
+  if (const auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
+    return (*model)->notes;
+  }
+  if (const auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
+    return (*grid)->notes;
+  }
+  if (const auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
+    return (*cloud)->notes;
+  }
+  const auto* mesh = std::get_if<TriangleMesh>(&source);
+  return mesh != nullptr ? mesh->notes : Notes();
 }
 
 Source mesh_or_points(TriangleMesh mesh, std::uint64_t face_count) {

@@ -50,9 +50,14 @@ struct Material {
 };
 using Palette = std::array<Material, 256>;
 
+/// What a file says and its source leaves out or had to decide: a sentence each, without "note:" and without a
+/// full stop.
+using Notes = std::vector<std::string>;
+
 /// Voxels with whole-number positions: `.vox`.
 class VoxelModel {
  public:
+  Notes notes;
   virtual ~VoxelModel() = default;
   using Visit = std::function<void(std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material)>;
   /// Calls `visit` for each voxel, in the file's order; a position may repeat (the last one wins). The
@@ -69,6 +74,7 @@ class VoxelModel {
 /// Voxels with whole-number positions and a colour of their own each: `.binvox`, `.qb`, `.schematic` ...
 class VoxelGrid {
  public:
+  Notes notes;
   virtual ~VoxelGrid() = default;
   using Visit = std::function<void(std::int32_t x, std::int32_t y, std::int32_t z, Rgb color)>;
   /// Calls `visit` for each solid voxel, in an order of the format's own; where a position repeats, the last
@@ -92,6 +98,7 @@ struct CloudPoint {
 /// Points with real coordinates: `.xyz`, `.csv`, `.ply` without faces, `.pcd`, `.las`, Gadget-1 snapshots.
 class PointCloud {
  public:
+  Notes notes;
   virtual ~PointCloud() = default;
   using Visit = std::function<void(const CloudPoint&)>;
   virtual void for_each(const Visit& visit) const = 0;
@@ -107,6 +114,7 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`, in range
   std::vector<Rgb> colors;                              ///< one a position, or empty
   bool is_z_up = false;                                 ///< the format says so; else y is taken to be up
+  Notes notes;
 };
 
 /// A scene baked by `thimble bake`, checked to its last byte: `.oct`.
@@ -120,6 +128,9 @@ struct SceneText;
 
 using Source = std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCloud>, TriangleMesh, BakedFile,
                             std::shared_ptr<const SceneText>, std::unique_ptr<VoxelGrid>>;
+
+/// What the reader had to say; nothing of a kind that has no notes.
+Notes notes_of(const Source& source);
 
 }  // namespace thimble::tools
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "output/units.h"
 #include "readers/oct.h"
 #include "readers/read_any.h"
 #include "scene/fit_points.h"
@@ -321,10 +322,8 @@ class BakedFileScene final : public SceneSource {
   std::optional<LitDescription> lit_;
 };
 
-// What is no generator.
-std::unique_ptr<SceneSource> open_file(const SceneArguments& arguments, SceneOpening* opening,
-                                       const Progress& progress) {
-  Source source = read_scene_file({arguments.scene, arguments.frame}, progress);
+std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& arguments, SceneOpening* opening,
+                                      const Progress& progress) {
   if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
     return std::make_unique<PointScene>(std::move(*cloud), arguments);
   }
@@ -351,6 +350,14 @@ std::unique_ptr<SceneSource> open_file(const SceneArguments& arguments, SceneOpe
 void SceneSource::add_file(const std::string& path) {
   if (std::find(files_.begin(), files_.end(), path) == files_.end()) {
     files_.push_back(path);
+  }
+}
+
+void SceneSource::add_notes(const Notes& notes) {
+  for (const std::string& note : notes) {
+    if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) {
+      notes_.push_back(note);
+    }
   }
 }
 
@@ -397,8 +404,14 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
     }
     return std::make_unique<GeneratedScene>(*spec);
   }
-  auto scene = open_file(arguments, opening, progress);
+  Source source = read_scene_file({arguments.scene, arguments.frame}, progress);
+  Notes notes = notes_of(source);
+  auto scene = scene_of(std::move(source), arguments, opening, progress);
   scene->add_file(arguments.scene);
+  for (std::string& note : notes) {
+    note.insert(0, printable(arguments.scene) + ": ");
+  }
+  scene->add_notes(notes);
   return scene;
 }
 

@@ -57,6 +57,9 @@ class SceneSource {
   /// generator.
   const std::vector<std::string>& files() const { return files_; }
   void add_file(const std::string& path);
+  /// What their readers left out or had to decide (readers/source.h), each with the file's name.
+  const Notes& notes() const { return notes_; }
+  void add_notes(const Notes& notes);
   /// Where a position repeats, the last voxel counts; in a point set the one with the greatest material.
   virtual void stream(const VoxelSink& sink, const Progress& progress) const = 0;
   /// The same in blocks where the source has larger ones than voxels.
@@ -67,6 +70,7 @@ class SceneSource {
 
  private:
   std::vector<std::string> files_;
+  Notes notes_;
 };
 
 /// Opens SCENE: parses a generator or reads a file. Throws InputError.

@@ -254,6 +254,7 @@ class TextScene final : public SceneSource {
       for (const std::string& file : kept->source->files()) {
         add_file(file);
       }
+      add_notes(kept->source->notes());
     } catch (const InputError& error) {
       fail_at(part.file_place, printable(part.file) + ": " + error.what());
     }
