@@ -631,7 +631,7 @@ TEST_CASE("vox: what is not a .vox file -> refused with place and limit") {
   check_refused(file(kOneModel + Put().raw("\x01YZ\xff").u32(0xffffffffu).u32(0xffffffffu).bytes),
                 {"?YZ? chunk at byte offset 64", "8589934590"});
   check_refused(file(kOneModel + Put().raw("nTRN").u32(1).bytes), {"MAIN chunk", "truncated"});
-  check_refused(file(kOneModel + chunk("RGBA", Put().u32(0))), {"RGBA chunk", "truncated"});
+  check_refused(file(kOneModel + chunk("RGBA", Put().u32(0).raw("ab"))), {"RGBA chunk", "truncated"});
   check_refused(file(kOneModel + chunk("MATL", Put().i32(257).dictionary({}))), {"MATL chunk", "257"});
   check_refused(file(kOneModel + chunk("MATL", Put().i32(1).u32(0xffffffffu))), {"MATL chunk", "truncated"});
   check_refused(file(kOneModel + chunk("MATL", Put().i32(1).u32(1).u32(0xfffffff0u).raw("_type"))),

@@ -30,6 +30,11 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
       "others)");
   add_flag(app, "--as-voxels", &arguments.as_voxels,
            "point files: coordinates are voxel indices; nothing is scaled, turned or moved");
+  add_flag(app, "--as-points", &arguments.as_points,
+           ".npy and .npz: an array of N x 3 to N x 9 numbers is points (which it is taken for), another an "
+           "error");
+  add_flag(app, "--as-heights", &arguments.as_heights,
+           ".npy and .npz: an array of H x W numbers is heights at any W");
   add_flag(app, "--z-up", &arguments.z_up, "meshes: z is up in the file (default: y is, but in .stl)");
   add_whole_option(
       app, "--frame", "N", 0, UINT32_MAX - 1,

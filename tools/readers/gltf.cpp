@@ -260,7 +260,7 @@ class Scene {
     if (number && indices.components != 1) {
       throw InputError(part.place + ": its indices are vectors");
     }
-    PolygonFan fan(mesh_);
+    Polygons fan(mesh_);
     TriangleStrip strip(mesh_);
     std::array<std::uint32_t, 3> corners{};
     for (std::uint64_t i = 0; i < part.corners; ++i) {

@@ -58,7 +58,12 @@ class LasCloud final : public PointCloud {
       throw InputError(count_ == 0 ? "the file holds no points" : "all points of the file are withheld");
     }
     has_color_ = highest > 0;
-    full_ = highest > 255 ? 65535 : 255;
+    // 16 bits by the specification; cameras of 8 and 12 bits write what they have, or 8 bits times 16.
+    full_ = highest <= 255 ? 255 : highest <= 4080 ? 4080 : highest <= 4095 ? 4095 : 65535;
+    if (has_color_ && full_ != 65535) {
+      notes.push_back("no color is above " + std::to_string(highest) + ": they are taken for " +
+                      (full_ == 255 ? "8" : "12") + " bits, not 16");
+    }
     meter.done();
   }
 

@@ -1,8 +1,13 @@
 #include "readers/mesh.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace thimble::tools {
 
@@ -31,7 +36,112 @@ class VertexCloud final : public PointCloud {
   TriangleMesh mesh_;
 };
 
+using Point2 = std::array<double, 2>;
+
+/// Twice the area of a triangle, positive where it turns to the left.
+double turn(const Point2& a, const Point2& b, const Point2& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// One polygon, seen along the longest component of its normal so that it runs to the left.
+struct FlatPolygon {
+  std::vector<std::uint32_t> corners;
+  std::vector<Point2> points;
+
+  void see(const std::vector<std::array<double, 3>>& positions) {
+    std::array<double, 3> normal{};
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const auto& p = positions[corners[i]];
+      const auto& q = positions[corners[(i + 1) % corners.size()]];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t u = (axis + 1) % 3;
+        const std::size_t v = (axis + 2) % 3;
+        normal[axis] += (p[u] - q[u]) * (p[v] + q[v]);
+      }
+    }
+    std::size_t axis = std::fabs(normal[0]) > std::fabs(normal[1]) ? 0 : 1;
+    axis = std::fabs(normal[2]) > std::fabs(normal[axis]) ? 2 : axis;
+    const std::size_t u = (axis + (normal[axis] < 0 ? 2 : 1)) % 3;
+    const std::size_t v = (axis + (normal[axis] < 0 ? 1 : 2)) % 3;
+    points.clear();
+    for (const std::uint32_t corner : corners) {
+      points.push_back({positions[corner][u], positions[corner][v]});
+    }
+  }
+  bool is_convex() const {
+    const std::size_t count = points.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (turn(points[i], points[(i + 1) % count], points[(i + 2) % count]) < 0) {
+        return false;
+      }
+    }
+    return true;
+  }
+  /// Whether the triangle of corner `i` and its neighbours lies inside and no other corner lies in it.
+  bool is_ear(std::size_t i) const {
+    const std::size_t count = points.size();
+    const Point2& a = points[(i + count - 1) % count];
+    const Point2& b = points[i];
+    const Point2& c = points[(i + 1) % count];
+    if (turn(a, b, c) < 0) {
+      return false;
+    }
+    return std::none_of(points.begin(), points.end(), [&](const Point2& p) {
+      return p != a && p != b && p != c && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+    });
+  }
+  void remove(std::size_t i) {
+    corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+    points.erase(points.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+};
+
 }  // namespace
+
+void Polygons::add(std::uint32_t corner) {
+  if (corners_ >= 2) {
+    continues_.resize(mesh_.triangles.size());
+    continues_.push_back(corners_ > 2);
+    mesh_.triangles.push_back({first_, last_, corner});
+  }
+  first_ = corners_ == 0 ? corner : first_;
+  last_ = corner;
+  ++corners_;
+}
+
+void Polygons::cut_ears() {
+  continues_.resize(mesh_.triangles.size());
+  FlatPolygon polygon;
+  for (std::size_t first = 0, end = 0; first < mesh_.triangles.size(); first = end) {
+    for (end = first + 1; end < mesh_.triangles.size() && continues_[end];) {
+      ++end;
+    }
+    if (end == first + 1 || end - first + 2 > kMostEarCorners) {
+      continue;
+    }
+    polygon.corners = {mesh_.triangles[first][0], mesh_.triangles[first][1]};
+    for (std::size_t i = first; i < end; ++i) {
+      polygon.corners.push_back(mesh_.triangles[i][2]);
+    }
+    polygon.see(mesh_.positions);
+    if (polygon.is_convex()) {
+      continue;
+    }
+    for (std::size_t at = first; at < end; ++at) {
+      const std::size_t count = polygon.corners.size();
+      std::size_t ear = 1;  // of what has none: the fan's next triangle
+      for (std::size_t i = 0; i < count; ++i) {
+        if (polygon.is_ear(i)) {
+          ear = i;
+          break;
+        }
+      }
+      mesh_.triangles[at] = {polygon.corners[(ear + count - 1) % count], polygon.corners[ear],
+                             polygon.corners[(ear + 1) % count]};
+      polygon.remove(ear);
+    }
+  }
+}
 
 void TriangleStrip::add(std::uint32_t corner) {
   if (corners_ >= 2 && older_ != last_ && last_ != corner && corner != older_) {
@@ -58,6 +168,13 @@ Notes notes_of(const Source& source) {
   }
   const auto* mesh = std::get_if<TriangleMesh>(&source);
   return mesh != nullptr ? mesh->notes : Notes();
+}
+
+void note_left_out(Notes& notes, std::uint64_t points) {
+  if (points != 0) {
+    notes.push_back(std::to_string(points) + (points == 1 ? " point is not finite and is left out"
+                                                          : " points are not finite and are left out"));
+  }
 }
 
 Source mesh_or_points(TriangleMesh mesh, std::uint64_t face_count) {

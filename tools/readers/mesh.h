@@ -1,14 +1,14 @@
 /// @file mesh.h
 /// What the readers of meshes share: cutting polygons into triangles, and points out of a mesh without faces.
 ///
-/// Polygons become fans around their first corner. A fan has the polygon's border whatever the polygon's
-/// shape, so a closed surface stays closed; ear clipping, which gives up on polygons that are not flat or not
-/// simple, leaves holes there. For a polygon that is not convex, some triangles of the fan lie outside of it.
+/// A polygon becomes a fan around its first corner, or, where it is not convex, what clipping its ears leaves: always
+/// triangles with the polygon's own border, so that a closed surface stays closed.
 #ifndef THIMBLE_TOOLS_READERS_MESH_H
 #define THIMBLE_TOOLS_READERS_MESH_H
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "readers/source.h"
 
@@ -17,26 +17,24 @@ namespace thimble::tools {
 /// Most vertices of one mesh: an index into them has 32 bits.
 inline constexpr std::uint64_t kMeshVertexLimit = std::uint64_t{1} << 32;
 
-/// Makes a polygon's triangles from its corners, one corner at a time. Nothing comes of fewer than three.
-class PolygonFan {
+/// Makes the triangles of polygons, one corner at a time. Nothing comes of fewer than three corners.
+class Polygons {
  public:
-  explicit PolygonFan(TriangleMesh& mesh) : mesh_(mesh) {}
-  void add(std::uint32_t corner) {
-    if (corners_ >= 2) {
-      mesh_.triangles.push_back({first_, last_, corner});
-    }
-    if (corners_ == 0) {
-      first_ = corner;
-    }
-    last_ = corner;
-    ++corners_;
-  }
+  explicit Polygons(TriangleMesh& mesh) : mesh_(mesh) {}
+  void begin() { corners_ = 0; }
+  void add(std::uint32_t corner);
+  /// Once all positions are there: cuts the polygons that are not convex by their ears. Polygons of more than
+  /// `kMostEarCorners` corners stay fans, and so does what has no ear, for it crosses itself.
+  void cut_ears();
 
  private:
   TriangleMesh& mesh_;
+  std::vector<bool> continues_;  ///< of a triangle: it belongs to the polygon of the one before
   std::uint64_t corners_ = 0;
   std::uint32_t first_ = 0, last_ = 0;
 };
+/// An ear is found among so many corners by trying all of them.
+inline constexpr std::size_t kMostEarCorners = 512;
 
 /// Makes the triangles of a strip; every other one is turned, so that all face the same way. Triangles with a
 /// repeated corner, which stitch strips together, are left out.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "readers/color_scale.h"
 #include "readers/height_grid.h"
 #include "readers/text.h"
 #include "readers/zip.h"
@@ -19,6 +20,8 @@ namespace {
 
 constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr std::string_view kZipMagic("PK\x03\x04", 4);
+// NumPy's own limit is 64.
+constexpr std::size_t kMostDimensions = 64;
 
 /// What a header says.
 struct NpyHeader {
@@ -57,13 +60,13 @@ void read_type(std::string_view value, NpyHeader& header) {
   const std::string_view text = value.size() > 1 && (value[0] == '\'' || value[0] == '"')
                                     ? value.substr(1, value.find(value[0], 1) - 1)
                                     : std::string_view();
-  static constexpr std::array<std::string_view, 12> kTypes{"b1", "u1", "u2", "u4", "u8", "i1",
-                                                           "i2", "i4", "i8", "f4", "f8", "?"};
+  static constexpr std::array<std::string_view, 13> kTypes{"b1", "u1", "u2", "u4", "u8", "i1", "i2",
+                                                           "i4", "i8", "f2", "f4", "f8", "?"};
   const bool has_order = !text.empty() && std::string_view("<>|=").find(text[0]) != std::string_view::npos;
   const std::string_view type = text.substr(has_order ? 1 : 0);
   if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
     throw InputError("the type of the array's numbers, " + quoted(value.substr(0, value.find(','))) +
-                     ", is none of booleans, integers, and floats of 4 or 8 bytes");
+                     ", is none of booleans, integers, and floats of 2, 4 or 8 bytes");
   }
   header.type = type[0] == '?' ? 'b' : type[0];
   header.size_bytes = type.size() < 2 ? 1 : static_cast<std::size_t>(type[1] - '0');
@@ -82,6 +85,9 @@ void read_shape(std::string_view value, NpyHeader& header) {
     std::int64_t side = 0;
     if (!parse_integer(value.substr(0, length), side) || side < 0) {
       throw InputError("the array's shape holds " + quoted(value.substr(0, length)) + ", which is no length");
+    }
+    if (header.shape.size() == kMostDimensions) {
+      throw InputError("the array has more than " + std::to_string(kMostDimensions) + " dimensions");
     }
     header.shape.push_back(static_cast<std::uint64_t>(side));
     value.remove_prefix(length);
@@ -108,6 +114,16 @@ NpyHeader read_npy_header(std::span<const std::uint8_t> bytes) {
   read_shape(value_of(dictionary, "shape"), header);
   header.data_offset = static_cast<std::size_t>(reader.offset());
   return header;
+}
+
+/// IEEE 754's binary16: a sign, five bits of exponent, ten of fraction.
+double half(unsigned bits) {
+  const auto exponent = static_cast<int>(bits >> 10 & 31U);
+  const double fraction = bits & 1023U;
+  const double size = exponent == 31  ? (fraction == 0 ? HUGE_VAL : std::nan(""))
+                      : exponent == 0 ? std::ldexp(fraction, -24)
+                                      : std::ldexp(1024 + fraction, exponent - 25);
+  return (bits & 0x8000U) != 0 ? -size : size;
 }
 
 /// An array's numbers.
@@ -138,6 +154,9 @@ struct Array {
     for (std::size_t i = 0; i < header.size_bytes; ++i) {
       bits = bits << 8 | first[header.is_big_endian ? i : header.size_bytes - 1 - i];
     }
+    if (header.type == 'f' && header.size_bytes == 2) {
+      return half(static_cast<unsigned>(bits));
+    }
     if (header.type == 'f') {
       return header.size_bytes == 4
                  ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
@@ -153,29 +172,44 @@ struct Array {
 class ArrayPoints final : public PointCloud {
  public:
   explicit ArrayPoints(Array array) : array_(std::move(array)) {
-    has_color_ = array_.header.shape[1] == 6;
+    const std::uint64_t columns = array_.header.shape[1];
+    first_color_ = columns < 6 ? 0 : (columns == 8 ? 3 : columns - 3);
+    std::uint64_t finite = 0;
     for (std::uint64_t i = 0; i < array_.header.shape[0]; ++i) {
-      for (std::uint64_t column = 0; column < array_.header.shape[1]; ++column) {
-        const double value = number(i, column);
-        if (column < 3 && !std::isfinite(value)) {
-          throw InputError("a coordinate of point " + std::to_string(i + 1) + " is not finite");
-        }
-        has_color_ = has_color_ && (column < 3 || (value >= 0 && value <= 255 && value == std::floor(value)));
+      if (!is_finite(i)) {
+        continue;
+      }
+      ++finite;
+      for (std::uint64_t channel = 0; first_color_ != 0 && channel < 3; ++channel) {
+        scale_.see(number(i, first_color_ + channel));
       }
     }
-    if (array_.header.shape[0] == 0) {
-      throw InputError("the array holds no points");
+    if (finite == 0) {
+      throw InputError(array_.header.shape[0] == 0 ? "the array holds no points"
+                                                   : "no point of the array is finite");
+    }
+    note_left_out(notes, array_.header.shape[0] - finite);
+    has_color_ = first_color_ != 0 && scale_.looks_like_colors();
+    const std::uint64_t used = has_color_ ? 6 : 3;
+    if (columns > used) {
+      notes.push_back("of the array's " + std::to_string(columns) + " columns, " +
+                      (has_color_ ? "1 to 3 are taken for places and " + std::to_string(first_color_ + 1) +
+                                        " to " + std::to_string(first_color_ + 3) + " for colors"
+                                  : "the first three are taken for places, none for colors"));
     }
   }
   void for_each(const Visit& visit) const override {
     CloudPoint point;
     for (std::uint64_t i = 0; i < array_.header.shape[0]; ++i) {
+      if (!is_finite(i)) {
+        continue;
+      }
       point.x = number(i, 0);
       point.y = number(i, 1);
       point.z = number(i, 2);
       if (has_color_) {
-        point.color = {static_cast<std::uint8_t>(number(i, 3)), static_cast<std::uint8_t>(number(i, 4)),
-                       static_cast<std::uint8_t>(number(i, 5))};
+        point.color =
+            scale_.color(number(i, first_color_), number(i, first_color_ + 1), number(i, first_color_ + 2));
       }
       point.line = i + 1;
       visit(point);
@@ -187,7 +221,12 @@ class ArrayPoints final : public PointCloud {
   double number(std::uint64_t i, std::uint64_t column) const {
     return array_.at(i * array_.strides[0] + column * array_.strides[1]);
   }
+  bool is_finite(std::uint64_t i) const {
+    return std::isfinite(number(i, 0)) && std::isfinite(number(i, 1)) && std::isfinite(number(i, 2));
+  }
   Array array_;
+  ColorScale scale_;
+  std::uint64_t first_color_ = 0;  ///< column; 0 where there is none
   bool has_color_ = false;
 };
 
@@ -254,11 +293,15 @@ std::string shape_of(const NpyHeader& header) {
   return text.empty() ? "one number" : text;
 }
 
-Source source_of(Array array) {
+Source source_of(Array array, ArrayAs as) {
   const NpyHeader& header = array.header;
   const std::size_t dimensions = header.shape.size();
-  if (dimensions == 2 && header.type == 'f' && (header.shape[1] == 3 || header.shape[1] == 6)) {
+  const bool has_rows_of_points = dimensions == 2 && header.shape[1] >= 3 && header.shape[1] <= 9;
+  if (has_rows_of_points && as != ArrayAs::kHeights) {
     return std::unique_ptr<PointCloud>(std::make_unique<ArrayPoints>(std::move(array)));
+  }
+  if (as == ArrayAs::kPoints) {
+    throw InputError("--as-points: points are N x 3 to N x 9 numbers, and this is " + shape_of(header));
   }
   if (dimensions == 2) {
     return height_landscape(header.shape[1], header.shape[0], [&](std::uint64_t column, std::uint64_t row) {
@@ -272,7 +315,7 @@ Source source_of(Array array) {
   }
   throw InputError(
       "an array of " + shape_of(header) +
-      " numbers is read as nothing; points are N x 3 floats, heights H x W, voxels X x Y x Z, colours "
+      " numbers is read as nothing; points are N x 3 to N x 9, heights H x W, voxels X x Y x Z, colours "
       "X x Y x Z x 3 or 4 bytes");
 }
 
@@ -312,8 +355,12 @@ bool looks_like_npy(std::span<const std::uint8_t> bytes) {
 }
 
 Source read_npy(const SharedBytes& file, const Progress& progress) {
+  return read_npy_as(ArrayAs::kByShape, file, progress);
+}
+
+Source read_npy_as(ArrayAs as, const SharedBytes& file, const Progress& progress) {
   const SharedBytes bytes = file.text().starts_with(kZipMagic) ? largest_member(file.bytes) : file;
-  Source source = source_of(Array(read_npy_header(bytes.bytes), bytes));
+  Source source = source_of(Array(read_npy_header(bytes.bytes), bytes), as);
   if (progress) {
     progress(1);
   }

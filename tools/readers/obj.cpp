@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "readers/mesh.h"
+#include "readers/obj_materials.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -27,8 +28,8 @@ static_assert(std::is_same_v<tinyobj::real_t, double>, "link tinyobjloader::tiny
 /// back from the parser can ask which statement it is about.
 class StatementBuffer final : public std::streambuf {
  public:
-  StatementBuffer(std::string_view text, const Progress& progress)
-      : lines_(text), meter_(progress, text.size()) {}
+  StatementBuffer(std::string_view text, const Progress& progress, ObjMaterials& materials)
+      : lines_(text), meter_(progress, text.size()), materials_(materials) {}
 
   /// The current statement's words after `v` or `f`.
   std::string_view arguments() const { return std::string_view(statement_).substr(1, statement_.size() - 2); }
@@ -46,6 +47,11 @@ class StatementBuffer final : public std::streambuf {
       const std::string_view keyword = take_word(rest);
       const bool is_wanted = keyword == "v" || keyword == "f";
       const bool is_comment = keyword.starts_with('#');
+      if (keyword == "usemtl") {
+        materials_.use(rest);
+      } else if (keyword == "mtllib") {
+        materials_.add_library(rest);
+      }
       if (is_wanted) {
         statement_.assign(keyword);
         statement_ += ' ';
@@ -81,6 +87,7 @@ class StatementBuffer final : public std::streambuf {
 
   LineReader lines_;
   ProgressMeter meter_;
+  ObjMaterials& materials_;
   std::string statement_;
   std::uint64_t first_line_ = 0;
 };
@@ -100,7 +107,8 @@ std::array<std::size_t, 2> count_statements(std::string_view text) {
 
 class ObjParser {
  public:
-  ObjParser(std::string_view text, const Progress& progress) : buffer_(text, progress) {
+  ObjParser(std::string_view text, const std::string& path, const Progress& progress)
+      : path_(path), buffer_(text, progress, materials_) {
     const auto [vertices, faces] = count_statements(text);
     mesh_.positions.reserve(vertices);
     mesh_.triangles.reserve(faces);
@@ -126,6 +134,10 @@ class ObjParser {
     }
     if (!all_colored_) {
       mesh_.colors = {};
+    }
+    polygons_.cut_ears();
+    if (mesh_.colors.empty()) {
+      materials_.color_faces(path_, mesh_);
     }
     return mesh_or_points(std::move(mesh_), face_count_);
   }
@@ -174,7 +186,8 @@ class ObjParser {
     buffer_.report_progress();
     check_corners();
     ++face_count_;
-    PolygonFan fan(mesh_);
+    const std::size_t first_triangle = mesh_.triangles.size();
+    polygons_.begin();
     const std::size_t vertex_count = mesh_.positions.size();
     for (std::size_t i = 0; i < corners; ++i) {
       const std::int64_t written = indices[i].vertex_index;
@@ -188,8 +201,9 @@ class ObjParser {
         highest_index_ = static_cast<std::uint64_t>(index);
         highest_line_ = buffer_.line();
       }
-      fan.add(static_cast<std::uint32_t>(index));
+      polygons_.add(static_cast<std::uint32_t>(index));
     }
+    materials_.take_triangles(first_triangle, mesh_.triangles.size());
   }
 
   /// The parser takes "x" for 0 and 4294967297 for 1; holds the fields of all corners to be integers.
@@ -219,8 +233,11 @@ class ObjParser {
                            (index <= 0 ? " before it, counted from 1" : " in the file, counted from 1"));
   }
 
+  const std::string& path_;
+  ObjMaterials materials_;
   StatementBuffer buffer_;
   TriangleMesh mesh_;
+  Polygons polygons_{mesh_};
   bool all_colored_ = true;
   std::uint64_t face_count_ = 0;
   std::uint64_t highest_index_ = 0;
@@ -230,7 +247,11 @@ class ObjParser {
 }  // namespace
 
 Source read_obj(const SharedBytes& file, const Progress& progress) {
-  ObjParser parser(file.text(), progress);
+  return read_obj_at("", file, progress);
+}
+
+Source read_obj_at(const std::string& path, const SharedBytes& file, const Progress& progress) {
+  ObjParser parser(file.text(), path, progress);
   Source source = parser.parse();
   if (progress) {
     progress(1);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "readers/color_scale.h"
 #include "readers/mesh.h"
 #include "readers/text.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 struct Keyword {
   bool known = false;
+  std::string_view count;  ///< of vertices, where it stands right behind, as in "OFF8 6 12"
   bool has_normals = false;
   bool has_colors = false;
 };
@@ -34,7 +36,12 @@ Keyword parse_keyword(std::string_view word) {
     keyword.has_normals = true;
     word.remove_prefix(1);
   }
-  keyword.known = word == "OFF";
+  keyword.known = word.starts_with("OFF");
+  if (keyword.known) {
+    keyword.count = word.substr(3);
+    std::int64_t count = 0;
+    keyword.known = keyword.count.empty() || parse_integer(keyword.count, count);
+  }
   return keyword;
 }
 
@@ -66,7 +73,7 @@ class OffParser {
     if (!keyword_.known) {
       fail("the file begins with " + quoted(word) + ", not with OFF, COFF, NOFF, CNOFF or ST before these");
     }
-    vertex_count_ = count("vertices");
+    vertex_count_ = keyword_.count.empty() ? count("vertices") : count("vertices", keyword_.count);
     face_count_ = count("faces");
     count("edges");
     if (vertex_count_ > kMeshVertexLimit) {
@@ -98,8 +105,8 @@ class OffParser {
     }
   }
 
-  std::uint64_t count(const char* what) {
-    const std::string_view word = words_.next();
+  std::uint64_t count(const char* what) { return count(what, words_.next()); }
+  std::uint64_t count(const char* what, std::string_view word) const {
     std::int64_t value = 0;
     if (word == "BINARY") {
       fail("binary OFF is not supported");
@@ -134,8 +141,7 @@ class OffParser {
   void vertices() {
     mesh_.positions.reserve(static_cast<std::size_t>(vertex_count_));
     std::vector<std::array<float, 3>> colors;
-    bool bytes_only = true;
-    bool above_one = false;
+    ColorScale scale;
     if (keyword_.has_colors) {
       colors.reserve(static_cast<std::size_t>(vertex_count_));
     }
@@ -152,21 +158,18 @@ class OffParser {
         std::array<float, 3> color{};
         for (float& component : color) {
           const double value = number("the color", vertex);
-          bytes_only = bytes_only && value == std::floor(value);
-          above_one = above_one || value > 1;
           component = static_cast<float>(std::fmax(0, std::fmin(value, 255)));
+          scale.see(static_cast<double>(component));
         }
         colors.push_back(color);
       }
       end_item();
       meter_.at(words_.offset());
     }
-    const double full = bytes_only && above_one ? 255 : 1;
     mesh_.colors.reserve(colors.size());
-    for (const std::array<float, 3>& color : colors) {
-      mesh_.colors.push_back({unit_to_byte(static_cast<double>(color[0]) / full),
-                              unit_to_byte(static_cast<double>(color[1]) / full),
-                              unit_to_byte(static_cast<double>(color[2]) / full)});
+    for (const auto& [red, green, blue] : colors) {
+      mesh_.colors.push_back(
+          scale.color(static_cast<double>(red), static_cast<double>(green), static_cast<double>(blue)));
     }
   }
 
@@ -189,20 +192,56 @@ class OffParser {
       if (corners < 0) {
         fail("face " + std::to_string(face) + " has " + std::to_string(corners) + " corners");
       }
-      PolygonFan fan(mesh_);
+      const std::size_t before = mesh_.triangles.size();
+      polygons_.begin();
       for (std::int64_t i = 0; i < corners; ++i) {
         const std::int64_t index = integer(face);
         if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
           fail("face " + std::to_string(face) + " has the index " + std::to_string(index) +
                ", which is not one of the " + std::to_string(vertex_count_) + " vertices");
         }
-        fan.add(static_cast<std::uint32_t>(index));
+        polygons_.add(static_cast<std::uint32_t>(index));
+      }
+      const std::array<float, 3> color = is_by_line_ ? face_color() : kNoColor;
+      if (!face_colors_.empty() || color != kNoColor) {
+        face_colors_.resize(before, kNoColor);
+        face_colors_.resize(mesh_.triangles.size(), color);
       }
       end_item();
       meter_.at(words_.offset());
     }
+    polygons_.cut_ears();
+    for (const auto& [red, green, blue] : face_colors_) {
+      mesh_.face_colors.push_back(red < 0 ? Rgb{}
+                                          : face_scale_.color(static_cast<double>(red),
+                                                              static_cast<double>(green),
+                                                              static_cast<double>(blue)));
+    }
   }
 
+  /// Three or four numbers behind the corners are the face's colour; one would be a place in a table that no file
+  /// brings along. Negative: there is none.
+  std::array<float, 3> face_color() {
+    std::array<double, 4> values{};
+    std::size_t count = 0;
+    for (std::string_view word = words_.next_on_line(); !word.empty(); word = words_.next_on_line()) {
+      if (count == values.size() || parse_number(word, values[count]) != NumberKind::kFinite) {
+        return kNoColor;
+      }
+      ++count;
+    }
+    if (count < 3) {
+      return kNoColor;
+    }
+    std::array<float, 3> color{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      color[i] = static_cast<float>(std::fmax(0, std::fmin(values[i], 255)));
+      face_scale_.see(static_cast<double>(color[i]));
+    }
+    return color;
+  }
+
+  static constexpr std::array<float, 3> kNoColor{-1, -1, -1};
   WordReader words_;
   ProgressMeter meter_;
   Keyword keyword_;
@@ -210,6 +249,9 @@ class OffParser {
   std::uint64_t face_count_ = 0;
   bool is_by_line_ = true;
   TriangleMesh mesh_;
+  Polygons polygons_{mesh_};
+  std::vector<std::array<float, 3>> face_colors_;
+  ColorScale face_scale_;
 };
 
 }  // namespace

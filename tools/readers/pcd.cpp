@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "readers/color_scale.h"
 #include "readers/file_bytes.h"
 #include "readers/text.h"
 
@@ -26,9 +27,10 @@ struct Field {
   std::uint64_t count = 1;
 };
 
-/// x, y, z and the colour.
-constexpr std::size_t kUsed = 4;
+/// x, y, z, the colour as one value, and its components as three.
+constexpr std::size_t kUsed = 7;
 constexpr std::size_t kColor = 3;
+constexpr std::size_t kParts = 4;
 
 struct PcdHeader {
   std::vector<Field> fields;
@@ -208,22 +210,42 @@ class PcdCloud final : public PointCloud {
     }
     ProgressMeter meter(progress, file.bytes.size());
     std::uint64_t finite = 0;
-    walk([&](const CloudPoint&) { ++finite; }, meter);
+    walk(
+        [&](const CloudPoint&, const Components& components) {
+          ++finite;
+          for (const double component : components) {
+            scale_.see(component);
+          }
+        },
+        meter);
     if (finite == 0) {
       throw InputError(count_ == 0 ? "the header counts no points" : "no point of the file is finite");
     }
+    if (has_parts_ && !scale_.is_valid()) {
+      throw InputError("the fields r, g and b hold values that are no colors");
+    }
+    note_left_out(notes, count_ - finite);
     meter.done();
   }
 
   void for_each(const Visit& visit) const override {
     const Progress no_progress;
     ProgressMeter meter(no_progress, 0);
-    walk(visit, meter);
+    walk(
+        [&](CloudPoint& point, const Components& components) {
+          if (has_parts_) {
+            point.color = scale_.color(components[0], components[1], components[2]);
+          }
+          visit(point);
+        },
+        meter);
   }
-  bool has_color() const override { return has_color_; }
+  bool has_color() const override { return has_color_ || has_parts_; }
   const char* counts_in() const override { return is_text_ ? "line" : "point"; }
 
  private:
+  using Components = std::array<double, 3>;
+
   void count_points(const PcdHeader& header) {
     if (!header.points && !header.width) {
       throw InputError("the header has no line 'POINTS' or 'WIDTH'");
@@ -232,13 +254,14 @@ class PcdCloud final : public PointCloud {
   }
 
   void find_columns(const PcdHeader& header) {
-    static constexpr std::array<std::string_view, kUsed> kNames{"x", "y", "z", "rgb"};
+    static constexpr std::array<std::string_view, kUsed> kNames{"x", "y", "z", "rgb", "r", "g", "b"};
     std::array<bool, kUsed> found{};
     std::uint64_t bytes = 0;
     std::uint64_t values = 0;
     for (const Field& field : header.fields) {
       for (std::size_t i = 0; i < kUsed; ++i) {
-        const bool is_name = field.name == kNames[i] || (i == kColor && field.name == "rgba");
+        const bool is_name = equals_ignoring_case(field.name, kNames[i]) ||
+                             (i == kColor && equals_ignoring_case(field.name, "rgba"));
         const bool is_color = i != kColor || field.size_bytes == 4;
         if (is_name && is_color && !found[i] && field.count > 0) {
           found[i] = true;
@@ -259,6 +282,7 @@ class PcdCloud final : public PointCloud {
       }
     }
     has_color_ = found[kColor];
+    has_parts_ = !has_color_ && found[kParts] && found[kParts + 1] && found[kParts + 2];
     record_ = is_text_ ? 2 * values : bytes;
     for (Column& column : columns_) {
       // Compressed data holds all values of one field, then all of the next.
@@ -283,9 +307,13 @@ class PcdCloud final : public PointCloud {
       if (has_color_) {
         point.color = color_of(static_cast<std::uint32_t>(bits(columns_[kColor], i)));
       }
+      Components components{};
+      for (std::size_t part = 0; has_parts_ && part < 3; ++part) {
+        components[part] = value(columns_[kParts + part], i);
+      }
       meter.at(static_cast<std::size_t>(data_offset_ + i * record_));
       if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
-        take(point);
+        take(point, components);
       }
     }
   }
@@ -327,8 +355,12 @@ class PcdCloud final : public PointCloud {
       if (has_color_) {
         point.color = written_color(words[kColor], point.line);
       }
+      Components components{};
+      for (std::size_t part = 0; has_parts_ && part < 3; ++part) {
+        components[part] = number(words[kParts + part], point.line);
+      }
       if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
-        take(point);
+        take(point, components);
       }
     }
   }
@@ -383,6 +415,8 @@ class PcdCloud final : public PointCloud {
   std::array<Column, kUsed> columns_;
   bool is_text_ = true;
   bool has_color_ = false;
+  bool has_parts_ = false;  ///< the colour is in three fields
+  ColorScale scale_;        ///< of these
 };
 
 }  // namespace

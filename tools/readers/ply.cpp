@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "readers/color_scale.h"
 #include "readers/mesh.h"
 #include "readers/text.h"
 
@@ -23,9 +24,9 @@ namespace {
 enum class PlyEncoding : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
 enum class Scalar : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
-/// What a property is to us. The first six are positions in an array of a vertex's values.
-enum class Role : std::uint8_t { kX, kY, kZ, kRed, kGreen, kBlue, kIndices, kUnused };
-constexpr std::size_t kVertexValues = 6;
+/// What a property is to us. The first seven are positions in an array of a vertex's values.
+enum class Role : std::uint8_t { kX, kY, kZ, kRed, kGreen, kBlue, kOpacity, kIndices, kUnused };
+constexpr std::size_t kVertexValues = 7;
 
 enum class ElementKind : std::uint8_t { kVertex, kFace, kStrips, kOther };
 
@@ -34,6 +35,7 @@ struct Property {
   Scalar count_type = Scalar::kUint8;  ///< of a list
   bool is_list = false;
   Role role = Role::kUnused;
+  bool is_harmonic = false;  ///< a Gaussian splat's mean colour, as the first of its spherical harmonics
 };
 
 struct Element {
@@ -85,6 +87,11 @@ bool has_color(const Element& element) {
   return has_role(element, Role::kRed) && has_role(element, Role::kGreen) && has_role(element, Role::kBlue);
 }
 
+bool is_splat(const Element& element) {
+  return std::any_of(element.properties.begin(), element.properties.end(),
+                     [](const Property& property) { return property.is_harmonic; });
+}
+
 // --- Header ------------------------------------------------------------------------------------------------
 
 std::optional<Scalar> scalar_named(std::string_view name) {
@@ -113,7 +120,7 @@ Role role_of(ElementKind kind, std::string_view name, bool is_list) {
     std::string_view name;
     Role role;
   };
-  static constexpr std::array<Name, 12> kScalars{{{"x", Role::kX},
+  static constexpr std::array<Name, 16> kScalars{{{"x", Role::kX},
                                                   {"y", Role::kY},
                                                   {"z", Role::kZ},
                                                   {"red", Role::kRed},
@@ -124,7 +131,11 @@ Role role_of(ElementKind kind, std::string_view name, bool is_list) {
                                                   {"diffuse_blue", Role::kBlue},
                                                   {"r", Role::kRed},
                                                   {"g", Role::kGreen},
-                                                  {"b", Role::kBlue}}};
+                                                  {"b", Role::kBlue},
+                                                  {"f_dc_0", Role::kRed},
+                                                  {"f_dc_1", Role::kGreen},
+                                                  {"f_dc_2", Role::kBlue},
+                                                  {"opacity", Role::kOpacity}}};
   if (kind == ElementKind::kVertex && !is_list) {
     for (const Name& known : kScalars) {
       if (name == known.name) {
@@ -249,10 +260,12 @@ class PlyHeaderParser {
       fail("a property has no name");
     }
     added.role = role_of(element.kind, name, added.is_list);
+    added.is_harmonic = name.starts_with("f_dc_");
     if (added.role != Role::kUnused && has_role(element, added.role)) {
       if (added.role <= Role::kZ || added.role == Role::kIndices) {
         fail("property " + quoted(name) + " is declared twice");
       }
+      added.is_harmonic = false;
       added.role = Role::kUnused;  // A second set of colours; the first one counts.
     }
     element.properties.push_back(added);
@@ -461,43 +474,73 @@ void skip_element(Body& body, const Element& element, ProgressMeter& meter) {
   }
 }
 
-std::uint8_t color_byte(Scalar type, double value) {
-  if (is_real(type)) {
-    return unit_to_byte(value);
-  }
-  return unit_to_byte(value / (type == Scalar::kUint16 ? 65535.0 : 255.0));
-}
-
-/// Reads all vertices; `visit(position, color, line)`, where line is 0 in a binary file.
-template <class Body, class VisitVertex>
-void read_vertices(Body& body, const Element& element, ProgressMeter& meter, const VisitVertex& visit) {
-  check_count(body, element);
+/// One vertex as it is written; a splat's colour from 0 to 1.
+struct PlyVertex {
   std::array<double, kVertexValues> values{};
-  std::array<Scalar, kVertexValues> types{};
-  for (const Property& property : element.properties) {
-    if (property.role <= Role::kBlue) {
-      types[static_cast<std::size_t>(property.role)] = property.type;
+  std::uint64_t line = 0;  ///< 0 in a binary file
+
+  std::array<double, 3> position() const { return {values[0], values[1], values[2]}; }
+  bool is_finite() const {
+    return std::isfinite(values[0]) && std::isfinite(values[1]) && std::isfinite(values[2]);
+  }
+  /// A splat that covers less than a tenth of what is behind it; opacities are written as logits.
+  bool is_clear() const {
+    return 1 / (1 + std::exp(-values[static_cast<std::size_t>(Role::kOpacity)])) < 0.1;
+  }
+};
+
+/// What the three components of an element's colours are parts of.
+class ColorParts {
+ public:
+  explicit ColorParts(const Element& element) {
+    for (const Property& property : element.properties) {
+      if (property.role >= Role::kRed && property.role <= Role::kBlue) {
+        types_[static_cast<std::size_t>(property.role) - 3] = property.type;
+      }
     }
   }
-  const bool colored = has_color(element);
+  void see(const PlyVertex& vertex) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (is_real(types_[i])) {
+        floats_.see(vertex.values[3 + i]);
+      }
+    }
+  }
+  /// Floats are of 0 to 1, or of 0 to 255 where any that was seen is above 1.
+  Rgb color(const PlyVertex& vertex) const {
+    std::array<std::uint8_t, 3> bytes{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double full =
+          is_real(types_[i]) ? floats_.full() : (types_[i] == Scalar::kUint16 ? 65535.0 : 255.0);
+      bytes[i] = unit_to_byte(vertex.values[3 + i] / full);
+    }
+    return {bytes[0], bytes[1], bytes[2]};
+  }
+
+ private:
+  std::array<Scalar, 3> types_{};
+  ColorScale floats_;
+};
+
+/// Reads all vertices; `visit(vertex)`.
+template <class Body, class VisitVertex>
+void read_vertices(Body& body, const Element& element, ProgressMeter& meter, const VisitVertex& visit) {
+  // A splat's colour is half and this part of the first of its harmonics, 1 / (2 sqrt(pi)).
+  constexpr double kHarmonic = 0.28209479177387814;
+  check_count(body, element);
+  PlyVertex vertex;
   for (std::uint64_t record = 0; record < element.count; ++record) {
     for (const Property& property : element.properties) {
-      if (property.role > Role::kBlue) {
+      if (property.role > Role::kOpacity) {
         skip_property(body, property);
         continue;
       }
       const double value = body.scalar(property.type);
-      if (property.role <= Role::kZ && !std::isfinite(value)) {
-        body.fail("a coordinate of vertex " + std::to_string(record) + " is not finite");
-      }
-      values[static_cast<std::size_t>(property.role)] = value;
+      vertex.values[static_cast<std::size_t>(property.role)] =
+          property.is_harmonic ? std::fmin(1, std::fmax(0, 0.5 + kHarmonic * value)) : value;
     }
-    Rgb color;
-    if (colored) {
-      color = {color_byte(types[3], values[3]), color_byte(types[4], values[4]),
-               color_byte(types[5], values[5])};
-    }
-    visit(std::array<double, 3>{values[0], values[1], values[2]}, color, body.line());
+    vertex.line = body.line();
+    visit(vertex);
     meter.at(body.offset());
   }
 }
@@ -517,7 +560,7 @@ std::int64_t read_index(Body& body, Scalar type, std::int64_t lowest, std::uint6
 
 template <class Body>
 void read_polygons(Body& body, const Element& element, std::uint64_t vertex_count, TriangleMesh& mesh,
-                   ProgressMeter& meter) {
+                   Polygons& polygons, ProgressMeter& meter) {
   check_count(body, element);
   if (element.kind == ElementKind::kFace) {
     // Most files hold triangles only; the check above makes this at most a few times the file's size.
@@ -531,9 +574,9 @@ void read_polygons(Body& body, const Element& element, std::uint64_t vertex_coun
       }
       const std::uint64_t length = list_length(body, property);
       if (element.kind == ElementKind::kFace) {
-        PolygonFan fan(mesh);
+        polygons.begin();
         for (std::uint64_t i = 0; i < length; ++i) {
-          fan.add(
+          polygons.add(
               static_cast<std::uint32_t>(read_index(body, property.type, 0, vertex_count, element, record)));
         }
       } else {
@@ -564,28 +607,36 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const Element& vertic
                      std::to_string(kMeshVertexLimit));
   }
   TriangleMesh mesh;
+  Polygons polygons(mesh);
   for (const Element& element : header.elements) {
     if (element.kind == ElementKind::kVertex) {
       check_count(body, element);
       mesh.positions.reserve(static_cast<std::size_t>(element.count));
       const bool colored = has_color(element);
+      Body first = body;
+      ColorParts parts(element);
+      read_vertices(body, element, meter, [&](const PlyVertex& vertex) {
+        if (!vertex.is_finite()) {
+          body.fail("a coordinate of vertex " + std::to_string(mesh.positions.size()) + " is not finite");
+        }
+        parts.see(vertex);
+        mesh.positions.push_back(vertex.position());
+      });
       if (colored) {
         mesh.colors.reserve(static_cast<std::size_t>(element.count));
+        const Progress no_progress;
+        ProgressMeter again(no_progress, 0);
+        read_vertices(first, element, again,
+                      [&](const PlyVertex& vertex) { mesh.colors.push_back(parts.color(vertex)); });
       }
-      read_vertices(body, element, meter,
-                    [&](const std::array<double, 3>& position, Rgb color, std::uint64_t) {
-                      mesh.positions.push_back(position);
-                      if (colored) {
-                        mesh.colors.push_back(color);
-                      }
-                    });
     } else if (holds_polygons(element)) {
-      read_polygons(body, element, vertices.count, mesh, meter);
+      read_polygons(body, element, vertices.count, mesh, polygons, meter);
     } else {
       skip_element(body, element, meter);
     }
   }
   body.finish();
+  polygons.cut_ears();
   return mesh;
 }
 
@@ -593,8 +644,28 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const Element& vertic
 template <class Body>
 class PlyCloud final : public PointCloud {
  public:
-  PlyCloud(SharedBytes file, Element vertices, const Body& body)
-      : file_(std::move(file)), vertices_(std::move(vertices)), body_(body) {}
+  /// Reads them once, and leaves `body` behind them.
+  PlyCloud(SharedBytes file, const Element& vertices, Body& body, ProgressMeter& meter)
+      : file_(std::move(file)), vertices_(vertices), body_(body), parts_(vertices) {
+    std::uint64_t finite = 0;
+    std::uint64_t drawn = 0;
+    read_vertices(body, vertices_, meter, [&](const PlyVertex& vertex) {
+      finite += vertex.is_finite() ? 1U : 0U;
+      if (is_drawn(vertex)) {
+        ++drawn;
+        parts_.see(vertex);
+      }
+    });
+    if (drawn == 0) {
+      throw InputError(finite == 0 ? "no vertex of the file is finite"
+                                   : "all splats of the file are nearly clear");
+    }
+    note_left_out(notes, vertices_.count - finite);
+    if (is_splat(vertices_)) {
+      notes.push_back("Gaussian splats are drawn as points; " + std::to_string(finite - drawn) + " of " +
+                      std::to_string(finite) + " are nearly clear and left out");
+    }
+  }
 
   void for_each(const Visit& visit) const override {
     Body body = body_;
@@ -602,24 +673,32 @@ class PlyCloud final : public PointCloud {
     ProgressMeter meter(no_progress, 0);
     CloudPoint point;
     std::uint64_t number = 0;
-    read_vertices(body, vertices_, meter,
-                  [&](const std::array<double, 3>& position, Rgb color, std::uint64_t line) {
-                    ++number;
-                    point.x = position[0];
-                    point.y = position[1];
-                    point.z = position[2];
-                    point.color = color;
-                    point.line = line != 0 ? line : number;
-                    visit(point);
-                  });
+    read_vertices(body, vertices_, meter, [&](const PlyVertex& vertex) {
+      ++number;
+      if (!is_drawn(vertex)) {
+        return;
+      }
+      point.x = vertex.values[0];
+      point.y = vertex.values[1];
+      point.z = vertex.values[2];
+      point.color = has_color() ? parts_.color(vertex) : Rgb{};
+      point.line = vertex.line != 0 ? vertex.line : number;
+      visit(point);
+    });
   }
   bool has_color() const override { return tools::has_color(vertices_); }
   const char* counts_in() const override { return body_.line() != 0 ? "line" : "point"; }
 
  private:
+  bool is_drawn(const PlyVertex& vertex) const {
+    const bool may_be_clear = is_splat(vertices_) && has_role(vertices_, Role::kOpacity);
+    return vertex.is_finite() && !(may_be_clear && vertex.is_clear());
+  }
+
   SharedBytes file_;
   Element vertices_;
   Body body_;
+  ColorParts parts_;
 };
 
 template <class Body>
@@ -647,18 +726,17 @@ Source read_body(const SharedBytes& file, const PlyHeader& header, const Progres
     meter.done();
     return mesh;
   }
-  Body first_vertex = body;
+  std::unique_ptr<PointCloud> cloud;
   for (const Element& element : header.elements) {
     if (&element == vertices) {
-      first_vertex = body;
-      read_vertices(body, element, meter, [](const std::array<double, 3>&, Rgb, std::uint64_t) {});
+      cloud = std::make_unique<PlyCloud<Body>>(file, element, body, meter);
     } else {
       skip_element(body, element, meter);
     }
   }
   body.finish();
   meter.done();
-  return std::unique_ptr<PointCloud>(std::make_unique<PlyCloud<Body>>(file, *vertices, first_vertex));
+  return cloud;
 }
 
 }  // namespace

@@ -43,6 +43,14 @@ Source read_vox_frame(const SharedBytes& file, const ReadOptions& options, const
   return read_vox(file, progress, options.frame);
 }
 
+Source read_npy_asked(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return read_npy_as(options.as, file, progress);
+}
+
+Source read_obj_beside(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return read_obj_at(options.path, file, progress);
+}
+
 Source read_gltf_source(const SharedBytes& file, const Progress& progress) {
   return read_gltf(file, "", progress);
 }
@@ -55,7 +63,7 @@ Source read_gltf_beside(const SharedBytes& file, const ReadOptions& options, con
 constexpr std::array<ReaderRow, 22> kRows{{
     {".vox", "MagicaVoxel model", read_vox_source, looks_like_vox, Beginning::kMagic, read_vox_frame},
     {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic},
-    {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText},
+    {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText, read_obj_beside},
     {".off", "OFF mesh", read_off, looks_like_off, Beginning::kText},
     {".stl", "STL mesh", read_stl, looks_like_stl},
     {".glb .gltf", "glTF scene", read_gltf_source, looks_like_gltf, Beginning::kMagic, read_gltf_beside},
@@ -67,8 +75,8 @@ constexpr std::array<ReaderRow, 22> kRows{{
     {".oct", "baked scene", read_oct, looks_like_oct, Beginning::kMagic},
     {".scene", "scene text", read_scene_text, nullptr, Beginning::kText},
     {".binvox", "binvox grid", read_binvox, looks_like_binvox, Beginning::kMagic},
-    {".npy", "NumPy array", read_npy, looks_like_npy, Beginning::kMagic},
-    {".npz", "NumPy archive", read_npy, nullptr},
+    {".npy", "NumPy array", read_npy, looks_like_npy, Beginning::kMagic, read_npy_asked},
+    {".npz", "NumPy archive", read_npy, nullptr, Beginning::kAny, read_npy_asked},
     {".asc", "grid of heights", read_height_grid, looks_like_height_grid, Beginning::kMagic},
     {".mts", "Minetest schematic", read_mts, looks_like_mts, Beginning::kMagic},
     {".schematic", "Minecraft schematic", read_schematic, looks_like_schematic, Beginning::kMagic},
@@ -159,6 +167,10 @@ Source read_any(const ReadOptions& options, const SharedBytes& file, const Progr
   const ReaderRow& row = row_for(options.path, file.bytes);
   if (options.frame && row.read != read_vox_source) {
     throw InputError("--frame is for .vox files with frames, and this is a " + std::string(row.name));
+  }
+  if (options.as != ArrayAs::kByShape && row.read != read_npy) {
+    throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a " +
+                     std::string(row.name));
   }
   return row.read_with != nullptr ? row.read_with(file, options, progress) : row.read(file, progress);
 }

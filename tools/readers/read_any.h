@@ -20,6 +20,7 @@ namespace thimble::tools {
 struct ReadOptions {
   std::string path;                    ///< of the file, for the other files that it names; may be empty
   std::optional<std::uint32_t> frame;  ///< of an animation; the first where none is asked for
+  ArrayAs as = ArrayAs::kByShape;      ///< of an array of numbers
 };
 
 /// How a file of a format begins.

@@ -86,6 +86,9 @@ class VoxelGrid {
   virtual bool has_color() const = 0;
 };
 
+/// What an array of N x 3 to N x 9 numbers is taken for: points by its shape, heights where --as-heights says so.
+enum class ArrayAs : std::uint8_t { kByShape, kPoints, kHeights };
+
 /// Longest side of a `VoxelGrid`: beyond that no world holds it.
 inline constexpr std::uint32_t kGridSideLimit = 4096;
 
@@ -108,11 +111,12 @@ class PointCloud {
 };
 
 /// Triangles with real coordinates: `.obj`, `.off`, `.stl`, `.gltf`, `.ply` with faces. Polygons are already
-/// fanned.
+/// cut.
 struct TriangleMesh {
   std::vector<std::array<double, 3>> positions;         ///< all finite
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`, in range
   std::vector<Rgb> colors;                              ///< one a position, or empty
+  std::vector<Rgb> face_colors;                         ///< one a triangle, or empty; counts before `colors`
   bool is_z_up = false;                                 ///< the format says so; else y is taken to be up
   Notes notes;
 };
@@ -131,6 +135,8 @@ using Source = std::variant<std::unique_ptr<VoxelModel>, std::unique_ptr<PointCl
 
 /// What the reader had to say; nothing of a kind that has no notes.
 Notes notes_of(const Source& source);
+/// Notes that `points` of a file, if any, are not finite and left out.
+void note_left_out(Notes& notes, std::uint64_t points);
 
 }  // namespace thimble::tools
 

@@ -13,7 +13,8 @@ constexpr std::size_t kStlHeaderBytes = 80;
 constexpr std::size_t kTriangleBytes = 50;
 
 bool begins_with_solid(std::string_view text) {
-  std::string_view line = text.substr(0, 64);
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::string_view line = text.substr(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0, 64);
   return equals_ignoring_case(take_word(line), "solid");
 }
 
@@ -59,6 +60,10 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
     reader.skip(2);
     add(mesh, corners);
     meter.at(static_cast<std::size_t>(reader.offset()));
+  }
+  if (reader.remaining() != 0) {
+    mesh.notes.push_back(std::to_string(reader.remaining()) + " bytes behind the last of the " +
+                         std::to_string(count) + " triangles that the header counts are not read");
   }
   return mesh;
 }
@@ -123,12 +128,9 @@ bool looks_like_stl(std::span<const std::uint8_t> bytes) {
 
 Source read_stl(const SharedBytes& file, const Progress& progress) {
   ProgressMeter meter(progress, file.bytes.size());
-  bool is_binary = !begins_with_solid(file.text());
-  if (!is_binary && file.bytes.size() >= kStlHeaderBytes + 4) {
-    ByteReader reader(file.bytes);
-    reader.skip(kStlHeaderBytes);
-    is_binary = std::uint64_t{reader.u32()} * kTriangleBytes == reader.remaining();
-  }
+  // Many binary files begin with "solid", too; no text holds a zero byte.
+  const std::string_view first = file.text().substr(0, kFirstLookBytes);
+  const bool is_binary = !begins_with_solid(first) || first.find('\0') != std::string_view::npos;
   TriangleMesh mesh = is_binary ? read_binary(file, meter) : read_text(file.text(), meter);
   if (mesh.triangles.empty()) {
     throw InputError("the file holds no triangles");

@@ -1,10 +1,9 @@
 /// @file stl.h
 /// `.stl` meshes, as text and as binary.
 ///
-/// A file is binary when its size is that of as many triangles as its header counts, or when it does not
-/// begin with the word `solid`: exporters have written binary files that begin so. Of a text all `vertex`
-/// lines count, three a facet, of any number of solids; of a binary file bytes behind the last triangle are
-/// ignored, and so are colours, which programs write in ways that contradict each other. Normals are not
+/// A file is binary when it does not begin with the word `solid`, or holds a zero byte in its first
+/// `kFirstLookBytes`: exporters have written binary files that begin so. Of a text all `vertex` lines count, three a
+/// facet, of any number of solids; of a binary file bytes behind the last triangle are noted, and colours are ignored, which programs write in ways that contradict each other. Normals are not
 /// used. Corners are not joined: each triangle has three positions of its own.
 ///
 /// z is up, as the programs have it that make such files.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <span>
@@ -22,7 +23,7 @@ namespace {
 constexpr std::size_t kVoxelBytes = 4;  // x, y, z, colour index
 constexpr std::uint64_t kReportEveryBytes = 256 * 1024;
 
-/// One SIZE and XYZI pair.
+/// One SIZE and XYZI or TDCZ pair.
 struct Model {
   std::array<std::uint32_t, 3> size{};
   std::span<const std::uint8_t> voxels;
@@ -105,6 +106,8 @@ class VoxFile final : public VoxelModel {
   void read_chunks(Reporter& reporter);
   void read_size(ByteReader& chunk);
   void read_voxels(ByteReader& chunk, Reporter& reporter);
+  void read_packed(ByteReader& chunk, Reporter& reporter);
+  Model take_size(ByteReader& chunk);
   void check_size_used() const;
   void place_models();
   void place_frames();
@@ -114,6 +117,7 @@ class VoxFile final : public VoxelModel {
 
   SharedBytes file_;
   Palette palette_ = vox_default_palette();
+  std::deque<std::vector<std::uint8_t>> unpacked_;  // voxels of models that were packed
   std::vector<Model> models_;
   std::vector<Instance> instances_;
   std::array<std::int32_t, 3> size_{};
@@ -125,7 +129,8 @@ class VoxFile final : public VoxelModel {
   std::array<std::int32_t, 3> low_{};  // of all frames' boxes
   std::array<std::int32_t, 3> high_{};
   bool has_box_ = false;
-  bool size_pending_ = false;  // a SIZE waits for its XYZI
+  std::uint64_t unpacked_bytes_ = 0;  // of all packed models
+  bool size_pending_ = false;         // a SIZE waits for its XYZI
   std::array<std::uint32_t, 3> pending_size_{};
   std::string pending_place_;
 };
@@ -179,6 +184,8 @@ void VoxFile::read_chunks(Reporter& reporter) {
       read_size(chunk);
     } else if (head.id == "XYZI") {
       read_voxels(chunk, reporter);
+    } else if (head.id == "TDCZ") {
+      read_packed(chunk, reporter);
     } else if (head.id == "RGBA") {
       vox_read_rgba(chunk, palette_);
     } else if (head.id == "MATT") {
@@ -199,7 +206,7 @@ void VoxFile::read_chunks(Reporter& reporter) {
   }
   check_size_used();
   if (models_.empty()) {
-    throw InputError(vox_place(main.id, main.offset) + ": holds no model, no XYZI chunk is there");
+    throw InputError(vox_place(main.id, main.offset) + ": holds no model, no XYZI or TDCZ chunk is there");
   }
 }
 
@@ -222,13 +229,57 @@ void VoxFile::read_size(ByteReader& chunk) {
   pending_place_ = chunk.place();
 }
 
-void VoxFile::read_voxels(ByteReader& chunk, Reporter& reporter) {
+Model VoxFile::take_size(ByteReader& chunk) {
   if (!size_pending_) {
     chunk.fail("no SIZE chunk stands before it");
   }
   size_pending_ = false;
   Model model;
   model.size = pending_size_;
+  return model;
+}
+
+/// As the game Teardown writes it: the size again, then a byte a voxel, x the fastest, by zlib.
+void VoxFile::read_packed(ByteReader& chunk, Reporter& reporter) {
+  Model model = take_size(chunk);
+  std::uint64_t count = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (chunk.u32() != model.size[i]) {
+      chunk.fail("its size is not that of the SIZE chunk before it");
+    }
+    count *= model.size[i];
+  }
+  constexpr std::uint64_t kAlwaysBytes = 256 << 20;
+  unpacked_bytes_ += count;
+  if (unpacked_bytes_ > kAlwaysBytes && unpacked_bytes_ / 100 > file_.bytes.size()) {
+    chunk.fail("packed models are more than 100 times what the file has");
+  }
+  const FileBytes dense = inflate_bytes(chunk.take(chunk.remaining()), Deflated::kZlib, count, chunk.place());
+  if (dense.bytes().size() != count) {
+    chunk.fail("it unpacks to " + std::to_string(dense.bytes().size()) + " voxels, not " +
+               std::to_string(count));
+  }
+  const auto solid =
+      count - static_cast<std::uint64_t>(std::count(dense.bytes().begin(), dense.bytes().end(), 0));
+  std::vector<std::uint8_t> voxels;
+  voxels.reserve(static_cast<std::size_t>(solid * kVoxelBytes));
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint8_t material = dense.bytes()[i];
+    if (material != 0) {
+      const std::uint64_t row = i / model.size[0];
+      voxels.insert(voxels.end(), {static_cast<std::uint8_t>(i % model.size[0]),
+                                   static_cast<std::uint8_t>(row % model.size[1]),
+                                   static_cast<std::uint8_t>(row / model.size[1]), material});
+    }
+  }
+  model.empty = voxels.empty();
+  model.voxels = unpacked_.emplace_back(std::move(voxels));
+  models_.push_back(model);
+  reporter.at(chunk.offset());
+}
+
+void VoxFile::read_voxels(ByteReader& chunk, Reporter& reporter) {
+  Model model = take_size(chunk);
   const std::uint32_t count = chunk.u32();
   if (chunk.remaining() / kVoxelBytes < count) {
     chunk.fail(std::to_string(count) + " voxels of 4 bytes do not fit the " +

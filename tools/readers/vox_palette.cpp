@@ -59,7 +59,7 @@ Palette vox_default_palette() {
 }
 
 void vox_read_rgba(ByteReader& chunk, Palette& palette) {
-  for (std::size_t index = 1; index < palette.size(); ++index) {
+  for (std::size_t index = 1; index < palette.size() && (index == 1 || chunk.remaining() != 0); ++index) {
     Material& material = palette[index];
     material.color.r = chunk.u8();
     material.color.g = chunk.u8();

@@ -13,7 +13,7 @@ namespace thimble::tools {
 Palette vox_default_palette();
 
 /// RGBA: 256 times r, g, b, alpha. The first is colour index 1; the last stands for index 0, the empty voxel,
-/// and is ignored. Changes colours and alpha only, so that the order of RGBA and MATL does not matter.
+/// and is ignored. Where there are fewer, the others stay as they are. Changes colours and alpha only, so that the order of RGBA and MATL does not matter.
 void vox_read_rgba(ByteReader& chunk, Palette& palette);
 
 /// MATT, obsolete since version 0.99: an id, a kind, a weight, a bit mask and one float a bit that is set.

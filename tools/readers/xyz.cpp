@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "readers/mesh.h"
+#include "readers/color_scale.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -116,12 +116,11 @@ bool could_be_decimal_commas(std::string_view line) {
   return found && pieces >= 3;
 }
 
-enum class ColorScale : std::uint8_t { kNone, kUnit, kByte, kWord };
-
 /// Where things are in a file, found by the first pass and used by all others.
 struct Layout {
   std::array<std::size_t, kFields> columns{0, 1, 2, kNoColumn, kNoColumn, kNoColumn};
-  ColorScale color = ColorScale::kNone;
+  bool has_color = false;
+  ColorScale scale;
   Separator separator = Separator::kBlanks;
   /// The line that all others must have as many columns as: a header that names x, y and z, or else the
   /// first point.
@@ -130,6 +129,8 @@ struct Layout {
   bool model_ends_open = false;
   std::size_t first_point_offset = 0;
   std::uint64_t first_point_line = 1;
+  /// Each line begins with an element: a molecule.
+  bool has_elements = false;
   /// A line of words before the points that names no x, y and z; 0 when there is none.
   std::uint64_t title_line = 0;
 };
@@ -138,36 +139,32 @@ constexpr std::array<const char*, kFields> kFieldNames{"x", "y", "z", "red", "gr
 
 /// Looks at colour columns without trusting them to be colours.
 struct ColorSurvey {
-  bool all_bytes = true;      ///< whole numbers 0..255, digits only
-  bool all_numbers = true;    ///< finite and not negative
-  bool has_fraction = false;  ///< something else than digits
-  double highest = 0;
+  ColorScale scale;
+  bool all_numbers = true;
   std::uint64_t bad_line = 0;
 
   void see(std::string_view word, std::uint64_t line) {
-    const bool digits =
-        !word.empty() && std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
     double value = 0;
     if (parse_number(word, value) != NumberKind::kFinite || value < 0) {
-      all_bytes = false;
-      if (all_numbers) {
-        all_numbers = false;
-        bad_line = line;
-      }
+      bad_line = all_numbers ? line : bad_line;
+      all_numbers = false;
       return;
     }
-    has_fraction = has_fraction || !digits;
-    all_bytes = all_bytes && digits && value <= 255;
-    highest = std::max(highest, value);
+    scale.see(value);
   }
+  bool looks_like_colors() const { return all_numbers && scale.looks_like_colors(); }
 };
 
-/// A coordinate as a number. Where it is none because of another separator, the error says what was expected.
+/// A coordinate as a number, NaN for one that is not finite. Where it is no number because of another separator, the
+/// error says what was expected.
 double coordinate(std::string_view word, std::uint64_t line, const char* name, const Layout& layout) {
   double value = 0;
   const NumberKind kind = parse_number(word, value);
   if (kind == NumberKind::kFinite) {
     return value;
+  }
+  if (kind == NumberKind::kNotFinite) {
+    return std::nan("");
   }
   const Separator separator = layout.separator;
   const std::string_view marks =
@@ -221,11 +218,8 @@ void read_points(std::string_view text, const Layout& layout, ProgressMeter& met
   }
 }
 
-std::uint8_t color_byte(std::string_view word, ColorScale scale) {
-  double value = 0;
-  parse_number(word, value);
-  const double full = scale == ColorScale::kUnit ? 1 : (scale == ColorScale::kByte ? 255 : 65535);
-  return unit_to_byte(value / full);
+bool is_finite(const CloudPoint& point) {
+  return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
 }
 
 class XyzCloud final : public PointCloud {
@@ -237,14 +231,20 @@ class XyzCloud final : public PointCloud {
     ProgressMeter meter(no_progress, 0);
     read_points(file_.text(), layout_, meter,
                 [&](CloudPoint& point, const std::array<std::string_view, kFields>& words, std::string_view) {
+                  if (!is_finite(point)) {
+                    return;
+                  }
                   if (has_color()) {
-                    point.color = {color_byte(words[3], layout_.color), color_byte(words[4], layout_.color),
-                                   color_byte(words[5], layout_.color)};
+                    std::array<double, 3> color{};
+                    for (std::size_t i = 0; i < 3; ++i) {
+                      parse_number(words[3 + i], color[i]);
+                    }
+                    point.color = layout_.scale.color(color[0], color[1], color[2]);
                   }
                   visit(point);
                 });
   }
-  bool has_color() const override { return layout_.color != ColorScale::kNone; }
+  bool has_color() const override { return layout_.has_color; }
   const char* counts_in() const override { return "line"; }
 
  private:
@@ -305,6 +305,23 @@ struct Preamble {
   std::int64_t announced = -1;  ///< number of points, or -1
 };
 
+/// An element's symbol and three numbers, as a line of a molecule is.
+bool is_atom(std::string_view line) {
+  ColumnReader columns(line, Separator::kBlanks);
+  std::string_view column;
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (!columns.next(column) || column.size() > 2 || !std::all_of(column.begin(), column.end(), is_letter)) {
+    return false;
+  }
+  double value = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (!columns.next(column) || parse_number(column, value) == NumberKind::kGarbage) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Preamble read_preamble(std::string_view text, Layout& layout) {
   Preamble preamble;
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -326,6 +343,19 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
         parse_integer(first, preamble.announced) && preamble.announced >= 0) {
       layout.first_point_offset = begin + lines.offset();
       layout.first_point_line = lines.line_number() + 1;
+      LineReader after = lines;
+      if (after.next(line)) {  // a molecule's comment
+        LineReader ahead = after;
+        std::string_view atom;
+        if (ahead.next(atom) && is_atom(atom)) {
+          preamble.has_header = true;
+          layout.has_elements = true;
+          layout.columns = {1, 2, 3, kNoColumn, kNoColumn, kNoColumn};
+          layout.first_point_offset = begin + after.offset();
+          layout.first_point_line = after.line_number() + 1;
+          break;
+        }
+      }
       continue;
     }
     preamble.announced = std::max<std::int64_t>(preamble.announced, -1);
@@ -383,30 +413,51 @@ void check_columns(std::string_view line, std::uint64_t number, Layout& layout) 
   }
 }
 
+std::size_t columns_of_first(std::string_view text, const Layout& layout) {
+  LineReader lines(text.substr(layout.first_point_offset));
+  std::string_view line;
+  std::size_t count = 0;
+  while (count == 0 && lines.next(line)) {
+    ColumnReader columns(line, layout.separator);
+    for (std::string_view column; columns.next(column);) {
+      ++count;
+    }
+  }
+  return count;
+}
+
 }  // namespace
 
 Source read_xyz(const SharedBytes& file, const Progress& progress) {
   Layout layout;
   const Preamble preamble = read_preamble(file.text(), layout);
   const bool names_color = layout.columns[3] != kNoColumn;
+  const std::size_t columns = preamble.has_header ? 0 : columns_of_first(file.text(), layout);
   if (!preamble.has_header) {
-    layout.columns = {0, 1, 2, 3, 4, 5};
+    // Of x y z intensity r g b, and of x y z nx ny nz r g b.
+    const std::size_t color = columns == 7 || columns == 9 ? columns - 3 : 3;
+    layout.columns = {0, 1, 2, color, color + 1, color + 2};
   }
   ProgressMeter meter(progress, file.bytes.size());
   ColorSurvey survey;
   std::uint64_t count = 0;
+  std::uint64_t finite = 0;
   read_points(file.text(), layout, meter,
               [&](const CloudPoint& point, const std::array<std::string_view, kFields>& words,
                   std::string_view line) {
                 ++count;
                 check_columns(line, point.line, layout);
+                if (!is_finite(point)) {
+                  return;
+                }
+                ++finite;
                 // Without a header, one line that does not look like a colour settles the matter.
-                for (std::size_t i = 3; i < kFields && (names_color || survey.all_bytes); ++i) {
+                for (std::size_t i = 3; i < kFields && (names_color || survey.all_numbers); ++i) {
                   survey.see(words[i], point.line);
                 }
               });
-  if (count == 0) {
-    throw InputError("the file holds no points");
+  if (finite == 0) {
+    throw InputError(count == 0 ? "the file holds no points" : "no point of the file is finite");
   }
   if (preamble.announced >= 0 && static_cast<std::uint64_t>(preamble.announced) != count) {
     throw InputError("the first line announces " + std::to_string(preamble.announced) +
@@ -416,20 +467,30 @@ Source read_xyz(const SharedBytes& file, const Progress& progress) {
     if (!survey.all_numbers) {
       fail_at_line(survey.bad_line, "the color is missing, negative or not a number");
     }
-    if (survey.highest > 65535) {
+    if (!survey.scale.is_valid()) {
       throw InputError("the columns of the color hold values above 65535");
     }
-    layout.color = survey.highest > 255
-                       ? ColorScale::kWord
-                       : (survey.highest <= 1 && survey.has_fraction ? ColorScale::kUnit : ColorScale::kByte);
-  } else if (!preamble.has_header && survey.all_bytes) {
-    layout.color = ColorScale::kByte;
+    layout.has_color = true;
+  } else {
+    layout.has_color = columns >= 6 && survey.looks_like_colors();
   }
-  if (layout.color == ColorScale::kNone) {
+  layout.scale = survey.scale;
+  if (!layout.has_color) {
     std::fill(layout.columns.begin() + 3, layout.columns.end(), kNoColumn);
   }
   meter.done();
-  return std::unique_ptr<PointCloud>(std::make_unique<XyzCloud>(file, layout));
+  auto cloud = std::make_unique<XyzCloud>(file, layout);
+  note_left_out(cloud->notes, count - finite);
+  if (layout.has_elements) {
+    cloud->notes.push_back("it is a molecule: its atoms are points, their elements are not shown");
+  } else if (columns > (layout.has_color ? 6U : 3U)) {
+    const std::size_t color = layout.columns[3] + 1;
+    cloud->notes.push_back(
+        "no line names the " + std::to_string(columns) + " columns: 1 to 3 are taken for places, " +
+        (layout.has_color ? std::to_string(color) + " to " + std::to_string(color + 2) : "none") +
+        " for colors");
+  }
+  return std::unique_ptr<PointCloud>(std::move(cloud));
 }
 
 }  // namespace thimble::tools

@@ -18,13 +18,13 @@
 ///    are the first three columns of what follows. Columns named r, g, b or red, green, blue are the colour.
 /// 3. Points. Columns that mean nothing are not read, whatever they hold.
 ///
-/// Colour without a header: columns 4 to 6, when in the whole file every line has them and all are whole
-/// numbers from 0 to 255 without a sign. Otherwise they are normals or something else and ignored. A
-/// header that names no colour says that there is none.
-/// Colour by a header: 0 to 255; or 0 to 1 when no value in the file is above 1 and one is written with a
-/// fraction or exponent; or 0 to 65535 when a value is above 255.
+/// Colour without a header: columns 4 to 6, of 7 and 9 columns the last three, when in the whole file all are from 0
+/// to 1, or whole numbers up to 255. Otherwise they are normals or something else and ignored. A header that names no
+/// colour says that there is none.
+/// Colour by a header: 0 to 1 where no value of the file is above 1, else 0 to 255, or to 65535 when one is above 255.
 ///
-/// Element symbols in the first column (molecules) are not read.
+/// A count, a comment and lines that begin with an element's symbol are a molecule: its atoms are points.
+/// Points that are not finite are left out.
 #ifndef THIMBLE_TOOLS_READERS_XYZ_H
 #define THIMBLE_TOOLS_READERS_XYZ_H
 
@@ -35,9 +35,9 @@ namespace thimble::tools {
 
 /// Checks the whole file once; the result keeps `file` and parses it anew for each `for_each`, so that no
 /// memory depends on the number of points. `CloudPoint::line` is the line in the file.
-/// @throws InputError  naming the line: a column that is missing, empty or no number, a coordinate that is
-///   not finite, a colour out of range, a number of columns that differs; an announced number of points that
-///   is wrong; no points at all
+/// @throws InputError  naming the line: a column that is missing, empty or no number, a colour out of
+///   range, a number of columns that differs; an announced number of points that
+///   is wrong; no point that is finite
 Source read_xyz(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools

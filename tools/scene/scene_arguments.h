@@ -16,6 +16,8 @@ struct SceneArguments {
   bool as_voxels = false;                ///< --as-voxels
   bool z_up = false;                     ///< --z-up
   std::optional<std::uint32_t> frame{};  ///< --frame
+  bool as_points = false;                ///< --as-points
+  bool as_heights = false;               ///< --as-heights
 };
 
 /// What is built of it, and traced.

@@ -347,6 +347,9 @@ void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, cons
 }
 
 Rgb triangle_color(const TriangleMesh& mesh, std::size_t index) {
+  if (!mesh.face_colors.empty()) {
+    return mesh.face_colors[index];
+  }
   const auto& [a, b, c] = mesh.triangles[index];
   const Rgb& p = mesh.colors[a];
   const Rgb& q = mesh.colors[b];
@@ -356,9 +359,13 @@ Rgb triangle_color(const TriangleMesh& mesh, std::size_t index) {
           static_cast<std::uint8_t>((p.b + q.b + r.b + 1) / 3)};
 }
 
+static bool has_colors(const TriangleMesh& mesh) {
+  return !mesh.colors.empty() || !mesh.face_colors.empty();
+}
+
 ColorHistogram triangle_colors(const TriangleMesh& mesh) {
   ColorHistogram histogram;
-  if (!mesh.colors.empty()) {
+  if (has_colors(mesh)) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       histogram.add(triangle_color(mesh, i));
     }
@@ -369,7 +376,7 @@ ColorHistogram triangle_colors(const TriangleMesh& mesh) {
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress) {
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
-  const bool colored = colors != nullptr && !mesh.colors.empty();
+  const bool colored = colors != nullptr && has_colors(mesh);
   const auto triangle_at = [&](std::size_t i) {
     const auto& [a, b, c] = mesh.triangles[i];
     return CellTriangle{{units[a], units[b], units[c]},

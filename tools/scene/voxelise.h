@@ -126,7 +126,7 @@ std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bo
 /// triangle into eight, and so on down to voxels, so a big triangle costs in proportion to its area. No heap.
 void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, const VoxelSink& sink);
 
-/// The colour of triangle `index`: the average of its three vertices' colours, rounded; `mesh` has colours.
+/// The colour of triangle `index`: its own, or the average of its three vertices' colours, rounded; `mesh` has colours.
 Rgb triangle_color(const TriangleMesh& mesh, std::size_t index);
 /// The colours of all triangles, for PaletteMap; empty when the mesh has no colours.
 ColorHistogram triangle_colors(const TriangleMesh& mesh);

@@ -1,0 +1,312 @@
+// Files that programs really write and that are read wrongly easily: what a file says is what its source holds, and what
+// it does not hold is noted.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "readers/las.h"
+#include "readers/npy.h"
+#include "readers/obj.h"
+#include "readers/off.h"
+#include "readers/pcd.h"
+#include "readers/ply.h"
+#include "readers/read_any.h"
+#include "readers/stl.h"
+#include "readers/vox.h"
+#include "readers/vox_palette.h"
+#include "readers/xyz.h"
+#include "support/file_bytes.h"
+#include "support/reader_inputs.h"
+#include "support/run_command.h"
+
+using namespace thimble::tools;
+using namespace thimble::tools::test;
+using thimble::tests::deflated;
+using thimble::tests::little;
+using thimble::tests::TemporaryFolder;
+using thimble::tests::vox_chunk;
+
+namespace {
+
+using Colors = std::vector<Rgb>;
+
+constexpr Rgb kRed{255, 0, 0};
+constexpr Rgb kGreen{0, 255, 0};
+constexpr Rgb kBlue{0, 0, 255};
+
+template <class Read>
+Source source_of(const Read& read, const std::string& text) {
+  return read(SharedBytes::own(text), {});
+}
+
+bool notes_hold(const Source& source, const std::string& part) {
+  const Notes notes = notes_of(source);
+  return std::any_of(notes.begin(), notes.end(),
+                     [&](const std::string& note) { return contains(note, part); });
+}
+
+Colors colors_of(const Source& source) {
+  Colors colors;
+  const auto& cloud = *std::get<std::unique_ptr<PointCloud>>(source);
+  if (cloud.has_color()) {
+    cloud.for_each([&](const CloudPoint& point) { colors.push_back(point.color); });
+  }
+  return colors;
+}
+
+std::size_t points_of(const Source& source) {
+  std::size_t count = 0;
+  std::get<std::unique_ptr<PointCloud>>(source)->for_each([&](const CloudPoint&) { ++count; });
+  return count;
+}
+
+std::string npy(const std::string& type, const std::string& shape, const std::string& data) {
+  std::string header = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + shape + "), }";
+  header += std::string(64 - (header.size() + 11) % 64, ' ') + "\n";
+  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(header.size() & 255) +
+         static_cast<char>(header.size() >> 8) + header + data;
+}
+
+template <class Number>
+std::string numbers(const std::vector<Number>& values) {
+  std::string bytes(values.size() * sizeof(Number), 0);
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("npy: N x 3 to N x 9 numbers of any type -> points, heights only by --as-heights") {
+  const std::string places = numbers<std::int64_t>({1, 2, 3, 2, 2, 3, 5, 5, 5});
+  CHECK(points_of(source_of(read_npy, npy("<i8", "3, 3", places))) == 3);
+  for (int columns = 3; columns <= 9; ++columns) {
+    CAPTURE(columns);
+    const std::string rows = numbers(std::vector<float>(static_cast<std::size_t>(4 * columns), 0.25F));
+    const std::string file = npy("<f4", "4, " + std::to_string(columns), rows);
+    const Source points = source_of(read_npy, file);
+    CHECK(points_of(points) == 4);
+    CHECK(colors_of(points).empty() == (columns < 6));
+    CHECK(notes_hold(points, "columns") == (columns != 3 && columns != 6));
+    CHECK(points_of(read_npy_as(ArrayAs::kPoints, SharedBytes::own(file))) == 4);
+    CHECK(std::holds_alternative<std::unique_ptr<VoxelGrid>>(
+              read_npy_as(ArrayAs::kHeights, SharedBytes::own(file))) !=
+          std::holds_alternative<std::unique_ptr<PointCloud>>(
+              read_npy_as(ArrayAs::kHeights, SharedBytes::own(file))));
+  }
+  const std::string heights = npy("<f4", "4, 10", numbers(std::vector<float>(40, 1)));
+  CHECK_THROWS_AS(read_npy_as(ArrayAs::kPoints, SharedBytes::own(heights)), InputError);
+}
+
+TEST_CASE("npy: halves -> read by every kind of number; 65 dimensions -> refused in a short sentence") {
+  // 1, 2^-24, the greatest, -2, infinite: five points, of which one is left out.
+  const std::vector<std::uint16_t> halves{0x3C00, 0,      0, 0x0001, 0,      0, 0x7BFF, 0,
+                                          0,      0xC000, 0, 0,      0x7C00, 0, 0};
+  const Source source = source_of(read_npy, npy("<f2", "5, 3", numbers(halves)));
+  std::vector<double> x;
+  std::get<std::unique_ptr<PointCloud>>(source)->for_each(
+      [&](const CloudPoint& point) { x.push_back(point.x); });
+  CHECK(x == std::vector<double>{1, std::ldexp(1.0, -24), 65504, -2});
+  CHECK(notes_hold(source, "1 point is not finite and is left out"));
+  std::string shape = "1";
+  for (int i = 0; i < 64; ++i) {
+    shape += ", 1";
+  }
+  const std::string said = error_of(read_npy, npy("|u1", shape, "x"));
+  CHECK(contains(said, "more than 64 dimensions"));
+  CHECK(said.size() < 300);
+}
+
+TEST_CASE(
+    "xyz: columns without names -> the colour is where its kind of file has it, and noted where that is a "
+    "guess") {
+  const Source seven = source_of(read_xyz, "0 0 0 17 255 0 0\n1 0 0 18 0 255 0\n");
+  CHECK(colors_of(seven) == Colors{kRed, kGreen});
+  CHECK(notes_hold(seven, "5 to 7 for colors"));
+  const Source nine = source_of(read_xyz, "0 0 0 0 0 1 255 0 0\n1 0 0 0 -1 0 0 0 255\n");
+  CHECK(colors_of(nine) == Colors{kRed, kBlue});
+  const Source unit = source_of(read_xyz, "0 0 0 0.5 0 0\n1 0 0 0 1 0\n");
+  CHECK(colors_of(unit) == Colors{{128, 0, 0}, kGreen});
+  CHECK(notes_of(unit).empty());
+  const Source normals = source_of(read_xyz, "0 0 0 0.5 0 -1\n1 0 0 0 1 0\n");
+  CHECK(colors_of(normals).empty());
+  CHECK(notes_hold(normals, "none for colors"));
+  CHECK(colors_of(source_of(read_xyz, "x,y,z,r,g,b\n0,0,0,1,0,0\n1,1,1,0,1,0\n")) == Colors{kRed, kGreen});
+  CHECK(colors_of(source_of(read_xyz, "x,y,z,r,g,b\n0,0,0,1,0,0\n1,1,1,0,2,0\n")) ==
+        Colors{{1, 0, 0}, {0, 2, 0}});
+}
+
+TEST_CASE("xyz: a molecule -> its atoms; points that are not finite -> left out and counted") {
+  for (const char* comment : {"water", "", "3 atoms of it"}) {
+    CAPTURE(comment);
+    const Source water =
+        source_of(read_xyz, "3\n" + std::string(comment) + "\nO 0 0 0.1\nH 0 0.7 -0.4\nH 0 -0.7 -0.4\n");
+    CHECK(points_of(water) == 3);
+    CHECK(notes_hold(water, "molecule"));
+  }
+  const Source holes = source_of(read_xyz, "0 0 0\nnan 1 1\n1 inf 1\n2 2 2\n");
+  CHECK(points_of(holes) == 2);
+  CHECK(notes_hold(holes, "2 points are not finite"));
+  CHECK(contains(error_of(read_xyz, "nan 0 0\n"), "no point of the file is finite"));
+}
+
+TEST_CASE("off: colours of faces, and a count that stands right behind the keyword -> read") {
+  const std::string square = " 4 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const TriangleMesh bytes =
+      read_mesh(read_off, "OFF" + square + "4 0 1 2 3 255 0 0\n3 0 1 2 0 0 255 128\n3 0 2 3\n");
+  CHECK(bytes.face_colors == Colors{kRed, kRed, kBlue, Rgb{}});
+  CHECK(read_mesh(read_off, "OFF" + square + "4 0 1 2 3\n3 0 1 2 0.0 0.0 1.0\n3 0 2 3 7\n").face_colors ==
+        Colors{Rgb{}, Rgb{}, kBlue, Rgb{}});
+  CHECK(read_mesh(read_off, "OFF" + square + "4 0 1 2 3\n3 0 1 2 9\n3 0 2 3\n").face_colors.empty());
+  CHECK(read_mesh(read_off, "OFF4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n").triangles.size() == 2);
+  CHECK(find_reader("x.bin", SharedBytes::own("OFF4 1 0\n").bytes) != nullptr);
+}
+
+TEST_CASE(
+    "ply: colours as floats of 0 to 255, points that are not finite, Gaussian splats -> as they are meant") {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string colors = "property float red\nproperty float green\nproperty float blue\nend_header\n";
+  CHECK(colors_of(source_of(read_ply, head + colors + "0 0 0 255 0 0\n1 0 0 0 255 0\n2 0 0 0 0 1\n")) ==
+        Colors{kRed, kGreen, {0, 0, 1}});
+  CHECK(colors_of(source_of(read_ply, head + colors + "0 0 0 1 0 0\n1 0 0 0 0.5 0\n2 0 0 0 0 1\n")) ==
+        Colors{kRed, {0, 128, 0}, kBlue});
+  const Source holes = source_of(read_ply, head + "end_header\n0 0 0\nnan 0 0\n1 1 1\n");
+  CHECK(points_of(holes) == 2);
+  CHECK(notes_hold(holes, "1 point is not finite"));
+  const Source splats = source_of(
+      read_ply,
+      head + "property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\nproperty float opacity\n" +
+          "end_header\n0 0 0 1.7725 -1.7725 0 9\n1 0 0 0 0 0 -9\n2 0 0 -9 -9 9 0\n");
+  CHECK(colors_of(splats) == Colors{{255, 0, 128}, kBlue});
+  CHECK(notes_hold(splats, "1 of 3 are nearly clear"));
+}
+
+TEST_CASE(
+    "stl: what is binary is told by its bytes, not by its name for itself; the count and the bytes may "
+    "differ") {
+  std::string binary = "solid exported by a program" + std::string(53, ' ') + std::string("\x01\0\0\0", 4);
+  std::string triangle = numbers<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) + std::string(2, '\0');
+  const Source tail = source_of(read_stl, binary + triangle + "xy");
+  CHECK(std::get<TriangleMesh>(tail).triangles.size() == 1);
+  CHECK(notes_hold(tail, "2 bytes behind the last of the 1 triangles"));
+  CHECK(notes_hold(source_of(read_stl, binary + triangle + triangle), "50 bytes behind"));
+  CHECK(contains(error_of(read_stl, binary), "counts 1 triangles, but the file has room for 0"));
+  const std::string text =
+      "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+      "0\nendloop\nendfacet\nendsolid\n";
+  CHECK(read_mesh(read_stl, "\xEF\xBB\xBF" + text).triangles.size() == 1);
+}
+
+TEST_CASE("pcd: names in capitals, and colours in three fields of bytes or floats -> read") {
+  const std::string sizes = "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n";
+  CHECK(points_of(source_of(read_pcd, "FIELDS X Y Z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n" + sizes +
+                                          "0 0 0\n5 5 5\n")) == 2);
+  for (const char* type : {"U U U", "F F F"}) {
+    const std::string head = "FIELDS x y z r g b\nSIZE 4 4 4 4 4 4\nTYPE F F F " + std::string(type) + "\n";
+    CHECK(colors_of(source_of(read_pcd, head + sizes + "0 0 0 255 0 0\n5 5 5 0 0 255\n")) ==
+          Colors{kRed, kBlue});
+  }
+  const std::string binary =
+      "FIELDS x y z r g b\nSIZE 4 4 4 1 1 1\nTYPE F F F U U U\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary\n";
+  CHECK(colors_of(source_of(read_pcd, binary + std::string(12, '\0') + std::string("\0\xFF\0", 3))) ==
+        Colors{kGreen});
+}
+
+TEST_CASE("obj: polygons that are not convex -> ears, whose triangles cover the polygon and nothing else") {
+  // A U, a comb, an arrow; seen along each axis, forwards and backwards.
+  const std::vector<std::vector<std::array<double, 2>>> shapes{
+      {{0, 0}, {9, 0}, {9, 9}, {6, 9}, {6, 3}, {3, 3}, {3, 9}, {0, 9}},
+      {{0, 0}, {9, 0}, {9, 5}, {7, 5}, {7, 1}, {5, 1}, {5, 5}, {4, 5}, {4, 1}, {2, 1}, {2, 5}, {0, 5}},
+      {{0, 0}, {4, 2}, {0, 4}, {1, 2}}};
+  for (const auto& shape : shapes) {
+    double area = 0;
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+      const auto& p = shape[i];
+      const auto& q = shape[(i + 1) % shape.size()];
+      area += p[0] * q[1] - p[1] * q[0];
+    }
+    for (std::size_t turned = 0; turned < 6; ++turned) {
+      std::string text;
+      std::string face = "f";
+      for (std::size_t i = 0; i < shape.size(); ++i) {
+        const auto& p = shape[turned < 3 ? i : shape.size() - 1 - i];
+        std::array<double, 3> place{};
+        place[turned % 3] = p[0];
+        place[(turned + 1) % 3] = p[1];
+        text += "v " + std::to_string(place[0]) + " " + std::to_string(place[1]) + " " +
+                std::to_string(place[2]) + "\n";
+        face += " " + std::to_string(i + 1);
+      }
+      for (const bool comes_first : {false, true}) {
+        const TriangleMesh mesh = read_mesh(read_obj, comes_first ? face + "\n" + text : text + face + "\n");
+        REQUIRE(mesh.triangles.size() == shape.size() - 2);
+        double sum = 0;
+        for (const auto& triangle : mesh.triangles) {
+          const auto& a = mesh.positions[triangle[0]];
+          const auto& b = mesh.positions[triangle[1]];
+          const auto& c = mesh.positions[triangle[2]];
+          const std::size_t u = turned % 3;
+          const std::size_t v = (turned + 1) % 3;
+          const double doubled = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
+          CHECK((turned < 3 ? doubled : -doubled) >= 0);  // none is turned over: so none lies outside
+          sum += std::fabs(doubled);
+        }
+        CHECK(sum == doctest::Approx(area));
+      }
+    }
+  }
+}
+
+TEST_CASE("obj: materials beside it -> colours of faces; what is missing or not drawn is noted") {
+  const TemporaryFolder folder;
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  folder.write(
+      "a b.mtl",
+      "newmtl my red\nKd 1 0 0\nd 1\nnewmtl air\nKd 0 1 0\nd 0\nnewmtl photo\nmap_Kd p.jpg\nKd 0 0 1\n");
+  const auto read = [&](const std::string& text) {
+    return read_scene_file({folder.write("x.obj", text), std::nullopt, ArrayAs::kByShape});
+  };
+  const Source source = read("mtllib a b.mtl\n" + square +
+                             "f 1 2 3\nusemtl my red\nf 1 3 4\nusemtl air\nf 1 2 4\nusemtl photo\nf 2 3 4\n");
+  const auto& mesh = std::get<TriangleMesh>(source);
+  CHECK(mesh.face_colors == Colors{Rgb{}, kRed, kBlue});
+  CHECK(mesh.triangles.size() == 3);
+  CHECK(notes_hold(source, "1 triangle is wholly clear"));
+  CHECK(notes_hold(source, "map_Kd"));
+  CHECK(notes_hold(read("mtllib none.mtl\nusemtl red\n" + square + "f 1 2 3\n"), "'none.mtl'"));
+  CHECK(notes_hold(read("usemtl red\n" + square + "f 1 2 3\n"), "no file is named"));
+  CHECK(notes_hold(read("mtllib a b.mtl\nusemtl blue\n" + square + "f 1 2 3\n"),
+                   "1 material has no description"));
+  CHECK(notes_of(read(square + "f 1 2 3\n")).empty());
+}
+
+TEST_CASE("vox: models packed by zlib, a palette of sixteen entries -> read") {
+  const std::string size = numbers<std::uint32_t>({2, 3, 2});
+  const std::string voxels("\1\0\0\0\0\2\0\0\0\0\0\3", 12);
+  const std::string packed = deflated(voxels, 15);
+  const auto file = [&](const std::string& model) {
+    return "VOX " + little(150, 4) +
+           vox_chunk("MAIN", "",
+                     vox_chunk("SIZE", size) + model + vox_chunk("RGBA", std::string(16 * 4, '\x40')));
+  };
+  const Source source = read_any("a.vox", SharedBytes::own(file(vox_chunk("TDCZ", size + packed))));
+  const auto& model = *std::get<std::unique_ptr<VoxelModel>>(source);
+  std::vector<std::array<std::int32_t, 4>> seen;
+  model.for_each([&](auto x, auto y, auto z, auto material) { seen.push_back({x, y, z, material}); });
+  CHECK(seen == std::vector<std::array<std::int32_t, 4>>{{0, 0, 0, 1}, {1, 2, 0, 2}, {1, 2, 1, 3}});
+  CHECK(model.palette()[16].color == Rgb{64, 64, 64});
+  CHECK(model.palette()[17].color == vox_default_palette()[17].color);
+  CHECK_THROWS_AS(read_any("a.vox", SharedBytes::own(file(vox_chunk("TDCZ", size + packed.substr(0, 9))))),
+                  InputError);
+  CHECK_THROWS_AS(read_any("a.vox", SharedBytes::own(
+                                        file(vox_chunk("TDCZ", numbers<std::uint32_t>({2, 2, 2}) + packed)))),
+                  InputError);
+}

@@ -1,0 +1,146 @@
+#include "readers/obj_materials.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "readers/file_bytes.h"
+#include "readers/mesh.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+struct ObjMaterial {
+  std::optional<Rgb> color;
+  double opacity = 1;
+  bool has_picture = false;
+};
+using MaterialTable = std::unordered_map<std::string, ObjMaterial>;
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) {
+    text.remove_prefix(1);
+  }
+  while (!text.empty() && is_space(text.back())) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+void read_library(std::string_view text, MaterialTable& table) {
+  LineReader lines(text);
+  ObjMaterial none;  // of statements before the first material
+  ObjMaterial* material = &none;
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view word = take_word(line);
+    double value = 0;
+    if (word == "newmtl") {
+      material = &table[std::string(trimmed(line))];
+    } else if (word == "map_Kd") {
+      material->has_picture = true;
+    } else if (word == "Kd") {
+      std::array<double, 3> color{};
+      bool is_color = true;
+      for (double& component : color) {
+        is_color = is_color && parse_number(take_word(line), component) == NumberKind::kFinite;
+      }
+      if (is_color) {
+        material->color = {unit_to_byte(color[0]), unit_to_byte(color[1]), unit_to_byte(color[2])};
+      }
+    } else if ((word == "d" || word == "Tr") && parse_number(take_word(line), value) == NumberKind::kFinite) {
+      material->opacity = word == "d" ? value : 1 - value;
+    }
+  }
+}
+
+}  // namespace
+
+void ObjMaterials::add_library(std::string_view name) {
+  constexpr std::size_t kMostLibraries = 64;
+  const std::string_view found = trimmed(name);
+  if (!found.empty() && libraries_.size() < kMostLibraries &&
+      std::find(libraries_.begin(), libraries_.end(), found) == libraries_.end()) {
+    libraries_.emplace_back(found);
+  }
+}
+
+void ObjMaterials::use(std::string_view name) {
+  const auto [found, is_new] = numbers_.try_emplace(std::string(trimmed(name)), names_.size());
+  if (is_new) {
+    names_.push_back(found->first);
+  }
+  in_use_ = found->second;
+}
+
+void ObjMaterials::take_triangles(std::size_t first, std::size_t end) {
+  if (names_.size() > 1) {
+    of_triangle_.resize(first);
+    of_triangle_.resize(end, in_use_);
+  }
+}
+
+void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) const {
+  if (of_triangle_.empty()) {
+    return;
+  }
+  MaterialTable table;
+  for (const std::string& name : path.empty() ? std::vector<std::string>() : libraries_) {
+    std::string slashed = name;
+    std::replace(slashed.begin(), slashed.end(), '\\', '/');
+    try {
+      const FileBytes file =
+          load_file(slashed.starts_with('/') ? slashed : path.substr(0, path.rfind('/') + 1) + slashed);
+      read_library(file.text(), table);
+    } catch (const ShortageError&) {
+      throw;
+    } catch (const InputError& error) {
+      mesh.notes.push_back("the materials of " + quoted(name) + " beside it are not drawn: it " +
+                           error.what());
+    }
+  }
+  std::vector<ObjMaterial> used;
+  std::size_t missing = 0;
+  std::size_t pictures = 0;
+  bool has_color = false;
+  for (const std::string& name : names_) {
+    const auto found = table.find(name);
+    missing += found == table.end() && !name.empty() ? 1U : 0U;
+    used.push_back(found == table.end() ? ObjMaterial{} : found->second);
+    pictures += used.back().has_picture ? 1U : 0U;
+    has_color = has_color || used.back().color;
+  }
+  const auto count = [](std::size_t number, const char* one, const char* more) {
+    return std::to_string(number) + (number == 1 ? one : more);
+  };
+  if (missing != 0 && !table.empty()) {
+    mesh.notes.push_back(count(missing, " material has", " materials have") + " no description and no color");
+  } else if (missing != 0 && libraries_.empty()) {
+    mesh.notes.push_back("its materials are not drawn: no file is named that describes them (mtllib)");
+  }
+  if (pictures != 0) {
+    mesh.notes.push_back(
+        count(pictures, " material's picture (map_Kd) is", " materials' pictures (map_Kd) are") +
+        " not drawn");
+  }
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const ObjMaterial& material = used[i < of_triangle_.size() ? of_triangle_[i] : 0];
+    if (material.opacity <= 0) {
+      continue;
+    }
+    triangles.push_back(mesh.triangles[i]);
+    if (has_color) {
+      mesh.face_colors.push_back(material.color.value_or(Rgb{}));
+    }
+  }
+  if (triangles.size() < mesh.triangles.size()) {
+    mesh.notes.push_back(count(mesh.triangles.size() - triangles.size(), " triangle is", " triangles are") +
+                         " wholly clear (d 0) and left out");
+    mesh.triangles = std::move(triangles);
+  }
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,41 @@
+/// @file obj_materials.h
+/// The materials of `.obj` files: `.mtl`, of which `Kd`, `d` and `Tr` are read. Internal to the `.obj` reader.
+#ifndef THIMBLE_TOOLS_READERS_OBJ_MATERIALS_H
+#define THIMBLE_TOOLS_READERS_OBJ_MATERIALS_H
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "readers/source.h"
+
+namespace thimble::tools {
+
+/// Which face has which material, by the names that an `.obj` uses, and what files beside it say of these.
+class ObjMaterials {
+ public:
+  /// The rest of a line `mtllib` or `usemtl`: names may hold blanks.
+  void add_library(std::string_view name);
+  void use(std::string_view name);
+  /// Triangles `first` to `end` - 1 have the material in use.
+  void take_triangles(std::size_t first, std::size_t end);
+
+  /// Opens the libraries beside `path` and colours the faces of `mesh`; faces that are clear are left out. Nothing
+  /// where no material has a colour. Adds the notes of what is missing and what is not drawn.
+  /// @throws ShortageError  no descriptors or memory left to open a library
+  void color_faces(const std::string& path, TriangleMesh& mesh) const;
+
+ private:
+  std::vector<std::string> libraries_;
+  std::vector<std::string> names_{""};  ///< of the materials used; the first is none
+  std::unordered_map<std::string, std::uint32_t> numbers_{{"", 0}};
+  std::uint32_t in_use_ = 0;
+  std::vector<std::uint32_t> of_triangle_;  ///< empty as long as no material is used
+};
+
+}  // namespace thimble::tools
+
+#endif
