@@ -21,7 +21,6 @@
 #include "output/suggestion.h"
 #include "output/units.h"
 #include "readers/input_error.h"
-#include "scene/generator_words.h"
 #include "scene/named_scenes.h"
 
 namespace {

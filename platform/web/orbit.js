@@ -66,7 +66,7 @@ class Orbit {
     if (this.isParallel) this.distance = this.firstDistance * zoom / 256;
     this.changed();
   }
-  // Keeps the target in the world or near it, and the eye where rays may start (tools/viewer/orbit.cpp).
+  // Keeps the target in the world or near it, and the eye where rays may start (tools/viewer/camera_state.cpp).
   changed() {
     this.pitch = within(this.pitch, -1.5708, 1.5708);
     this.target = this.target.map((x) => within(x, -this.side, 2 * this.side));

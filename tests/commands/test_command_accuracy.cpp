@@ -14,9 +14,8 @@
 #include <vector>
 
 #include "instruments/accuracy_study.h"
-#include "instruments/chip_cost.h"
-#include "instruments/hard_case_report.h"
-#include "output/scatter.h"
+#include "instruments/hard_cases.h"
+#include "output/plot.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"

@@ -9,7 +9,7 @@
 
 #include "boards/effect_flash.h"
 #include "scene/built_scene.h"
-#include "scene/lit_setup.h"
+#include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "support/check_command.h"
 #include "thimble/light/render.h"

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/engine_options.h"
+#include "commands/scene_options.h"
 #include "support/check_command.h"
 #include "support/counts.h"
 #include "support/hit_rows.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scene/built_scene.h"
-#include "scene/lit_setup.h"
+#include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "support/check_command.h"
 #include "thimble/light/render.h"

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "output/plot.h"
-#include "output/svg.h"
 #include "output/units.h"
 
 namespace thimble::tools {

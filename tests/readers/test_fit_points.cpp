@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "scene/fit_points.h"
 #include "scene/random.h"
+#include "scene/world_fit.h"
 
 namespace {
 

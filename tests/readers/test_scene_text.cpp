@@ -15,7 +15,6 @@
 #include "readers/read_any.h"
 #include "readers/scene_text.h"
 #include "scene/scene_source.h"
-#include "scene/text_scene.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
 

@@ -9,7 +9,6 @@
 
 #include "scene/random.h"
 #include "scene/voxelise.h"
-#include "scene/voxelise_cells.h"
 #include "scene/world_fit.h"
 #include "support/counts.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "scene/default_look.h"
+#include "scene/lit_description.h"
 #include "scene/look_picture.h"
-#include "scene/tone.h"
 
 namespace {
 

@@ -7,16 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "scene/backdrop.h"
 #include "scene/baking.h"
 #include "scene/built_scene.h"
 #include "scene/default_look.h"
-#include "scene/display_look.h"
 #include "scene/framing.h"
 #include "scene/host_memory.h"
+#include "scene/lit_description.h"
 #include "scene/lit_streams.h"
+#include "scene/look_picture.h"
 #include "scene/scene_shape.h"
-#include "scene/tone.h"
 #include "support/lit_world.h"
 #include "thimble/light/scene.h"
 

@@ -9,7 +9,6 @@
 
 #include "apps/demo_view.h"
 #include "readers/source.h"
-#include "scene/best_view.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
 #include "thimble/trace/ray.h"

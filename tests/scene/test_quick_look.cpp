@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "scene/quick_look.h"
+#include "scene/default_look.h"
 
 using namespace thimble;
 using namespace thimble::tools;

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "viewer/controls.h"
-#include "viewer/keys.h"
 
 namespace {
 

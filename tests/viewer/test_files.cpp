@@ -6,7 +6,7 @@
 #include <string>
 
 #include "support/run_command.h"
-#include "viewer/file_watch.h"
+#include "viewer/open_scene.h"
 #include "viewer/saving.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "viewer/orbit.h"
+#include "viewer/camera_state.h"
 
 namespace {
 

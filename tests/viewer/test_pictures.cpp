@@ -18,9 +18,7 @@
 #include "thimble/picture/render.h"
 #include "viewer/fast_frames.h"
 #include "viewer/finished_picture.h"
-#include "viewer/pace.h"
 #include "viewer/picking.h"
-#include "viewer/refinement.h"
 
 namespace {
 

@@ -8,13 +8,11 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/effect_options.h"
-#include "commands/report_files.h"
 #include "commands/scene_options.h"
+#include "commands/stats.h"
 #include "commands/view_options.h"
-#include "instruments/accuracy_report.h"
 #include "instruments/accuracy_study.h"
-#include "instruments/hard_case_report.h"
+#include "instruments/hard_cases.h"
 #include "instruments/simulation_study.h"
 #include "output/progress.h"
 #include "output/units.h"
@@ -192,15 +190,11 @@ void add_accuracy(CLI::App& app) {
       },
       "instead of a scene: substeps and bits of positions of the particle world, or columns and steps of a "
       "basin of water, against the finest");
-  add_whole_option(
-      *sub, "--rays", "N", 1, 1000000000,
-      [command](std::int64_t number) { command->hard_rays = static_cast<std::uint64_t>(number); },
-      "--hard-cases: rays, shared among the cases; a fifth as many cases of each operation")
+  add_whole_option(*sub, "--rays", "N", 1, 1000000000, &command->hard_rays,
+                   "--hard-cases: rays, shared among the cases; a fifth as many cases of each operation")
       .default_str("1000000");
-  add_whole_option(
-      *sub, "--seed", "S", 0, INT64_MAX / 2000003,
-      [command](std::int64_t number) { command->seed = static_cast<std::uint64_t>(number); },
-      "--hard-cases: of the random rays")
+  add_whole_option(*sub, "--seed", "S", 0, INT64_MAX / 2000003, &command->seed,
+                   "--hard-cases: of the random rays")
       .default_str("1");
   add_positive(*sub, "--for-ms", "T", 1e-9, &command->for_ms,
                "answer with the options that come nearest to the reference in T milliseconds of the "
@@ -210,10 +204,8 @@ void add_accuracy(CLI::App& app) {
                "all channels' differences from the reference, in steps of 1/255 (column rms_error; 0: equal; "
                "PSNR is 20 log10(255/E) dB)");
   exclude_each_other(*sub, "--for-ms", "--for-error");
-  add_whole_option(
-      *sub, "--rounds", "N", 1, 999,
-      [command](std::int64_t number) { command->study.rounds = static_cast<int>(number); },
-      "frames timed of each setting, by turns, one of each a round")
+  add_whole_option(*sub, "--rounds", "N", 1, 999, &command->study.rounds,
+                   "frames timed of each setting, by turns, one of each a round")
       .default_str("5");
   add_choice_option(
       *sub, "--against", {"time", "visits", "instructions"},

@@ -12,8 +12,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "output/output_file.h"
+#include "readers/input_error.h"
 
 namespace CLI {
 class App;
@@ -73,6 +77,20 @@ Option add_whole_option(CLI::App& app, const std::string& name, const std::strin
                         std::int64_t low, std::int64_t high, const std::function<void(std::int64_t)>& take,
                         const std::string& help);
 
+/// The same, kept where `to` says: in a whole number, or an optional one.
+template <class Number>
+Option add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                        std::int64_t low, std::int64_t high, Number* to, const std::string& help) {
+  const auto take = [to](std::int64_t number) {
+    if constexpr (std::is_integral_v<Number>) {
+      *to = static_cast<Number>(number);
+    } else {
+      *to = static_cast<typename Number::value_type>(number);
+    }
+  };
+  return add_whole_option(app, name, type_name, low, high, std::function<void(std::int64_t)>(take), help);
+}
+
 /// An option that is one of a few words, in any case. `take` gets the index into `words`.
 Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                          std::function<void(std::size_t)> take, const std::string& help);
@@ -111,6 +129,16 @@ std::string description_of(const CLI::Option& option, bool is_argument);
 
 /// Help in lines of at most 100 characters.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
+
+/// What is read besides the scene: its errors name the file.
+template <class Read>
+auto about(const std::string& path, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw OutputError(path + ": " + error.what());
+  }
+}
 
 }  // namespace thimble::tools
 

@@ -7,7 +7,6 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/effect_options.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
@@ -17,7 +16,6 @@
 #include "output/units.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
-#include "scene/flash_baking.h"
 #include "scene/framing.h"
 #include "scene/generators.h"
 

@@ -7,8 +7,8 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/report_files.h"
 #include "commands/scene_options.h"
+#include "commands/stats.h"
 #include "output/progress.h"
 #include "output/tables.h"
 #include "output/units.h"

@@ -5,16 +5,15 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/effect_options.h"
-#include "commands/report_files.h"
 #include "commands/scene_options.h"
+#include "commands/stats.h"
 #include "commands/view_options.h"
 #include "instruments/effects_study.h"
-#include "output/bars.h"
+#include "output/plot.h"
 #include "output/progress.h"
 #include "output/tables.h"
 #include "output/units.h"
-#include "scene/lit_setup.h"
+#include "scene/lit_description.h"
 
 namespace thimble::tools {
 namespace {
@@ -180,10 +179,8 @@ void add_effects(CLI::App& app) {
   command->scene.add_scene(*sub);
   add_effect_options(*sub, &command->study.effects);
   add_view(*sub, &command->study.view);
-  add_whole_option(
-      *sub, "--frames", "N", 1, 99,
-      [command](std::int64_t number) { command->study.frames = static_cast<int>(number); },
-      "frames timed of each set of effects, by turns")
+  add_whole_option(*sub, "--frames", "N", 1, 99, &command->study.frames,
+                   "frames timed of each set of effects, by turns")
       .default_str("5");
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->files.csv,

@@ -12,7 +12,7 @@
 #include "output/progress.h"
 #include "output/units.h"
 #include "readers/input_error.h"
-#include "scene/film.h"
+#include "scene/animation.h"
 
 namespace thimble::tools {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/report_files.h"
 #include "commands/scene_options.h"
+#include "commands/stats.h"
 #include "commands/view_options.h"
 #include "instruments/memory_study.h"
 #include "output/plot.h"
@@ -459,10 +459,8 @@ void add_memory(CLI::App& app) {
   add_flag(*sub, "--budget-sweep", &command->study.budget_sweep,
            "the same for 1 KiB, 2 KiB, ... until the whole scene fits, and what coarsening to the "
            "budget does to the picture; --csv, --json and --plot then hold this");
-  add_whole_option(
-      *sub, "--frames", "N", 0, 99,
-      [command](std::int64_t number) { command->study.frames = static_cast<int>(number); },
-      "frames timed for each depth and structure; 0: none, no times and visits")
+  add_whole_option(*sub, "--frames", "N", 0, 99, &command->study.frames,
+                   "frames timed for each depth and structure; 0: none, no times and visits")
       .default_str("3");
   add_view(*sub, &command->study.view);
   add_shade(*sub, &command->study.shade,

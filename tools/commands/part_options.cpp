@@ -1,10 +1,17 @@
 #include "commands/part_options.h"
 
+#include <zlib.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
 #include "commands/arguments.h"
 #include "commands/render_command.h"
 #include "output/output_file.h"
 #include "output/units.h"
-#include "scene/film.h"
+#include "scene/animation.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -100,6 +107,114 @@ void write_rows(OutputFile* file, PartHeader header, const Image& image, std::in
   PartWriter part(file, header);
   part.add(header.pixels == PartPixels::kMono ? image.pixels : file_pixels(image, ImageKind::kPng));
   part.end();
+}
+
+namespace {
+
+// A grid knows neither materials nor light.
+void add_grid(const DenseGrid& grid, CrcSum* sum) {
+  const Vec3i size = grid.size();
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(size.x + 7) / 8);
+  for (Vec3i at; at.z < size.z; ++at.z) {
+    for (at.y = 0; at.y < size.y; ++at.y) {
+      row.assign(row.size(), 0);
+      for (at.x = 0; at.x < size.x; ++at.x) {
+        const auto byte = static_cast<std::size_t>(at.x) / 8;
+        row[byte] = static_cast<std::uint8_t>(row[byte] | (grid.solid_at(at) ? 1U << (at.x & 7) : 0U));
+      }
+      sum->add(row);
+    }
+  }
+}
+
+void add_tree(const CompactTree& tree, const SceneSource& source, CrcSum* sum) {
+  sum->add(std::span(tree.bytes(), tree.size_bytes()));
+  LitDescription lit = source.lighting();
+  const UsedMaterials used = used_materials(tree);
+  lit.find_glow(tree);
+  add_lighting(lit, used, called_for(lit, used), tree.level(), sum);
+}
+
+// By the bytes that it has as a compact tree.
+void add_pool(const Octree& pool, const SceneSource& source, CrcSum* sum) {
+  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(pool)));
+  CompactTree tree;
+  if (CompactTree::make(pool, {bytes.data(), bytes.size()}, &tree) != Status::kOk) {
+    throw InputError("is too large for parts of a picture with --structure pool");
+  }
+  add_tree(tree, source, sum);
+}
+
+}  // namespace
+
+void CrcSum::add(std::span<const std::uint8_t> bytes) {
+  if (!bytes.empty()) {  // of no bytes at no address zlib says 0, whatever came before
+    crc_ = static_cast<std::uint32_t>(crc32_z(crc_, bytes.data(), bytes.size()));
+  }
+}
+
+void CrcSum::add(std::string_view text) {
+  add(static_cast<std::int64_t>(text.size()));
+  add({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+void CrcSum::add(std::int64_t number) {
+  std::array<std::uint8_t, 8> bytes{};
+  for (unsigned i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(number) >> (8 * i));
+  }
+  add(bytes);
+}
+
+std::uint32_t scene_crc32(const SceneSource& source, const BuiltScene& built) {
+  const Structure& traced = built.traced();
+  CrcSum sum;
+  sum.add_all(built.level(), traced.kind == StructureKind::kDense);
+  for (const Rgb8& color : built.palette()) {
+    sum.add_all(color.r, color.g, color.b);
+  }
+  switch (traced.kind) {
+    case StructureKind::kDense:
+      add_grid(traced.dense, &sum);
+      break;
+    case StructureKind::kPool:
+      add_pool(traced.pool, source, &sum);
+      break;
+    case StructureKind::kCompact:
+      add_tree(traced.compact, source, &sum);
+      break;
+  }
+  return sum.value();
+}
+
+void add_camera(const SceneCamera& camera, CrcSum* sum) {
+  sum->add_all(camera.is_perspective, camera.direction_bits, camera.fov_degrees.raw, camera.span.raw);
+  sum->add_all(camera.eye.x.raw, camera.eye.y.raw, camera.eye.z.raw);
+  sum->add_all(camera.target.x.raw, camera.target.y.raw, camera.target.z.raw);
+  sum->add_all(camera.forward.x, camera.forward.y, camera.forward.z);
+  sum->add_all(camera.up.x, camera.up.y, camera.up.z);
+}
+
+void add_lighting(const LitDescription& lit, const UsedMaterials& used, EffectSet effects, int level,
+                  CrcSum* sum) {
+  sum->add_all(effects, lit.rest.bounces);
+  try {
+    sum->add(lighting_section(lit, used, effects, level));
+  } catch (const InputError&) {
+    sum->add_all(lit.lights.size());  // beyond what bytes can say; drawing says why, or does without
+  }
+}
+
+void add_look(const Look& look, int level, CrcSum* sum) {
+  add_lighting(look.lighting, look.used, look.effects, level, sum);
+  for (const Rgb8& color : look.palette) {
+    sum->add_all(color.r, color.g, color.b);
+  }
+  const Rgb8 behind = look.background.color;
+  sum->add_all(look.kind, look.has_own_colors, look.has_backdrop, look.background.kind, behind.r, behind.g,
+               behind.b);
+  sum->add_all(look.ground.is_there, look.ground.z, look.ground.toward_sun.x, look.ground.toward_sun.y,
+               look.ground.toward_sun.z, look.ground.reach, look.at_edges ? 0 : look.across);
 }
 
 }  // namespace thimble::tools

@@ -13,7 +13,6 @@
 #include "output/units.h"
 #include "particles/session.h"
 #include "particles/world_files.h"
-#include "particles/world_picture.h"
 #include "readers/file_bytes.h"
 
 namespace thimble::tools {
@@ -37,16 +36,6 @@ struct ParticlesCommand {
   std::string paced_by;  // the option that asks for a rate, if any
   std::string stats_path;
 };
-
-// What is read: errors name the file.
-template <class Read>
-auto about(const std::string& path, const Read& read) {
-  try {
-    return read();
-  } catch (const InputError& error) {
-    throw OutputError(path + ": " + error.what());
-  }
-}
 
 void tell_placing(const ParticlesCommand& command, const Placing& placing) {
   std::string text = printable(command.bodies_path) + ": " + grouped(placing.placed) + " bodies placed";
@@ -198,15 +187,11 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       },
       "balls at the start; of --bodies, the first N")
       .default_str("693");
-  add_whole_option(
-      sub, "--min-size", "D", 1, kMaxBallDiameter,
-      [world](std::int64_t cells) { world->least_diameter = static_cast<std::int32_t>(cells); },
-      "least diameter of a ball, cells")
+  add_whole_option(sub, "--min-size", "D", 1, kMaxBallDiameter, &world->least_diameter,
+                   "least diameter of a ball, cells")
       .default_str("2");
-  add_whole_option(
-      sub, "--max-size", "D", 1, kMaxBallDiameter,
-      [world](std::int64_t cells) { world->most_diameter = static_cast<std::int32_t>(cells); },
-      "largest diameter of a ball, cells, up to " + std::to_string(kMaxBallDiameter))
+  add_whole_option(sub, "--max-size", "D", 1, kMaxBallDiameter, &world->most_diameter,
+                   "largest diameter of a ball, cells, up to " + std::to_string(kMaxBallDiameter))
       .default_str("12");
   add_real_option(
       sub, "--bounciness", "B", 0, 1, [world](double value) { world->bounciness = value; },
@@ -231,10 +216,7 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
   add_real_option(
       sub, "--speed", "V", 0, 8192, [world](double value) { world->speed = value; },
       "random balls start with up to V cells a step on each axis; of --bodies the fastest has V", "3");
-  add_whole_option(
-      sub, "--seed", "S", 0, UINT32_MAX,
-      [world](std::int64_t seed) { world->seed = static_cast<std::uint32_t>(seed); }, "of random balls")
-      .default_str("1");
+  add_whole_option(sub, "--seed", "S", 0, UINT32_MAX, &world->seed, "of random balls").default_str("1");
   add_path_option(
       sub, "--bodies", "FILE", &command->bodies_path,
       "balls from a file: the number of bodies, the radius of the world, then a line \"x y vx vy m r g b\" "
@@ -247,17 +229,14 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       [world](std::size_t index) { world->substeps_log2 = static_cast<std::int32_t>(index); },
       "parts that each step is made in")
       .default_str("1");
-  add_whole_option(
-      sub, "--subpixel-bits", "N", 1, 15,
-      [world](std::int64_t bits) { world->subpixel_bits = static_cast<std::int32_t>(bits); },
-      "positions are kept to 2^-N cells")
+  add_whole_option(sub, "--subpixel-bits", "N", 1, 15, &world->subpixel_bits,
+                   "positions are kept to 2^-N cells")
       .default_str("15");
 }
 
 void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
   add_whole_option(
-      sub, "--steps", "N", 0, 1'000'000'000'000,
-      [command](std::int64_t steps) { command->play.steps = static_cast<std::uint64_t>(steps); },
+      sub, "--steps", "N", 0, 1'000'000'000'000, &command->play.steps,
       "end after N steps (default: where somebody watches, when the window is closed or q is pressed; else "
       "2000, "
       "or to the end of a longer --input)");

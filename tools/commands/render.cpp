@@ -21,11 +21,9 @@
 #include "output/units.h"
 #include "scene/framing.h"
 #include "scene/gpu_engine.h"
-#include "scene/lit_setup.h"
+#include "scene/lit_description.h"
 #include "scene/lit_streams.h"
 #include "scene/painter.h"
-#include "scene/painting.h"
-#include "scene/part_identity.h"
 
 namespace thimble::tools {
 namespace {
@@ -196,10 +194,10 @@ Subject subject_of(const RenderCommand& command, const SceneSource& source, Buil
 }
 
 // The whole picture, or --rows of it.
-Status paint_with(const std::unique_ptr<BandPainter>& painter, const Subject& subject,
-                  const Progress& progress, Painting* painting) {
+Status paint_with(const BandPainter& painter, const Subject& subject, const Progress& progress,
+                  Painting* painting) {
   const RowRange rows = subject.command.rows.value_or(RowRange{0, subject.camera().height_px()});
-  return paint(*painter, subject.camera().width_px(), rows, subject.format, progress, painting);
+  return paint(painter, subject.camera().width_px(), rows, subject.format, progress, painting);
 }
 
 // Throws InputError for a camera whose rays it does not take.
@@ -210,17 +208,16 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
   const TraceOptions options = engine.trace_options();
   Painting painting;
   if (!command.quality.plain()) {
-    const auto painter = command.quality.at_edges
-                             ? make_ray_edge_painter(subject.built, frame, subject.camera(), subject.fine,
-                                                     subject.format, options)
-                             : make_quality_painter(subject.built, frame, options);
+    const auto painter = command.quality.at_edges ? ray_edge_painter(subject.built, frame, subject.camera(),
+                                                                     subject.fine, subject.format, options)
+                                                  : quality_painter(subject.built, frame, options);
     if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
       fail_camera(command);
     }
     return painting;
   }
   if (gpu != nullptr) {
-    if (paint_with(make_gpu_painter(gpu, subject.camera(), subject.shading), subject, progress, &painting) !=
+    if (paint_with(gpu_painter(gpu, subject.camera(), subject.shading), subject, progress, &painting) !=
         Status::kOk) {
       fail_camera(command);
     }
@@ -234,14 +231,14 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
                                 : nullptr;
   Status status = Status::kTooFine;
   if (wide != nullptr) {
-    status = paint_with(make_wide_painter(wide.get(), subject.camera(), subject.shading), subject, progress,
-                        &painting);
+    status =
+        paint_with(wide_painter(wide.get(), subject.camera(), subject.shading), subject, progress, &painting);
     if (status != Status::kOk && (status != Status::kTooFine || engine.name != "auto")) {
       fail_camera(command);
     }
   }
   if (status != Status::kOk &&
-      paint_with(make_ray_painter(subject.built, subject.camera(), subject.shading, subject.format, options),
+      paint_with(ray_painter(subject.built, subject.camera(), subject.shading, subject.format, options),
                  subject, progress, &painting) != Status::kOk) {
     fail_camera(command);
   }
@@ -264,9 +261,9 @@ Painting paint_lit(const Subject& subject, const Light& light, const Progress& p
   picture.threads = engine.lit_threads(&subject.built, picture.effects);
   Painting painting;
   const auto painter =
-      at_edges ? make_lit_edge_painter(subject.built, subject.camera(), subject.fine, subject.shading,
-                                       subject.format, picture)
-               : make_lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture);
+      at_edges ? lit_edge_painter(subject.built, subject.camera(), subject.fine, subject.shading,
+                                  subject.format, picture)
+               : lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture);
   if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
     throw InputError("its lights or surfaces are beyond the limits of a lit picture");
   }
@@ -449,10 +446,8 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
       },
       "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light")
       .default_str("auto");
-  add_whole_option(
-      app, "--turntable", "N", 2, 1000,
-      [command](std::int64_t frames) { command->turntable = static_cast<int>(frames); },
-      "a film of N frames once around the scene, six seconds long");
+  add_whole_option(app, "--turntable", "N", 2, 1000, &command->turntable,
+                   "a film of N frames once around the scene, six seconds long");
   add_path_option(
       app, "--camera-path", "FILE.csv", &command->camera_path,
       std::string("a film of a frame a line, 25 a second; a header line is allowed; ") + kPathColumns);

@@ -7,15 +7,13 @@
 #include <string>
 
 #include "commands/camera_path.h"
-#include "commands/effect_options.h"
-#include "commands/engine_options.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "output/image.h"
 #include "output/output_set.h"
 #include "scene/default_look.h"
 #include "scene/framing.h"
-#include "scene/quality.h"
+#include "scene/sampling.h"
 #include "thimble/picture/shading.h"
 
 namespace thimble::tools {

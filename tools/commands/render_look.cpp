@@ -12,10 +12,9 @@
 #include "output/part_file.h"
 #include "output/progress.h"
 #include "output/units.h"
-#include "scene/film.h"
-#include "scene/lit_setup.h"
+#include "scene/animation.h"
+#include "scene/lit_description.h"
 #include "scene/look_picture.h"
-#include "scene/part_identity.h"
 #include "scene/scene_shape.h"
 
 namespace thimble::tools {

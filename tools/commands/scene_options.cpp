@@ -2,13 +2,23 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
+#include <thread>
+#include <vector>
 
 #include "commands/arguments.h"
 #include "output/progress.h"
+#include "output/suggestion.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
 #include "scene/built_scene.h"
+#include "scene/gpu_engine.h"
+#include "scene/lit_streams.h"
 #include "scene/scene_source.h"
+#include "scene/wide_renderer.h"
+#include "thimble/light/render.h"
+#include "thimble/trace/ray.h"
+#include "wide/limits.h"
 
 namespace thimble::tools {
 
@@ -23,8 +33,7 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
     scene.required();
   }
   add_whole_option(
-      app, "--depth", "L", kMinLevel, kMaxLevel,
-      [this](std::int64_t level) { arguments.depth = static_cast<int>(level); },
+      app, "--depth", "L", kMinLevel, kMaxLevel, &arguments.depth,
       "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox, .scene or "
       "--as-voxels file, that of a baked scene, 9 for other files, 10 for points and cluster, 6 for the "
       "others)");
@@ -36,10 +45,8 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
   add_flag(app, "--as-heights", &arguments.as_heights,
            ".npy and .npz: an array of H x W numbers is heights at any W");
   add_flag(app, "--z-up", &arguments.z_up, "meshes: z is up in the file (default: y is, but in .stl)");
-  add_whole_option(
-      app, "--frame", "N", 0, UINT32_MAX - 1,
-      [this](std::int64_t frame) { arguments.frame = static_cast<std::uint32_t>(frame); },
-      "frame N of a .vox animation, counted from 0 (default: the first)");
+  add_whole_option(app, "--frame", "N", 0, UINT32_MAX - 1, &arguments.frame,
+                   "frame N of a .vox animation, counted from 0 (default: the first)");
 }
 
 void SceneOptions::add_report(CLI::App& app) {
@@ -139,6 +146,216 @@ BuiltScene SceneOptions::build(const SceneSource& source, const DrawingBytes& dr
 
 BuiltScene SceneOptions::build(const SceneSource& source) const {
   return build(source, {});
+}
+
+namespace {
+
+// For help, which breaks lines at blanks.
+std::string spaced_names() {
+  std::string text;
+  for (const char c : effect_names()) {
+    text += c == ',' ? ", " : std::string(1, c);
+  }
+  return text;
+}
+
+std::vector<std::string> offered() {
+  std::vector<std::string> words{"auto", "none", "all"};
+  std::istringstream names(effect_names());
+  for (std::string name; std::getline(names, name, ',');) {
+    words.push_back(name);
+  }
+  return words;
+}
+
+// What is wrong with `text`, if anything.
+std::string take_effects(const std::string& text, EffectChoice* choice) {
+  const auto parsed = parse_effects(text);
+  const std::optional<bool> smooth = choice->smooth;
+  *choice = parsed.value_or(EffectChoice{});
+  choice->smooth = smooth;
+  if (parsed) {
+    return {};
+  }
+  std::string nearest;
+  std::istringstream names(text);
+  for (std::string name; nearest.empty() && std::getline(names, name, ',');) {
+    nearest = parse_effects(name) ? "" : suggestion(name, offered());
+  }
+  return "is not auto, none, all or a list such as shadows,sky of " + effect_names() + nearest;
+}
+
+void add_normals(CLI::App& app, EffectChoice* choice) {
+  add_text_option(
+      app, "--normals", "auto|face|smooth",
+      [choice](const std::string& text) {
+        choice->smooth.reset();
+        if (text != "auto") {
+          choice->smooth = text == "smooth";
+        }
+        return text == "auto" || text == "face" || text == "smooth" ? "" : "is not auto, face or smooth";
+      },
+      "what light sees: the faces of the voxels, the slope of the surface (the effect smooth-normals), or "
+      "what "
+      "the effects say")
+      .default_str("auto");
+}
+
+}  // namespace
+
+void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, bool names_default) {
+  add_text_option(
+      app, "--effects", "LIST", [choice](const std::string& text) { return take_effects(text, choice); },
+      help)
+      .default_str(names_default ? "auto" : "")
+      .offers(offered());
+  add_normals(app, choice);
+}
+
+void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more,
+                        const std::string& usual) {
+  add_text_option(
+      app, "--effects", "auto|none|all|LIST",
+      [wishes](const std::string& text) {
+        wishes->given = true;
+        return take_effects(text, &wishes->choice);
+      },
+      "what light does: auto (what the scene's materials, lights, water and sky call for), none, all (that, "
+      "light, shadows, occlusion, glow and smooth normals), or with commas between them any of " +
+          spaced_names() + more)
+      .default_str(usual)
+      .offers(offered());
+  add_normals(app, &wishes->choice);
+  add_whole_option(app, "--bounces", "N", 0, kMaxBounces, &wishes->bounces,
+                   "rays that follow one another from a pixel by mirrors, glass and water, 0 to " +
+                       std::to_string(kMaxBounces) + " (default: the scene's own, else " +
+                       std::to_string(kDefaultBounces) + ")");
+}
+
+namespace {
+
+// Refuses what this build was made without.
+void choose(const std::string& name, std::string* chosen) {
+  if (name == "wide" && WideRenderer::instruction_sets().empty()) {
+    refuse_usage("--engine", "\"wide\" is not in this build (-DTHIMBLE_WIDE=OFF); auto and ray64 are");
+  }
+  if (name == "gpu" && !GpuEngine::is_in_build()) {
+    refuse_usage("--engine", "\"gpu\" is not in this build (-DTHIMBLE_GPU=OFF); auto and ray64 are");
+  }
+  *chosen = name;
+}
+
+}  // namespace
+
+int all_cores() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, wide::kMaxThreads);
+}
+
+void add_threads(CLI::App& app, int* threads, const std::string& help) {
+  *threads = all_cores();
+  add_whole_option(app, "--threads", "N", 1, wide::kMaxThreads, threads, help).default_str("all cores");
+}
+
+void EngineOptions::add_to(CLI::App& app, bool all_cores) {
+  static const std::vector<std::string> kNames{"auto", "wide", "gpu", "ray64", "ray32"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
+      "wide: object order, with vectors and threads, for --structure compact where there is room; gpu: the "
+      "best Vulkan device, without light, for --structure compact, without --memory and --board; ray64, "
+      "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
+      "need more; auto: wide where it can be, but not with --board, else ray64")
+      .default_str("auto");
+  also_check(app, [&app, this] {
+    const std::string structure = text_given(app, "--structure");
+    if ((name == "wide" || name == "gpu") && !structure.empty() && structure != "compact") {
+      refuse_usage("--engine " + name + " draws --structure compact only");
+    }
+  });
+  threads = all_cores ? tools::all_cores() : 1;
+  add_whole_option(
+      app, "--threads", "N", 1, wide::kMaxThreads,
+      [this](std::int64_t number) {
+        threads = static_cast<int>(number);
+        threads_given = true;
+      },
+      "threads that build, and that draw with the wide engine or with effects")
+      .default_str(all_cores ? "all cores; 1 with --memory or --board, whose bytes they count in" : "1");
+}
+
+void EngineOptions::add_ray_engines_to(CLI::App& app) {
+  static const std::vector<std::string> kNames{"auto", "gpu", "ray64", "ray32"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
+      "gpu: the best Vulkan device, for --structure compact, without --memory and --board (then nodes are "
+      "its "
+      "steps); ray64, ray32: products of that width; the answers are the same, but ray32 refuses rays that "
+      "need "
+      "more; auto: "
+      "with vectors from 100,000 rays on, where there is room and not with --board (then nodes are its "
+      "steps, "
+      "else those of the tree), else ray64")
+      .default_str("auto");
+  also_check(app, [&app, this] {
+    const std::string structure = text_given(app, "--structure");
+    if (name == "gpu" && !structure.empty() && structure != "compact") {
+      refuse_usage("--engine gpu traces --structure compact only");
+    }
+  });
+}
+
+std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built) const {
+  return name == "gpu" ? std::make_unique<GpuEngine>(built) : nullptr;
+}
+
+void EngineOptions::check_budget(bool has_budget) const {
+  if (name == "gpu" && has_budget) {
+    refuse_usage("--engine gpu keeps the scene in the GPU's memory, without --memory and --board");
+  }
+}
+
+std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, std::int32_t width_px,
+                                                           std::int32_t height_px) const {
+  if (name != "auto" && name != "wide") {
+    return nullptr;
+  }
+  auto renderer = WideRenderer::make(built, width_px, height_px, threads);
+  if (renderer == nullptr && name == "wide") {
+    throw InputError(built->structure() == StructureKind::kCompact
+                         ? "no room for --engine wide within --memory"
+                         : "--engine wide draws --structure compact only");
+  }
+  return renderer;
+}
+
+std::unique_ptr<LitStreams> EngineOptions::lit_streams(BuiltScene* built, EffectSet effects,
+                                                       const LitScene& scene) const {
+  return name == "auto" ? LitStreams::make(built->compact(), &built->arena(), effects, scene, threads)
+                        : nullptr;
+}
+
+int EngineOptions::lit_threads(BuiltScene* built, EffectSet effects) const {
+  const std::size_t more = built->arena().free_bytes() / lit_render_bytes(effects);
+  return static_cast<int>(std::min(static_cast<std::size_t>(threads), 1 + more));
+}
+
+void EngineOptions::add_board_engines_to(CLI::App& app) {
+  static const std::vector<std::string> kNames{"auto", "wide", "ray64"};
+  add_choice_option(
+      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
+      "what draws demo's frames without light; the pictures are the same. wide: object order, with vectors "
+      "and "
+      "threads, in memory of this machine's own, and the first frame by the core too, for the stack, and "
+      "compared; ray64: the core, as on the board (by bricks where the scene has a brick map); auto: wide "
+      "where it can be, else ray64. Frames with light, those thinned or refined to hold a rate, and other "
+      "applications are always the core's")
+      .default_str("auto");
+  add_threads(app, &threads, "threads that draw with the wide engine");
+}
+
+TraceOptions EngineOptions::trace_options() const {
+  TraceOptions options;
+  options.width = name == "ray32" ? Width::k32 : Width::k64;
+  return options;
 }
 
 }  // namespace thimble::tools

@@ -13,8 +13,6 @@
 #include "apps/app_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/effect_options.h"
-#include "commands/engine_options.h"
 #include "commands/scene_options.h"
 #include "commands/sim_session.h"
 #include "commands/stats.h"
@@ -27,7 +25,6 @@
 #include "readers/picture.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
-#include "scene/flash_baking.h"
 #include "scene/framing.h"
 #include "scene/generators.h"
 #include "scene/named_scenes.h"
@@ -128,18 +125,6 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
   return bytes;
 }
 
-// Everything that is read besides the scene: its errors name the file.
-template <class Read>
-auto about(const std::string& path, const Read& read) {
-  try {
-    return read();
-  } catch (const InputError& error) {
-    throw OutputError(path + ": " + error.what());
-  } catch (const host::KeyScriptError& error) {
-    throw OutputError(path + ": " + error.what());
-  }
-}
-
 // How `picture` differs from `wanted`, as a sentence; empty when it does not.
 std::string difference(const Image& picture, const Image& wanted) {
   std::uint64_t count = 0;
@@ -234,7 +219,7 @@ void report(const SimCommand& command, const SessionResult& result, const std::s
 }
 
 int run_and_write(SimCommand* command, std::string* sentence) {
-  enum Output : std::size_t { kShot, kRecording, kStats };
+  enum : std::size_t { kShot, kRecording, kStats };
   OutputSet outputs({command->shot_path, command->record_path, command->scene.stats_path},
                     {command->scene.arguments.scene, command->check_path, command->keys_path});
   SessionOptions& session = command->session;
@@ -247,9 +232,13 @@ int run_and_write(SimCommand* command, std::string* sentence) {
                    [&] { return read_picture(command->check_path, board.width_px, board.height_px); });
   }
   if (!command->keys_path.empty()) {
-    session.keys = about(command->keys_path, [&] {
-      return host::KeyScript(load_file(command->keys_path, std::uint64_t{1} << 20).text());
-    });
+    try {
+      session.keys = about(command->keys_path, [&] {
+        return host::KeyScript(load_file(command->keys_path, std::uint64_t{1} << 20).text());
+      });
+    } catch (const host::KeyScriptError& error) {
+      throw OutputError(command->keys_path + ": " + error.what());
+    }
   }
   std::vector<std::uint8_t> scene;
   if (session.application->wants_scene) {
@@ -362,28 +351,22 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
       },
       "how the display looks; auto: as the board's does; pictures in files never have a theme")
       .default_str("auto");
+  add_whole_option(sub, "--scale", "N", 1, 32, &command->session.scale,
+                   "screen pixels a pixel at most (default: as fits)");
   add_whole_option(
-      sub, "--scale", "N", 1, 32,
-      [command](std::int64_t scale) { command->session.scale = static_cast<std::int32_t>(scale); },
-      "screen pixels a pixel at most (default: as fits)");
-  add_whole_option(
-      sub, "--hold", "FPS", 1, 1000,
-      [command](std::int64_t rate) { command->session.hold_fps = static_cast<std::uint32_t>(rate); },
+      sub, "--hold", "FPS", 1, 1000, &command->session.hold_fps,
       "demo: hold so many frames a second of the board's time: while the camera moves a frame has squares "
       "of 2 to 8 pixels or, without a brick map, is refined from coarse to fine, as the board has time for, "
       "and it is exact when the camera stands still; the key h switches it, t stops the turning; the work a "
       "frame depends on the board alone, so the pictures are the board's");
-  add_whole_option(
-      sub, "--fps", "N", 1, 1000,
-      [command](std::int64_t rate) { command->session.frames_a_second = static_cast<int>(rate); },
-      "frames a second at most in a window or terminal, and of the recording")
+  add_whole_option(sub, "--fps", "N", 1, 1000, &command->session.frames_a_second,
+                   "frames a second at most in a window or terminal, and of the recording")
       .default_str("30");
 }
 
 void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {
   add_whole_option(
-      sub, "--frames", "N", 1, 1'000'000'000,
-      [command](std::int64_t frames) { command->session.frames = static_cast<std::uint32_t>(frames); },
+      sub, "--frames", "N", 1, 1'000'000'000, &command->session.frames,
       "end after N frames (default: 1 where nobody watches, else when the window is closed or Esc is "
       "pressed)");
   add_text_option(

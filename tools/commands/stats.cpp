@@ -2,7 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scene/lit_setup.h"
+#include "output/tables.h"
+#include "scene/lit_description.h"
 
 namespace thimble::tools {
 
@@ -73,6 +74,19 @@ std::string stats_text(const Stats& stats) {
   }
   // A file's name may hold bytes that are no UTF-8; they are replaced, not an error.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void ReportFiles::write(const nlohmann::ordered_json& rows, const std::string& plot) {
+  if (outputs_[0] != nullptr) {
+    outputs_[0]->write(csv_of(rows));
+  }
+  if (outputs_[1] != nullptr) {
+    outputs_[1]->write(rows.dump(2) + "\n");
+  }
+  if (outputs_[2] != nullptr) {
+    outputs_[2]->write(plot);
+  }
+  outputs_.commit();
 }
 
 }  // namespace thimble::tools

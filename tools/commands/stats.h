@@ -3,10 +3,13 @@
 #ifndef THIMBLE_TOOLS_COMMANDS_STATS_H
 #define THIMBLE_TOOLS_COMMANDS_STATS_H
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "output/output_set.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
 #include "thimble/light/render.h"
@@ -54,6 +57,30 @@ struct Stats {
 
 /// All of them as one JSON object with the members' names.
 std::string stats_text(const Stats& stats);
+
+// --csv, --json and --plot: what a study found, as data and as a picture.
+
+struct ReportPaths {
+  std::string csv;
+  std::string json;
+  std::string plot;
+};
+
+class ReportFiles {
+ public:
+  /// Opens them, which must not be `scene`. Throws OutputError.
+  ReportFiles(const ReportPaths& paths, const std::string& scene)
+      : outputs_({paths.csv, paths.json, paths.plot}, {scene}) {}
+
+  bool wants_plot() const { return outputs_[2] != nullptr; }
+  /// Writes them (tables.h says what `rows` are) and gives them their names. Throws OutputError.
+  void write(const nlohmann::ordered_json& rows, const std::string& plot);
+  /// For people, unless data go to standard output.
+  void print(const std::string& text) const { outputs_.print(text); }
+
+ private:
+  OutputSet outputs_;
+};
 
 }  // namespace thimble::tools
 

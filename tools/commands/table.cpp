@@ -11,7 +11,7 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/engine_options.h"
+#include "commands/scene_options.h"
 #include "instruments/timed_frames.h"
 #include "output/output_set.h"
 #include "output/plot.h"
@@ -288,10 +288,8 @@ void add_table(CLI::App& app) {
       [command](std::size_t index) { command->scene = index == 0 ? "points" : "cluster"; },
       "uniformly random points, or points that crowd")
       .default_str("points");
-  add_whole_option(
-      *sub, "--depth", "L", kLeastTimedLevel, kMaxLevel,
-      [command](std::int64_t level) { command->depth = static_cast<int>(level); },
-      "the world is 2^L voxels a side, L from 5 to 12; the paper's was probably smaller")
+  add_whole_option(*sub, "--depth", "L", kLeastTimedLevel, kMaxLevel, &command->depth,
+                   "the world is 2^L voxels a side, L from 5 to 12; the paper's was probably smaller")
       .default_str("10");
   add_path_option(
       *sub, "--json", "FILE.json", &command->json_path,

@@ -1,31 +1,233 @@
 // thimble trace: rays from a file, hits to a file.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "boards/board_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/engine_options.h"
-#include "commands/ray_file.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
 #include "output/hit_csv.h"
 #include "output/output_set.h"
 #include "output/progress.h"
+#include "output/units.h"
 #include "readers/file_bytes.h"
 #include "scene/built_scene.h"
 #include "scene/gpu_engine.h"
 #include "scene/scene_source.h"
-#include "scene/wide_rays.h"
+#include "scene/wide_renderer.h"
 #include "scene/workers.h"
+#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {
+
+// ---- A file of rays, read in chunks that do not know of one another.
+
+/// How lines become rays.
+struct RayRules {
+  int level = 0;           ///< of the world
+  int direction_bits = 0;  ///< 0: as the core allows
+  bool only_32 = false;    ///< refuses rays that 32-bit products do not take
+};
+
+/// What is wrong with a line.
+struct RayFault {
+  std::size_t line = 0;  ///< counted from the chunk's first, which is 0
+  std::string sentence;
+};
+
+class RayFile {
+ public:
+  /// `text` outlives it: one ray a line, ox,oy,oz,dx,dy,dz in voxels; a header line is allowed before, empty lines
+  /// anywhere. Looks at a few bytes a chunk.
+  RayFile(std::string_view text, const RayRules& rules);
+
+  std::size_t chunks() const { return ends_.size(); }
+  /// Where a chunk ends in the text.
+  std::size_t end(std::size_t chunk) const { return ends_[chunk]; }
+  /// The line of the file that the first chunk begins with, from 1 on.
+  std::size_t first_line() const { return first_line_; }
+
+  /// Puts the rays of a chunk into `rays`, up to the first line that is none: then that is the answer. `lines` gets
+  /// the number of its lines. Any number of threads at a time.
+  std::optional<RayFault> read(std::size_t chunk, std::vector<Ray>* rays, std::size_t* lines) const;
+
+ private:
+  std::string_view text_;
+  RayRules rules_;
+  std::size_t begin_ = 0;
+  std::size_t first_line_ = 1;
+  std::vector<std::size_t> ends_;
+};
+
+// The six numbers of a line, or nothing when it does not hold just six numbers.
+std::optional<std::array<double, 6>> parse_line(std::string_view line) {
+  std::array<double, 6> numbers{};
+  const char* at = line.data();
+  const char* end = at + line.size();
+  const auto skip_blanks = [&] {
+    while (at != end && (*at == ' ' || *at == '\t')) {
+      ++at;
+    }
+  };
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    skip_blanks();
+    if (end - at > 1 && *at == '+' && at[1] != '-') {
+      ++at;
+    }
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    if (error == std::errc::result_out_of_range) {
+      // Too large or too small for a double: infinite or zero, which the caller judges.
+      numbers[i] = std::strtod(std::string(at, next).c_str(), nullptr);
+    } else if (error != std::errc{}) {
+      return std::nullopt;
+    }
+    at = next;
+    skip_blanks();
+    if (i + 1 < numbers.size() && (at == end || *at++ != ',')) {
+      return std::nullopt;
+    }
+  }
+  return at == end ? std::optional(numbers) : std::nullopt;
+}
+
+// The ray as it is traced: origin to the nearest 1/256 voxel; a direction of integers within the limit as it
+// is, any other scaled so that its largest component is the limit. A zero component stays zero.
+// Otherwise the answer is what is wrong.
+std::string quantise(const std::array<double, 6>& numbers, const RayRules& rules, Ray* to) {
+  const double low = static_cast<double>(kMinOriginWorlds) * (1 << rules.level);
+  const double high = static_cast<double>(kMaxOriginWorlds) * (1 << rules.level);
+  for (const double number : numbers) {
+    if (!std::isfinite(number)) {
+      return "a ray has a coordinate that is not a finite number";
+    }
+  }
+  Ray& ray = *to;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double value = numbers[static_cast<std::size_t>(axis)];
+    if (value < low || value > high) {
+      return "the origin's " + shortest(value) + " is outside the accepted " + shortest(low) + " to " +
+             shortest(high) + " (-4 to 5 world sizes)";
+    }
+    ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(std::lround(value * Q8::kOne)));
+  }
+  double largest = 0;
+  bool whole = true;
+  for (std::size_t i = 3; i < 6; ++i) {
+    largest = std::max(largest, std::abs(numbers[i]));
+    whole = whole && numbers[i] == std::trunc(numbers[i]);
+  }
+  if (largest == 0) {
+    return "the direction is zero";
+  }
+  const double limit = rules.direction_bits == 0 ? kMaxDirection : (1 << rules.direction_bits) - 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double value = numbers[static_cast<std::size_t>(axis) + 3];
+    const double scaled = whole && largest <= limit ? value : value / largest * limit;
+    ray.direction[axis] = static_cast<std::int32_t>(std::lround(scaled));
+  }
+  if (rules.only_32 && !accepts_32(ray, rules.level)) {
+    return "--engine ray32 does not take this ray; auto does";
+  }
+  return {};
+}
+
+// Whether a line holds names only: a header. A line with a number among its columns is a ray gone wrong.
+bool is_header(std::string_view line) {
+  while (true) {
+    const std::size_t comma = line.find(',');
+    std::string_view column = line.substr(0, comma);
+    column.remove_prefix(std::min(column.find_first_not_of(" \t+"), column.size()));
+    double number = 0;
+    if (std::from_chars(column.data(), column.data() + column.size(), number).ec !=
+        std::errc::invalid_argument) {
+      return false;
+    }
+    if (comma == std::string_view::npos) {
+      return true;
+    }
+    line.remove_prefix(comma + 1);
+  }
+}
+
+// Takes the next line off `text`.
+std::string_view next_line(std::string_view* text) {
+  const std::size_t end = std::min(text->find('\n'), text->size());
+  std::string_view line = text->substr(0, end);
+  text->remove_prefix(std::min(end + 1, text->size()));
+  if (!line.empty() && line.back() == '\r') {
+    line.remove_suffix(1);
+  }
+  return line;
+}
+
+bool is_blank(std::string_view line) {
+  return line.find_first_not_of(" \t") == std::string_view::npos;
+}
+
+// About so many bytes a chunk, some thousand rays.
+constexpr std::size_t kChunkBytes = 256 << 10;
+
+RayFile::RayFile(std::string_view text, const RayRules& rules) : text_(text), rules_(rules) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::string_view rest = text;
+  rest.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+  // Up to the first ray.
+  bool header = false;
+  while (!rest.empty()) {
+    std::string_view after = rest;
+    const std::string_view line = next_line(&after);
+    if (!is_blank(line)) {
+      if (header || parse_line(line) || !is_header(line)) {
+        break;
+      }
+      header = true;
+    }
+    rest = after;
+    ++first_line_;
+  }
+  begin_ = text.size() - rest.size();
+  for (std::size_t at = begin_; at < text.size();) {
+    const std::size_t end = text.find('\n', std::min(at + kChunkBytes, text.size()));
+    at = end == std::string_view::npos ? text.size() : end + 1;
+    ends_.push_back(at);
+  }
+}
+
+std::optional<RayFault> RayFile::read(std::size_t chunk, std::vector<Ray>* rays, std::size_t* lines) const {
+  const std::size_t begin = chunk == 0 ? begin_ : ends_[chunk - 1];
+  std::string_view text = text_.substr(begin, ends_[chunk] - begin);
+  rays->clear();
+  for (*lines = 0; !text.empty(); ++*lines) {
+    const std::string_view line = next_line(&text);
+    if (is_blank(line)) {
+      continue;
+    }
+    const auto numbers = parse_line(line);
+    if (!numbers) {
+      return RayFault{*lines, "these are not the six numbers ox,oy,oz,dx,dy,dz"};
+    }
+    std::string fault = quantise(*numbers, rules_, &rays->emplace_back());
+    if (!fault.empty()) {
+      return RayFault{*lines, std::move(fault)};
+    }
+  }
+  return std::nullopt;
+}
+
+// ----
 
 struct TraceCommand {
   SceneOptions scene;
@@ -82,7 +284,7 @@ struct Tracing {
 };
 
 // Traces the rays of a chunk and writes their lines.
-void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built, const WideRays* wide,
+void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built, const FirstHits& wide,
                  GpuEngine* gpu, const TraceOptions& options, Tracing* tracing, std::string* lines) {
   std::size_t count = 0;
   (void)file.read(chunk, &tracing->rays, &count);  // judged before
@@ -92,8 +294,8 @@ void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built
   const auto start = Clock::now();
   if (gpu != nullptr) {
     (void)gpu->trace({rays.data(), rays.size()}, {hits.data(), hits.size()});
-  } else if (wide != nullptr) {
-    (void)wide->first_hit({rays.data(), rays.size()}, {hits.data(), hits.size()});
+  } else if (wide) {
+    (void)wide({rays.data(), rays.size()}, {hits.data(), hits.size()});
   } else {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       (void)built.closest_hit(rays[i], &hits[i], options);
@@ -115,19 +317,14 @@ void run(const TraceCommand& command) {
   OutputFile& output = *outputs[0];
   const auto source = command.scene.open();
   BuiltScene built = command.scene.build(*source);
-  FileBytes bytes;
-  try {
-    bytes = load_file(command.rays_path);
-  } catch (const InputError& error) {
-    throw OutputError(command.rays_path + ": " + error.what());
-  }
+  const FileBytes bytes = about(command.rays_path, [&] { return load_file(command.rays_path); });
   const std::string_view text = bytes.text();
   const RayFile file(text, {built.level(), command.direction_bits, command.engine.name == "ray32"});
   Stats stats(command.scene.arguments.scene, *source, built);
   stats.rays = judge(command, file);
-  std::unique_ptr<WideRays> wide;
+  FirstHits wide;
   if (stats.rays >= kRaysForMap && command.engine.name == "auto" && command.scene.board == nullptr) {
-    wide = WideRays::make(&built);
+    wide = wide_first_hits(&built);
     stats.budget_bytes = built.budget_bytes();
     stats.high_water_bytes = built.high_water_bytes();
   }
@@ -146,7 +343,7 @@ void run(const TraceCommand& command) {
   for (std::size_t first = 0; first < file.chunks(); first += lines.size()) {
     const std::size_t count = std::min(lines.size(), file.chunks() - first);
     each_task(count, command.threads, [&](std::size_t task, std::size_t worker) {
-      trace_chunk(file, first + task, built, wide.get(), gpu.get(), command.engine.trace_options(),
+      trace_chunk(file, first + task, built, wide, gpu.get(), command.engine.trace_options(),
                   &workers[worker], &lines[task]);
     });
     for (std::size_t task = 0; task < count; ++task) {

@@ -4,13 +4,11 @@
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/effect_options.h"
-#include "commands/engine_options.h"
 #include "commands/scene_options.h"
 #include "commands/view_options.h"
 #include "output/output_file.h"
 #include "thimble/picture/shading.h"
-#include "viewer/keys.h"
+#include "viewer/controls.h"
 #include "viewer/viewer.h"
 
 namespace thimble::tools {
@@ -84,8 +82,7 @@ void add_view_command(CLI::App& app) {
   });
   add_threads(*sub, &options.threads, "threads that read and draw");
   add_whole_option(
-      *sub, "--bench", "N", 1, 100000,
-      [command](std::int64_t frames) { command->bench_frames = static_cast<int>(frames); },
+      *sub, "--bench", "N", 1, 100000, &command->bench_frames,
       "no screen: turn once around the scene in N frames, finish the picture, and print what it took as CSV");
   add_help_lines(*sub, "Keys and mouse:\n" + viewer::keys_text());
   when_chosen(*sub, [command] { run(*command); });

@@ -9,7 +9,7 @@
 #include "commands/arguments.h"
 #include "output/units.h"
 #include "scene/framing.h"
-#include "scene/quality.h"
+#include "scene/sampling.h"
 #include "thimble/picture/shading.h"
 
 namespace thimble::tools {
@@ -221,8 +221,7 @@ void add_quality(CLI::App& app, Quality* quality) {
       "structure only")
       .default_str("0");
   add_whole_option(
-      app, "--max-depth", "D", kMinLevel, kMaxLevel,
-      [quality](std::int64_t depth) { quality->max_depth = static_cast<int>(depth); },
+      app, "--max-depth", "D", kMinLevel, kMaxLevel, &quality->max_depth,
       "stop at blocks D levels down in the tree, in their mean colour: the scene as with a depth of D; "
       "compact structure only");
 }

@@ -1,11 +1,11 @@
-#include "instruments/accuracy_report.h"
+#include "instruments/accuracy_study.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "output/scatter.h"
+#include "output/plot.h"
 #include "output/units.h"
 #include "readers/source.h"
 

@@ -1,12 +1,13 @@
 #include "instruments/accuracy_study.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 
-#include "instruments/chip_cost.h"
-#include "instruments/stopwatch.h"
+#include "instruments/timed_frames.h"
 #include "output/hit_csv.h"
 #include "output/units.h"
 #include "readers/source.h"
@@ -442,6 +443,242 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   // Instructions are not estimated for light.
   mark_front(&study.light, options.axis == CostAxis::kInstructions ? CostAxis::kVisits : options.axis);
   return study;
+}
+
+namespace {
+
+// Depths less than the scene's own, by so many levels.
+std::vector<double> shallower(int depth, int most) {
+  std::vector<double> depths;
+  for (int less = 1; less <= most && depth - less >= 1; ++less) {
+    depths.push_back(depth - less);
+  }
+  return depths;
+}
+
+}  // namespace
+
+const std::vector<Knob>& knobs() {
+  static const std::vector<Knob> kKnobs{
+      {"depth", "--max-depth", "levels", "levels of the tree that are looked at",
+       [](int depth) { return shallower(depth, 4); },
+       [](int depth) {
+         std::vector<double> depths = shallower(depth, 2);
+         depths.insert(depths.begin(), 0);
+         return depths;
+       },
+       [](Setting* setting, double value) { setting->quality.max_depth = static_cast<int>(value); },
+       [](const Setting& setting) { return static_cast<double>(setting.quality.max_depth); }},
+      {"cutoff", "--cutoff", "pixels", "blocks that cover less of a pixel are not looked into",
+       [](int) {
+         return std::vector<double>{0.5, 1, 2, 4, 8};
+       },
+       [](int) {
+         return std::vector<double>{0, 1, 2, 4};
+       },
+       [](Setting* setting, double value) {
+         setting->quality.cutoff = Q16::from_raw(static_cast<std::int32_t>(std::lround(value * Q16::kOne)));
+       },
+       [](const Setting& setting) { return static_cast<double>(setting.quality.cutoff.raw) / Q16::kOne; }},
+      {"direction_bits", "--direction-bits", "bits", "bits of a ray's direction",
+       [](int) { return std::vector<double>{8, 9, 10, 12, 16, 20}; },
+       [](int) {
+         return std::vector<double>{0, 9};
+       },
+       [](Setting* setting, double value) { setting->direction_bits = static_cast<int>(value); },
+       [](const Setting& setting) { return static_cast<double>(setting.direction_bits); }},
+      {"samples", "--samples", "rays a pixel", "samples a pixel",
+       [](int) {
+         return std::vector<double>{4, 9, 16, 36, 64};
+       },
+       [](int) {
+         return std::vector<double>{1, 4, 16};
+       },
+       [](Setting* setting, double value) {
+         setting->quality.across = static_cast<int>(std::lround(std::sqrt(value)));
+       },
+       [](const Setting& setting) {
+         return setting.quality.across == 1 ? 0.0 : static_cast<double>(setting.quality.samples());
+       }},
+  };
+  return kKnobs;
+}
+
+std::string Setting::options() const {
+  std::string text;
+  for (const Knob& knob : knobs()) {
+    if (const double value = knob.get(*this); value != 0) {
+      text += (text.empty() ? "" : " ") + std::string(knob.option) + " " + shortest(value);
+    }
+  }
+  return text;
+}
+
+Setting best_setting(int most_across) {
+  Setting setting;
+  setting.quality.across = most_across;
+  setting.direction_bits = kMaxDirectionBits;
+  return setting;
+}
+
+std::vector<Trial> trials(int depth, int most_across) {
+  std::vector<Trial> result;
+  std::set<std::string> known;
+  const auto add = [&](const std::string& group, const Setting& setting) {
+    if (setting.quality.across <= most_across && known.insert(setting.options()).second) {
+      result.push_back({group, setting});
+    }
+  };
+  add("default", {});
+  for (const Knob& knob : knobs()) {
+    for (const double value : knob.alone(depth)) {
+      Setting setting;
+      knob.set(&setting, value);
+      add(knob.key, setting);
+    }
+  }
+  // Every combination: each knob in turn multiplies the list.
+  std::vector<Setting> together(1);
+  for (const Knob& knob : knobs()) {
+    std::vector<Setting> next;
+    for (const Setting& setting : together) {
+      for (const double value : knob.together(depth)) {
+        next.push_back(setting);
+        knob.set(&next.back(), value);
+      }
+    }
+    together = std::move(next);
+  }
+  for (const Setting& setting : together) {
+    add("together", setting);
+  }
+  add("best", best_setting(most_across));
+  return result;
+}
+
+std::string LightSetting::text() const {
+  std::string result;
+  const auto add = [&](const char* name, int value) {
+    if (value >= 0) {
+      result += (result.empty() ? "" : ", ") + std::string(name) + " " + std::to_string(value);
+    }
+  };
+  add("occlusion rays", occlusion_rays);
+  add("roughness rays", roughness_rays);
+  add("bounces", bounces);
+  return result;
+}
+
+LightStudio::LightStudio(const SceneSource& source, const BuiltScene& built, const EffectChoice& choice,
+                         const Camera& camera, const Shading& shading)
+    : built_(built), camera_(camera), shading_(shading), lit_(source.lighting()), polished_(lit_) {
+  const UsedMaterials used = used_materials(built.compact());
+  effects_ = chosen_effects(lit_, used, choice);
+  lit_.find_glow(built.compact());
+  polished_.find_glow(built.compact());
+  const LitScene scene = lit_.drawn(effects_);
+  if ((effects_ & Effect::kAmbientOcclusion) != 0) {
+    own_.occlusion_rays = scene.occlusion.rays;
+  }
+  if ((effects_ & Effect::kBranching) != 0) {
+    own_.bounces = scene.bounces;
+  }
+  for (std::size_t material = 0; material < lit_.surfaces.size(); ++material) {
+    const Surface& surface = lit_.surfaces[material];
+    if ((effects_ & Effect::kMirror) != 0 && used.is[material] && surface.kind == SurfaceKind::kMetal &&
+        surface.roughness != 0) {
+      own_.roughness_rays = 4;
+    }
+  }
+  for (Surface& surface : polished_.surfaces) {
+    surface.roughness = 0;
+  }
+}
+
+LightSetting LightStudio::best() const {
+  LightSetting setting = own_;
+  setting.occlusion_rays = own_.occlusion_rays < 0 ? -1 : 32;
+  setting.bounces = own_.bounces < 0 ? -1 : kMaxBounces;
+  return setting;
+}
+
+std::vector<LightTrial> LightStudio::trials() const {
+  std::vector<LightTrial> result;
+  if (own_ == LightSetting{}) {
+    return result;
+  }
+  const auto add = [&](const char* group, const LightSetting& setting) {
+    if (std::none_of(result.begin(), result.end(),
+                     [&](const LightTrial& trial) { return trial.setting == setting; })) {
+      result.push_back({group, setting});
+    }
+  };
+  struct LightKnob {
+    const char* key;
+    int LightSetting::*value;
+    std::vector<int> alone;
+    std::vector<int> together;
+  };
+  const std::array<LightKnob, 3> knobs{{
+      {"occlusion_rays", &LightSetting::occlusion_rays, {0, 4, 8, 16, 32}, {0, 4, 8, 32}},
+      {"roughness_rays", &LightSetting::roughness_rays, {1, 4}, {1, 4}},
+      {"bounces", &LightSetting::bounces, {0, 1, 2, 3, 4, 6, 8}, {0, 1, 2, 4, 8}},
+  }};
+  add("default", own_);
+  std::vector<LightSetting> together{own_};
+  for (const LightKnob& knob : knobs) {
+    if (own_.*knob.value < 0) {
+      continue;
+    }
+    for (const int value : knob.alone) {
+      LightSetting setting = own_;
+      setting.*knob.value = value;
+      add(knob.key, setting);
+    }
+    std::vector<LightSetting> next;
+    for (const LightSetting& setting : together) {
+      for (const int value : knob.together) {
+        next.push_back(setting);
+        next.back().*knob.value = value;
+      }
+    }
+    together = std::move(next);
+  }
+  for (const LightSetting& setting : together) {
+    add("together", setting);
+  }
+  add("best", best());
+  return result;
+}
+
+void LightStudio::draw(const LightSetting& setting, std::vector<std::uint8_t>* pixels,
+                       RenderCounts* counts) const {
+  const LitDescription& lit = setting.roughness_rays == 1 ? polished_ : lit_;
+  EffectSet effects = effects_;
+  LitScene scene = lit.drawn(effects);
+  if (setting.occlusion_rays >= 0) {
+    scene.occlusion.rays = static_cast<std::uint8_t>(setting.occlusion_rays);
+  }
+  if (setting.occlusion_rays == 0) {
+    effects &= ~Effect::kAmbientOcclusion;
+  }
+  if (setting.bounces >= 0) {
+    scene.bounces = static_cast<std::uint8_t>(setting.bounces);
+  }
+  Band band;
+  band.pixels = {pixels->data(), pixels->size()};
+  band.format = PixelFormat::kRgb888;
+  band.rows = camera_.height_px();
+  LitCounts lit_counts;
+  if (render_lit_band(effects, built_.compact(), camera_, shading_, scene, band, &lit_counts) !=
+      Status::kOk) {
+    throw InputError("its light cannot be drawn: too many lights, or rays of this camera that are too long");
+  }
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    counts->rays += lit_counts.rays[kind];
+    counts->hits += lit_counts.hits[kind];
+    counts->node_visits += lit_counts.node_visits[kind];
+  }
 }
 
 }  // namespace thimble::tools

@@ -1,5 +1,5 @@
 /// @file accuracy_study.h
-/// One view of a scene at every setting of the knobs (knobs.h): what each costs, and how far its picture is
+/// One view of a scene at every setting of the knobs: what each costs, and how far its picture is
 /// from the one with every knob at its best.
 #ifndef THIMBLE_TOOLS_INSTRUMENTS_ACCURACY_STUDY_H
 #define THIMBLE_TOOLS_INSTRUMENTS_ACCURACY_STUDY_H
@@ -9,13 +9,137 @@
 #include <string>
 #include <vector>
 
-#include "instruments/knobs.h"
-#include "instruments/light_studio.h"
+#include "output/tables.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
-#include "scene/quality.h"
+#include "scene/lit_description.h"
+#include "scene/sampling.h"
+#include "scene/scene_source.h"
+#include "thimble/light/render.h"
+#include "thimble/picture/camera.h"
+#include "thimble/picture/render.h"
+#include "thimble/picture/shading.h"
 
 namespace thimble::tools {
+
+// What a frame would cost on the flagship board, from what was counted here: an estimate, and how good it
+// is.
+//
+// The figures are a least-squares fit (of relative errors) to instructions counted on an emulated
+// lm3s6965evb (Cortex-M3, QEMU with -icount, gcc 12 -O2 as platform/firmware.cmake sets it): pictures of 128
+// x 64 pixels of the demonstration (`thimble bake demo`, 72,295 voxels) from 36 cameras, at three distances
+// and three fields of view, in bands of 8 rows of 16 greys, depth and normal shading; 72 pictures without a
+// cut-off, 216 with one of 2, 4 and 8 pixels. The fit is off by 5 per cent on average and by 19 at most.
+// Rays there take the 32-bit path; those of larger worlds or finer pictures do not, and cost about 1.3 times
+// as much (`bench` on that board: 6,040 a ray in 64 bits, 4,587 in 32). Runs of pixels that miss all that is
+// solid are cheap and in the average.
+
+/// Instructions on a Cortex-M3.
+struct ChipCost {
+  double a_ray;
+  double a_hit;  ///< shading and storing it included
+  double a_visit;
+};
+inline constexpr ChipCost kChipCost{147, 1749, 222};
+inline constexpr ChipCost kChipCostCut{152, 1486, 273};
+/// Of `average_samples`: a pixel, and each of its samples.
+inline constexpr double kChipCostPixel = 70;
+inline constexpr double kChipCostSample = 10;
+/// The fit's largest relative error on the frames that it was made from.
+inline constexpr double kChipCostError = 0.19;
+
+/// Instructions of a frame with those counts, of `samples` a pixel.
+inline double chip_instructions(const RenderCounts& counts, bool cuts, int samples) {
+  const ChipCost& cost = cuts ? kChipCostCut : kChipCost;
+  const auto rays = static_cast<double>(counts.rays);
+  const double averaging = samples == 1 ? 0 : rays * kChipCostSample + rays / samples * kChipCostPixel;
+  return rays * cost.a_ray + static_cast<double>(counts.hits) * cost.a_hit +
+         static_cast<double>(counts.node_visits) * cost.a_visit + averaging;
+}
+
+// The knobs of light in one view of a scene: rays of ambient occlusion, rays of rough metal, bounces. Only
+// those that the scene calls for.
+
+/// Where they stand. -1: the scene does not call for it.
+struct LightSetting {
+  int occlusion_rays = -1;  ///< a hit: 0, 4, 8, 16 or 32
+  int roughness_rays = -1;  ///< a ray that meets rough metal: 4, or 1 as if it were polished
+  int bounces = -1;         ///< 0 .. kMaxBounces
+  friend bool operator==(const LightSetting&, const LightSetting&) = default;
+
+  /// "occlusion rays 8, bounces 4".
+  std::string text() const;
+};
+
+struct LightTrial {
+  std::string group;  ///< "default", the knob that is turned alone, "together" or "best" where no other is it
+  LightSetting setting;
+};
+
+/// Draws lit pictures of a compact tree, which stays the caller's.
+class LightStudio {
+ public:
+  LightStudio(const SceneSource& source, const BuiltScene& built, const EffectChoice& choice,
+              const Camera& camera, const Shading& shading);
+
+  EffectSet effects() const { return effects_; }
+  /// Every knob at its best.
+  LightSetting best() const;
+  /// All that the study tries, each once; none where no effect has a knob.
+  std::vector<LightTrial> trials() const;
+  /// Draws the whole picture into `pixels`, rows of kRgb888 without gaps, which are that large.
+  /// `counts->step_limited` stays as it is. Throws InputError when the scene cannot be drawn.
+  void draw(const LightSetting& setting, std::vector<std::uint8_t>* pixels, RenderCounts* counts) const;
+
+ private:
+  const BuiltScene& built_;
+  Camera camera_;
+  Shading shading_;
+  LitDescription lit_;
+  LitDescription polished_;
+  EffectSet effects_ = Effect::kNone;
+  LightSetting own_;
+};
+
+// The knobs that trade a picture's error for time: one table. Whoever adds a knob adds a line to it
+// and what it turns to `Setting`.
+
+/// Where every knob stands.
+struct Setting {
+  Quality quality;
+  int direction_bits = 0;  ///< 0: automatic
+
+  /// The options of `thimble render` that ask for it; empty for its defaults.
+  std::string options() const;
+};
+
+struct Knob {
+  const char* key;     ///< "cutoff"
+  const char* option;  ///< of `thimble render`
+  const char* unit;
+  const char* help;
+  /// What the study tries with the other knobs at their defaults, and together with those of the other knobs
+  /// (its default among them), in a scene of `depth`.
+  std::vector<double> (*alone)(int depth);
+  std::vector<double> (*together)(int depth);
+  void (*set)(Setting* setting, double value);
+  /// Its value; 0 where it stands at its default.
+  double (*get)(const Setting& setting);
+};
+
+const std::vector<Knob>& knobs();
+
+/// Every knob at its best for a scene of `depth`, with at most `most_across`^2 samples a pixel.
+Setting best_setting(int most_across);
+
+/// A setting and why it is tried: the key of the knob that is turned alone, "default", "together", or "best":
+/// the reference itself.
+struct Trial {
+  std::string group;
+  Setting setting;
+};
+/// All that the study tries, each setting once, with at most `most_across`^2 samples.
+std::vector<Trial> trials(int depth, int most_across);
 
 /// A pixel is visibly wrong when a channel is off by more than this, of 255.
 inline constexpr int kVisibleDifference = 8;
@@ -37,7 +161,7 @@ struct AccuracyRow {
   double ms_three_quarters = 0;
   // The same on every machine.
   RenderCounts counts;
-  double lm3s_instructions = 0;  ///< an estimate: chip_cost.h
+  double lm3s_instructions = 0;  ///< an estimate: `ChipCost`
   bool front = false;            ///< mark_front
 };
 
@@ -101,6 +225,22 @@ double psnr_of(double rms);
 
 /// 10 log10(255^2 / mean squared difference) of two pictures of bytes, infinite when they are equal.
 double psnr_db(const std::vector<std::uint8_t>& picture, const std::vector<std::uint8_t>& reference);
+
+// What `thimble accuracy SCENE` found, for people, for machines and as a plot.
+
+/// An object a row, all with the same names: the settings, then the frames stopped early.
+JsonRow accuracy_objects(const AccuracyStudy& study);
+
+/// Tables of at most 100 columns: of settings tried together only those on the front.
+std::string accuracy_tables(const AccuracyStudy& study, CostAxis axis);
+
+/// Error against cost, the front marked and named.
+std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::string& scene);
+
+/// What --for-ms and --for-error answer: a line "options: ..." and what they give, or an InputError that says
+/// what is the nearest that can be had.
+std::string answer_for_ms(const AccuracyStudy& study, double ms);
+std::string answer_for_error(const AccuracyStudy& study, double rms);
 
 }  // namespace thimble::tools
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "boards/effect_flash.h"
-#include "instruments/stopwatch.h"
+#include "instruments/timed_frames.h"
 #include "output/tables.h"
 #include "scene/built_scene.h"
-#include "scene/lit_setup.h"
+#include "scene/lit_description.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {

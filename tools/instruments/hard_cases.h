@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "instruments/operation_errors.h"
+#include "output/tables.h"
+
 namespace thimble::tools {
 
 /// What is compared, in the columns' order. The first two are this tracer's.
@@ -42,6 +45,21 @@ struct HardCaseRow {
 /// not counted against it. Takes about 15 microseconds a ray. `progress` (may be empty) gets 0..1.
 std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed,
                                         const std::function<void(double)>& progress);
+
+// What `thimble accuracy --hard-cases` found, for people and for machines.
+
+struct HardCaseStudy {
+  std::vector<HardCaseRow> cases;
+  std::vector<OperationError> operations;
+};
+
+/// A row a case and tracer, one a tracer over all cases, then one an operation; all with the same names.
+JsonRow hard_case_objects(const HardCaseStudy& study);
+/// Tables of at most 100 columns.
+std::string hard_case_tables(const HardCaseStudy& study);
+/// A sentence about what must not be, or nothing: a ray or a face that this tracer got wrong, an operation
+/// beyond its bound.
+std::string hard_case_fault(const HardCaseStudy& study);
 
 }  // namespace thimble::tools
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "instruments/stopwatch.h"
+#include "instruments/timed_frames.h"
 #include "output/plot.h"
 #include "output/units.h"
 #include "particles/populated_world.h"

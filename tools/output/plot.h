@@ -35,6 +35,72 @@ struct Plot {
 /// own.
 std::string log_plot_text(const Plot& plot);
 
+// Bar charts as SVG files that stand on their own: a bar a line, axis with unit, readable on light and dark
+// ground.
+
+struct Bar {
+  std::string name;
+  double value = 0;  ///< any sign
+  double low = 0;    ///< ends of the thin line across its end; both equal: none
+  double high = 0;
+  std::string text;  ///< beside it
+};
+
+struct BarChart {
+  std::string title;
+  std::string x_label;  ///< with unit
+  std::vector<Bar> bars;
+};
+
+std::string bar_chart_text(const BarChart& chart);
+
+// Scatter plots as SVG files that stand on their own: error against cost, with the front of the best marked
+// and named. Readable on light and dark ground.
+
+struct Cloud {
+  std::string name;
+  std::vector<std::pair<double, double>> points;  ///< x above 0, y any; an infinite y lies on the upper edge
+  bool joined = false;                            ///< by a line, in their order
+};
+
+struct FrontPoint {
+  double x = 1;
+  double y = 0;
+  std::string name;  ///< stands in a list below the plot, under the number at the point
+};
+
+struct Scatter {
+  std::string title;
+  std::string x_label;  ///< with unit
+  std::string y_label;  ///< with unit
+  std::vector<Cloud> clouds;
+  std::vector<FrontPoint> front;  ///< by x, joined by a line
+  std::string front_name;         ///< the list's heading
+  std::string infinite_name;      ///< what the upper edge means, where a point lies there
+};
+
+/// The plot as SVG text: x logarithmic, y linear. At most eight clouds keep colours of their own.
+std::string scatter_text(const Scatter& scatter);
+
+/// Such plots one below the other in one file.
+std::string stacked(const std::vector<std::string>& plots);
+
+// What the plots are written with: numbers, lines and words of an SVG document.
+
+/// A coordinate, to a tenth of a pixel.
+std::string number(double value);
+
+/// Words as XML takes them: what would be markup is written otherwise, and what is no UTF-8 or no character
+/// of XML (a file's name may hold any bytes) as U+FFFD.
+std::string xml_text(const std::string& plain);
+
+/// A line of the style class `kind`.
+std::string line(double x1, double y1, double x2, double y2, const char* kind);
+
+/// Words at a place; `anchor` is start, middle or end, `more` attributes with a blank before each.
+std::string label(double x, double y, const char* anchor, const std::string& text,
+                  const std::string& more = {});
+
 }  // namespace thimble::tools
 
 #endif

@@ -6,6 +6,51 @@
 
 namespace thimble::tools {
 
+namespace {
+
+// Bytes of the character of UTF-8 that `text` begins with, which becomes `code`; 0 where it begins with none.
+std::size_t character_bytes(std::string_view text, unsigned* code) {
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  const unsigned first = byte(0);
+  *code = first;
+  if (first < 0x80) {
+    return 1;
+  }
+  const std::size_t bytes = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC2 || first > 0xF4 || bytes > text.size()) {
+    return 0;
+  }
+  *code = first & (0x7FU >> bytes);
+  for (std::size_t at = 1; at < bytes; ++at) {
+    if ((byte(at) & 0xC0U) != 0x80U) {
+      return 0;
+    }
+    *code = *code << 6 | (byte(at) & 0x3FU);
+  }
+  // Characters have one spelling, surrogates are none, and the last is U+10FFFF.
+  constexpr std::array<unsigned, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+  const bool is_surrogate = *code >= 0xD800 && *code < 0xE000;
+  return *code < kLeast[bytes] || *code > 0x10FFFF || is_surrogate ? 0 : bytes;
+}
+
+bool is_of_xml(unsigned code) {
+  return code < 0x20 ? code == '\t' || code == '\n' || code == '\r' : code != 0xFFFE && code != 0xFFFF;
+}
+
+}  // namespace
+
+std::string utf8_text(std::string_view text, bool for_xml) {
+  std::string utf8;
+  while (!text.empty()) {
+    unsigned code = 0;
+    const std::size_t bytes = character_bytes(text, &code);
+    const bool is_kept = bytes != 0 && (!for_xml || is_of_xml(code));
+    utf8 += is_kept ? text.substr(0, bytes) : std::string_view("\xEF\xBF\xBD");
+    text.remove_prefix(is_kept ? bytes : 1);
+  }
+  return utf8;
+}
+
 std::string grouped(std::uint64_t number) {
   std::string text = std::to_string(number);
   for (std::size_t at = text.size(); at > 3; at -= 3) {

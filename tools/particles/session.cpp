@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host/y4m.h"
-#include "particles/world_picture.h"
+#include "particles/world_files.h"
 
 namespace thimble::tools {
 namespace {

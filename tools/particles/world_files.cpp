@@ -1,10 +1,13 @@
 #include "particles/world_files.h"
 
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/ball_color.h"
+#include "host/canvas.h"
 #include "output/units.h"
 
 namespace thimble::tools {
@@ -62,6 +65,82 @@ std::string particle_summary(const PopulatedWorld& populated, const PlayedCounts
          (counts.steps == 1 ? " step" : " steps") + time + "; asleep " + grouped(world.asleep()) +
          ", collisions " + grouped(counts.ball_hits + counts.wall_hits) + "; " + grouped(world.used_bytes()) +
          " bytes; state " + crc_text(world.state_crc32()) + "\n";
+}
+
+namespace {
+
+constexpr Rgb8 kGround{10, 12, 18};
+constexpr Rgb8 kText{228, 232, 238};
+
+void put(std::vector<std::uint8_t>* rgb, std::size_t pixel, Rgb8 color) {
+  std::uint8_t* const at = rgb->data() + 3 * pixel;
+  at[0] = color.r;
+  at[1] = color.g;
+  at[2] = color.b;
+}
+
+}  // namespace
+
+void draw_world(const PopulatedWorld& populated, std::vector<std::uint8_t>* rgb) {
+  const ParticleWorld& world = populated.world();
+  const BitField& field = world.field();
+  const auto width = static_cast<std::size_t>(field.width());
+  rgb->resize(3 * width * static_cast<std::size_t>(field.height()));
+  for (std::int32_t y = 0; y < field.height(); ++y) {
+    for (std::int32_t x = 0; x < field.width(); ++x) {
+      const bool is_set = (field.cells_32(x >> 5, y) >> (x & 31) & 1U) != 0;
+      put(rgb, static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x),
+          is_set ? apps::kWallColor : kGround);
+    }
+  }
+  for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
+    Particle ball;
+    if (!world.particle(id, &ball)) {
+      continue;
+    }
+    const Rgb8 color = populated.color_of(ball);
+    const std::uint32_t* const rows = small_disc_rows(ball.diameter);
+    for (std::int32_t row = 0; row < ball.diameter; ++row) {
+      for (std::int32_t column = 0; column < ball.diameter; ++column) {
+        if ((rows[row] >> column & 1U) != 0) {
+          put(rgb,
+              static_cast<std::size_t>(ball.corner.y + row) * width +
+                  static_cast<std::size_t>(ball.corner.x + column),
+              color);
+        }
+      }
+    }
+  }
+}
+
+void draw_figures(std::int32_t width_px, std::int32_t height_px, std::string_view text,
+                  std::vector<std::uint8_t>* rgb) {
+  const host::TextSize size = host::text_size(text);
+  const std::int32_t scale =
+      std::clamp(width_px / (3 * host::kGlyphWidthPx * std::max(size.columns, 1)), 1, 3);
+  host::Canvas canvas;
+  canvas.resize(width_px, height_px);
+  host::draw_text(&canvas, 5 * scale, 5 * scale, scale, kText, text);
+  for (std::size_t pixel = 0; pixel < canvas.pixels.size(); ++pixel) {
+    if (canvas.pixels[pixel] == kText) {
+      put(rgb, pixel, kText);
+    }
+  }
+}
+
+Image field_image(const BitField& field) {
+  Image image{field.width(), field.height(), PixelFormat::kMono1, {}};
+  const std::size_t stride = row_bytes(PixelFormat::kMono1, field.width());
+  image.pixels.assign(stride * static_cast<std::size_t>(field.height()), 0);
+  for (std::int32_t y = 0; y < field.height(); ++y) {
+    std::uint8_t* const row = image.pixels.data() + stride * static_cast<std::size_t>(y);
+    for (std::int32_t x = 0; x < field.width(); ++x) {
+      if (!field.test({x, y})) {
+        store_pixel(row, x, y, PixelFormat::kMono1, {255, 255, 255});
+      }
+    }
+  }
+  return image;
 }
 
 }  // namespace thimble::tools

@@ -3,8 +3,12 @@
 #ifndef THIMBLE_TOOLS_PARTICLES_WORLD_FILES_H
 #define THIMBLE_TOOLS_PARTICLES_WORLD_FILES_H
 
+#include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "output/image.h"
 #include "particles/player.h"
 #include "particles/populated_world.h"
 
@@ -23,6 +27,19 @@ std::string particle_stats(const PopulatedWorld& populated, const PlayedCounts& 
 /// What a run came to, for a person.
 std::string particle_summary(const PopulatedWorld& populated, const PlayedCounts& counts,
                              double step_seconds);
+
+// A particle world as a picture: a pixel a cell.
+
+/// r, g, b of every cell, rows from the top: balls in their colours, walls grey, the rest nearly black.
+void draw_world(const PopulatedWorld& populated, std::vector<std::uint8_t>* rgb);
+
+/// Lines of text at the top left of such a picture, as large as a third of its width allows, at most three
+/// pixels a dot.
+void draw_figures(std::int32_t width_px, std::int32_t height_px, std::string_view text,
+                  std::vector<std::uint8_t>* rgb);
+
+/// The collision field itself: unlit where a cell is set, so that a PBM has a 1 there.
+Image field_image(const BitField& field);
 
 }  // namespace thimble::tools
 

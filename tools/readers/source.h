@@ -138,6 +138,25 @@ Notes notes_of(const Source& source);
 /// Notes that `points` of a file, if any, are not finite and left out.
 void note_left_out(Notes& notes, std::uint64_t points);
 
+// Where voxels go: everything in `scene/` streams into one of these and keeps no list of voxels.
+
+/// One solid voxel with its palette index. A position may come more than once; the last call decides its
+/// material. May throw, which ends the streaming; the streaming functions hold nothing that would leak.
+using VoxelSink = std::function<void(std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material)>;
+
+/// Calls visit(x, y, z) for the voxels of a block of 2^level a side.
+template <class Visit>
+void for_voxels(const Vec3i& corner, int level, const Visit& visit) {
+  const std::int32_t side = std::int32_t{1} << level;
+  for (std::int32_t z = corner.z; z < corner.z + side; ++z) {
+    for (std::int32_t y = corner.y; y < corner.y + side; ++y) {
+      for (std::int32_t x = corner.x; x < corner.x + side; ++x) {
+        visit(x, y, z);
+      }
+    }
+  }
+}
+
 }  // namespace thimble::tools
 
 #endif

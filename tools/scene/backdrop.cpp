@@ -1,161 +1,95 @@
 #include "scene/backdrop.h"
 
-#include <algorithm>
-#include <array>
-
-#include "scene/lit_streams.h"
-#include "thimble/trace/ray.h"
-
 namespace thimble::tools {
 namespace {
 
-// Rays that are traced together: a few for each lane of the widest vectors, little on the stack.
-constexpr std::size_t kAtOnce = 256;
-
-// The quadrant of a direction of kAround: bit 0 to smaller x, bit 1 to smaller y.
-constexpr unsigned quadrant_of(const Vec3i& direction) {
-  return (direction.x < 0 ? 1U : 0U) | (direction.y < 0 ? 2U : 0U);
-}
-
-// Of the quadrants above a voxel of the ground, those in which there is anything within reach, by their bits.
-class NearQuadrants {
- public:
-  NearQuadrants(const LitStreams& streams, std::int32_t reach) : streams_(streams), reach_(reach) {}
-
-  unsigned of(const Vec3i& voxel) {
-    if (!is_known_ || voxel != voxel_) {
-      is_known_ = true;
-      voxel_ = voxel;
-      found_ = find(voxel);
-    }
-    return found_;
-  }
-
- private:
-  unsigned find(const Vec3i& voxel) const {
-    const std::int32_t beyond = reach_ + 1;
-    VoxelBox all{{voxel.x - beyond, voxel.y - beyond, voxel.z},
-                 {voxel.x + beyond + 1, voxel.y + beyond + 1, voxel.z + beyond + 1}};
-    if (streams_.is_empty(all)) {
-      return 0;
-    }
-    unsigned found = 0;
-    for (unsigned quadrant = 0; quadrant < 4; ++quadrant) {
-      VoxelBox box = all;
-      for (int axis = 0; axis < 2; ++axis) {
-        if ((quadrant >> axis & 1U) != 0) {
-          box.high[axis] = voxel[axis] + 1;
-        } else {
-          box.low[axis] = voxel[axis];
-        }
-      }
-      found |= streams_.is_empty(box) ? 0U : 1U << quadrant;
-    }
-    return found;
-  }
-
-  const LitStreams& streams_;
-  std::int32_t reach_;
-  bool is_known_ = false;
-  Vec3i voxel_;
-  unsigned found_ = 0;
-};
-
-// Shares of what stands near the model: without what it closes off above. At most kAtOnce places.
-Status darken_corners(const Look& look, const LitStreams& streams, Span<const Vec3Q8> places,
-                      std::uint8_t* const* shares) {
-  std::array<Ray, kAtOnce> rays;
-  std::array<RayPoint, kAtOnce> entries;
-  std::array<std::size_t, kAtOnce> place_of;  // by ray
-  std::array<std::int64_t, kAtOnce> closed{};
-  std::size_t count = 0;
-  const auto trace = [&] {
-    const Status status = streams.first_entry_before({rays.data(), count}, {look.ground.reach, kAroundLength},
-                                                     {entries.data(), count});
-    for (std::size_t ray = 0; ray < count; ++ray) {
-      closed[place_of[ray]] +=
-          entries[ray].t_denominator == 0 ? 0 : closed_at(entries[ray], look.ground.reach);
-    }
-    count = 0;
-    return status;
-  };
-  NearQuadrants near(streams, look.ground.reach);
-  Status status = Status::kOk;
-  for (std::size_t place = 0; place < places.size && status == Status::kOk; ++place) {
-    const Vec3Q8& at = places.data[place];
-    const unsigned quadrants = near.of({at.x.floor(), at.y.floor(), at.z.floor()});
-    for (const Vec3i& direction : kAround) {
-      if ((quadrants >> quadrant_of(direction) & 1U) != 0) {
-        place_of[count] = place;
-        rays[count++] = {at, direction};
-      }
-    }
-    if (count + kAroundCount > kAtOnce) {
-      status = trace();
-    }
-  }
-  if (status == Status::kOk) {
-    status = trace();
-  }
-  for (std::size_t place = 0; place < places.size; ++place) {
-    *shares[place] = in_corner(*shares[place], closed[place]);
-  }
-  return status;
-}
-
-// Of at most kAtOnce rays. On an error the shares are not to be used.
-Status find_in_vectors(const CompactTree& tree, const Look& look, const LitStreams& streams,
-                       Span<const Ray> rays, std::uint8_t* shares) {
-  std::array<std::uint8_t, kAtOnce> hits;
-  Status status = streams.any_hit(rays, {hits.data(), rays.size});
-  std::array<Vec3Q8, kAtOnce> places;
-  std::array<std::uint8_t*, kAtOnce> lights;
-  std::size_t count = 0;  // that meet the ground
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    shares[i] = hits[i] != 0 ? kNothingBehind : kFullShare;
-    if (hits[i] == 0 && meets_ground(tree, look.ground, rays.data[i], &places[count])) {
-      lights[count++] = shares + i;
-    }
-  }
-  if (status == Status::kOk && look.ground.toward_sun.z > 0) {
-    std::array<Ray, kAtOnce> toward_sun;
-    for (std::size_t i = 0; i < count; ++i) {
-      toward_sun[i] = {places[i], look.ground.toward_sun};
-    }
-    status = streams.any_hit({toward_sun.data(), count}, {hits.data(), count});
-    for (std::size_t i = 0; i < count; ++i) {
-      *lights[i] = hits[i] != 0 ? in_shadow(*lights[i]) : *lights[i];
-    }
-  }
-  std::size_t near = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (is_near_model(tree, look.ground, places[i])) {
-      places[near] = places[i];
-      lights[near++] = lights[i];
-    }
-  }
-  return status != Status::kOk ? status : darken_corners(look, streams, {places.data(), near}, lights.data());
+uint8_t between(uint8_t from, uint8_t to, int32_t part, int32_t whole) {
+  return static_cast<uint8_t>((from * (whole - part) + to * part + whole / 2) / whole);
 }
 
 }  // namespace
 
-void find_light_behind(const CompactTree& tree, const Look& look, const LitStreams* streams,
-                       Span<const Ray> rays, std::uint8_t* shares) {
-  if (!look.has_backdrop) {
-    std::fill(shares, shares + rays.size, kNothingBehind);
-    return;
+Rgb8 backdrop_color(const Background& background, int32_t y, int32_t height_px) {
+  if (background.kind != BackgroundKind::kGradient) {
+    return background.kind == BackgroundKind::kColor ? background.color : Rgb8{};
   }
-  for (std::size_t first = 0; first < rays.size; first += kAtOnce) {
-    const Span<const Ray> some{rays.data + first, std::min(kAtOnce, rays.size - first)};
-    if (streams != nullptr && find_in_vectors(tree, look, *streams, some, shares + first) == Status::kOk) {
-      continue;
+  const int32_t whole = height_px > 1 ? height_px - 1 : 1;
+  return {between(kSoftTop.r, kSoftBottom.r, y, whole), between(kSoftTop.g, kSoftBottom.g, y, whole),
+          between(kSoftTop.b, kSoftBottom.b, y, whole)};
+}
+
+bool meets_ground(const CompactTree& tree, const Ground& ground, const Ray& ray, Vec3Q8* at) {
+  const int64_t plane = int64_t{ground.z} * Q8::kOne;
+  const int64_t drop = plane - ray.origin.z.raw;
+  if (!ground.is_there || ray.direction.z >= 0 || drop >= 0) {
+    return false;
+  }
+  at->z = Q8::from_raw(static_cast<int32_t>(plane));
+  for (int axis = 0; axis < 2; ++axis) {
+    const int64_t value = ray.origin[axis].raw + ray.direction[axis] * drop / ray.direction.z;
+    const int64_t side = int64_t{Q8::kOne} << tree.level();
+    if (value < kMinOriginWorlds * side || value > kMaxOriginWorlds * side) {
+      return false;
     }
-    for (std::size_t i = 0; i < some.size; ++i) {
-      if (!light_behind(tree, look.ground, some.data[i], shares + first + i)) {
-        shares[first + i] = kNothingBehind;
+    (*at)[axis] = Q8::from_raw(static_cast<int32_t>(value));
+  }
+  return true;
+}
+
+bool is_near_model(const CompactTree& tree, const Ground& ground, const Vec3Q8& at) {
+  const VoxelBox& box = tree.bounds();
+  for (int axis = 0; axis < 2; ++axis) {
+    const int32_t voxel = at[axis].raw >> Q8::kBits;
+    if (voxel < box.low[axis] - ground.reach || voxel > box.high[axis] + ground.reach) {
+      return false;
+    }
+  }
+  return true;
+}
+
+int64_t closed_at(const RayPoint& entry, uint16_t reach) {
+  const int64_t reach_q8 = int64_t{reach} * Q8::kOne;
+  const int64_t distance_q8 = int64_t{entry.t_numerator} * kAroundLength * Q8::kOne / entry.t_denominator;
+  return distance_q8 < reach_q8 ? (reach_q8 - distance_q8) * 256 / reach_q8 : 0;
+}
+
+uint8_t in_shadow(uint8_t share) {
+  return static_cast<uint8_t>(share * 160U / 256);
+}
+
+uint8_t in_corner(uint8_t share, int64_t closed_sum) {
+  const auto closed = static_cast<uint32_t>(closed_sum / static_cast<int64_t>(kAroundCount));
+  return static_cast<uint8_t>(share - share * closed * 3 / 4 / 256);
+}
+
+bool light_behind(const CompactTree& tree, const Ground& ground, const Ray& ray, uint8_t* share) {
+  HitKind kind = HitKind::kMiss;
+  *share = kFullShare;
+  if (any_hit(tree, ray, &kind) != Status::kOk) {
+    return true;
+  }
+  if (kind == HitKind::kHit) {
+    return false;
+  }
+  Vec3Q8 at;
+  if (!meets_ground(tree, ground, ray, &at)) {
+    return true;
+  }
+  if (ground.toward_sun.z > 0 && any_hit(tree, {at, ground.toward_sun}, &kind) == Status::kOk &&
+      kind == HitKind::kHit) {
+    *share = in_shadow(*share);
+  }
+  if (is_near_model(tree, ground, at)) {
+    int64_t closed = 0;
+    for (const Vec3i& direction : kAround) {
+      Hit hit;
+      if (closest_hit(tree, {at, direction}, &hit) == Status::kOk && hit.kind == HitKind::kHit) {
+        closed += closed_at(point_of(hit), ground.reach);
       }
     }
+    *share = in_corner(*share, closed);
   }
+  return true;
 }
 
 }  // namespace thimble::tools

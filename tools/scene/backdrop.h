@@ -1,21 +1,86 @@
 /// @file backdrop.h
-/// The light behind a scene (behind.h) for many pixels at a time, in vectors where there are any.
+/// What stands behind a scene at a pixel: a colour, a gradient or nothing, and a ground of which only the shadow
+/// is seen. Integers, and nothing of a system: the page draws by it, too.
 #ifndef THIMBLE_TOOLS_SCENE_BACKDROP_H
 #define THIMBLE_TOOLS_SCENE_BACKDROP_H
 
-#include <cstdint>
+#include <stddef.h>
+#include <stdint.h>
 
-#include "scene/default_look.h"
-#include "thimble/trace/ray.h"
+#include "thimble/picture/pixel.h"
+#include "thimble/trace/secondary_ray.h"
 #include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 
-class LitStreams;
+enum class BackgroundKind : uint8_t {
+  kAuto,      ///< the scene's own sky, else the gradient
+  kGradient,  ///< a soft one, from top to bottom
+  kColor,
+  kNone,  ///< transparent
+};
+struct Background {
+  BackgroundKind kind = BackgroundKind::kAuto;
+  Rgb8 color;  ///< kColor
+};
 
-/// `light_behind` of many rays, kNothingBehind where they hit; by the vectors of `streams`, unless it is null.
-void find_light_behind(const CompactTree& tree, const Look& look, const LitStreams* streams,
-                       Span<const Ray> rays, std::uint8_t* shares);
+/// The gradient, from top to bottom.
+inline constexpr Rgb8 kSoftTop{150, 168, 190};
+inline constexpr Rgb8 kSoftBottom{226, 224, 218};
+inline constexpr Rgb8 kSoftMiddle{188, 196, 204};
+
+/// The background's colour in row `y` of a picture.
+Rgb8 backdrop_color(const Background& background, int32_t y, int32_t height_px);
+
+/// A level ground at height `z`, in voxels.
+struct Ground {
+  bool is_there = false;
+  int32_t z = 0;
+  Vec3i toward_sun;    ///< whose shadow it shows, unless the sun stands below
+  uint16_t reach = 8;  ///< voxels within which it darkens under the model
+};
+
+/// Light that a ray finds behind the scene: kFullShare as it is, less in shadow.
+inline constexpr uint8_t kFullShare = 254;
+/// A share for a ray that hits.
+inline constexpr uint8_t kNothingBehind = 255;
+
+/// Whether `ray` of a camera misses everything; then how much light the ground that it meets has, if any:
+/// kFullShare less the sun's exact shadow, and less what the model closes off above. Up to 34 rays.
+/// False where it hits.
+bool light_behind(const CompactTree& tree, const Ground& ground, const Ray& ray, uint8_t* share);
+
+/// The background's colour with that share of its light.
+constexpr Rgb8 shaded(Rgb8 behind, uint8_t share) {
+  const auto part = [share](uint32_t back) {
+    return static_cast<uint8_t>((back * share + kFullShare / 2) / kFullShare);
+  };
+  return {part(behind.r), part(behind.g), part(behind.b)};
+}
+
+// The steps of light_behind, for who traces the rays of many pixels together.
+
+/// Directions of about kAroundLength each, spread over the hemisphere above by the cosine of their angle with the
+/// upright: a spiral that turns by the golden angle.
+inline constexpr Vec3i kAround[] = {
+    {16, 0, 127},    {-20, 19, 125},  {3, -36, 123},  {26, 34, 121},  {-47, -8, 119},  {45, -28, 116},
+    {-15, 56, 114},  {-29, -55, 112}, {62, 23, 110},  {-64, 27, 107}, {31, -66, 105},  {23, 73, 102},
+    {-69, -40, 100}, {81, -18, 97},   {-50, 70, 95},  {-11, -88, 92}, {70, 59, 89},    {-95, 4, 86},
+    {69, -69, 83},   {-5, 100, 80},   {-66, -79, 77}, {104, 14, 73},  {-88, 61, 70},   {24, -107, 66},
+    {56, 97, 62},    {-109, -35, 58}, {106, -49, 53}, {-46, 109, 48}, {-41, -114, 42}, {109, 57, 36},
+    {-121, 32, 28},  {69, -107, 16}};
+inline constexpr size_t kAroundCount = sizeof(kAround) / sizeof(kAround[0]);
+inline constexpr int32_t kAroundLength = 128;
+
+/// Where a ray from above meets the ground, if within where rays may start.
+bool meets_ground(const CompactTree& tree, const Ground& ground, const Ray& ray, Vec3Q8* at);
+/// Whether the model may close off light there.
+bool is_near_model(const CompactTree& tree, const Ground& ground, const Vec3Q8& at);
+/// Of 256: how much of the sky something at that point of a ray of kAround closes off; nothing beyond the reach.
+int64_t closed_at(const RayPoint& entry, uint16_t reach);
+/// Shares of what lies in the sun's shadow, and where the rays of kAround have closed off that sum.
+uint8_t in_shadow(uint8_t share);
+uint8_t in_corner(uint8_t share, int64_t closed_sum);
 
 }  // namespace thimble::tools
 

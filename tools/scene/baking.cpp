@@ -1,19 +1,25 @@
 #include "scene/baking.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <new>
 #include <string_view>
+#include <vector>
 
+#include "output/units.h"
 #include "readers/oct.h"
+#include "scene/board_fit.h"
 #include "scene/built_scene.h"
 #include "scene/default_look.h"
 #include "scene/generators.h"
 #include "scene/host_memory.h"
-#include "scene/look_note.h"
-#include "scene/paths.h"
+#include "scene/lit_description.h"
+#include "scene/named_scenes.h"
 #include "scene/scene_source.h"
+#include "thimble/light/render.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tools {
@@ -45,30 +51,6 @@ std::string cut_off(std::string text) {
     text.resize(size);
   }
   return text;
-}
-
-// Bytes of the character of UTF-8 that `text` begins with; 0 when it begins with none.
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
-  const std::size_t bytes = byte(0) < 0x80    ? 1
-                            : byte(0) < 0xC2  ? 0
-                            : byte(0) < 0xE0  ? 2
-                            : byte(0) < 0xF0  ? 3
-                            : byte(0) <= 0xF4 ? 4
-                                              : 0;
-  if (bytes > text.size()) {
-    return 0;
-  }
-  for (std::size_t at = 1; at < bytes; ++at) {
-    if ((byte(at) & 0xC0U) != 0x80U) {
-      return 0;
-    }
-  }
-  // Characters have one spelling, surrogates are none, and the last is U+10FFFF.
-  const bool is_wrong =
-      bytes > 2 && ((byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xED && byte(1) >= 0xA0) ||
-                    (byte(0) == 0xF0 && byte(1) < 0x90) || (byte(0) == 0xF4 && byte(1) >= 0x90));
-  return is_wrong ? 0 : bytes;
 }
 
 // The parts of a baked scene around a tree.
@@ -350,14 +332,158 @@ std::string scene_name(const std::string& scene) {
   if (parse_generator(scene)) {
     return scene;
   }
-  const std::string name = file_name(scene);
-  std::string utf8;
-  for (std::string_view rest = name; !rest.empty();) {
-    const std::size_t bytes = character_bytes(rest);
-    utf8 += bytes == 0 ? std::string_view("\xEF\xBF\xBD") : rest.substr(0, bytes);
-    rest.remove_prefix(std::max<std::size_t>(bytes, 1));
+  return utf8_text(file_name(scene));
+}
+
+namespace {
+
+constexpr std::int32_t kMostLookedAt = 96;
+// Of a display of few greys: what its brightest twentieth becomes, and the most exposure; what glares is dimmed by so
+// much, and looked at again.
+constexpr std::uint32_t kBrightGray = 244;
+constexpr std::uint32_t kMostQ8 = 1024;
+constexpr std::uint32_t kGlaring = 250;
+constexpr std::uint32_t kDimmedQ8 = 144;
+constexpr int kMostTurns = 4;
+
+// Greys of what the camera sees that is solid, and of the sky behind it.
+std::array<std::uint32_t, 256> seen_grays(const CompactTree& tree, const Camera& camera,
+                                          const Shading& shading, const LitScene& scene, EffectSet effects) {
+  std::array<std::uint32_t, 256> counts{};
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(camera.width_px()) * 3);
+  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
+    const Band band{{row.data(), row.size()}, PixelFormat::kRgb888, 0, y, 1};
+    if (render_lit_band(effects, tree, camera, shading, scene, band) != Status::kOk) {
+      return {};
+    }
+    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
+      Hit hit;
+      if ((effects & Effect::kSky) != 0 ||
+          (closest_hit(tree, camera.ray(x, y), &hit) == Status::kOk && hit.kind == HitKind::kHit)) {
+        const std::uint8_t* const pixel = row.data() + 3 * static_cast<std::size_t>(x);
+        counts[(77U * pixel[0] + 150U * pixel[1] + 29U * pixel[2]) >> 8] += 1;
+      }
+    }
   }
-  return utf8;
+  return counts;
+}
+
+// The grey that a share of what is seen, 1 in `part`, has or exceeds; 0 where nothing is seen.
+std::uint32_t bright_gray(const std::array<std::uint32_t, 256>& counts, std::uint64_t part) {
+  std::uint64_t total = 0;
+  for (const std::uint32_t count : counts) {
+    total += count;
+  }
+  std::uint64_t above = 0;
+  for (std::uint32_t gray = 256; total != 0 && gray-- > 0;) {
+    above += counts[gray];
+    if (part * above >= total) {
+      return std::max(1U, gray);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool has_few_grays(PixelFormat format) {
+  return is_gray(format) && format != PixelFormat::kGray8;
+}
+
+void suit_display(const DisplayFacts& display, const CompactTree& tree, const SceneCamera& camera,
+                  Span<const Rgb8> palette, const UsedMaterials& used, EffectSet effects,
+                  LitDescription* lit) {
+  Camera view;
+  if (set_camera(camera, display.width_px, display.height_px, tree.level(), &view) != Status::kOk) {
+    return;
+  }
+  const std::int32_t longest = std::max(display.width_px, display.height_px);
+  const Camera looked = view.thinned((longest + kMostLookedAt - 1) / kMostLookedAt);
+  Shading shading;
+  shading.palette = palette;
+  const bool few = has_few_grays(display.format);
+  // What glares is one white: how bright it is shows when it is dimmed.
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    const LitScene scene = lit_scene_for(*lit, used, effects);
+    const std::uint32_t gray =
+        bright_gray(seen_grays(tree, looked, shading, scene, effects & ~Effect::kEdges), few ? 20 : 10);
+    if (gray == 0) {
+      return;
+    }
+    const bool glares = few && gray >= kGlaring;
+    const std::uint32_t exposure =
+        glares ? kDimmedQ8
+        : few  ? std::min(kBrightGray * 256 / gray, kMostQ8)
+               : std::clamp(kExposedGray * 256 / gray, kLeastExposureQ8, kMostExposureQ8);
+    expose_light(exposure, used, lit);
+    if (!glares) {
+      return;
+    }
+  }
+}
+
+namespace {
+
+std::string limit_text(const FlashLimit& limit, EffectSet effects, std::uint64_t bytes) {
+  const platform::BoardFacts* const board = limit.board;
+  if (board != nullptr && bytes == scene_flash_bytes(*board, effects)) {
+    return std::string(board->name) + " has " + grouped(bytes) + " bytes of flash for a scene (" +
+           grouped(board->flash_bytes) + " less " + grouped(code_flash_bytes(*board, effects)) +
+           " for the demonstration)";
+  }
+  return "the limit is " + grouped(bytes) + " bytes (--memory)";
+}
+
+// Whether the scene with its light keeps the limit, uncoarsened, and the board can draw it.
+bool has_room_for_light(const FlashLimit& limit, const Baked& baked) {
+  const platform::BoardFacts* const board = limit.board;
+  return baked.fits && baked.bytes.size() <= limit.bytes(baked.effects).value_or(UINT64_MAX) &&
+         baked.scene.tree().solid_added() == 0 &&
+         (board == nullptr || drawing_ram_bytes(*board, baked.effects) <= board->ram_bytes);
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> FlashLimit::bytes(EffectSet effects) const {
+  if (board == nullptr) {
+    return memory_bytes;
+  }
+  return std::min(scene_flash_bytes(*board, effects), memory_bytes.value_or(UINT64_MAX));
+}
+
+Baked bake_within(const FlashLimit& limit, const SceneSource& source, BakingOptions* options,
+                  const Progress& progress) {
+  const bool coarsen = options->coarsen;
+  options->coarsen = false;
+  Baked baked = bake_scene(source, *options, progress);
+  const auto keep_limit = [&] {
+    // With the code of its effects it does not fit: without a brick map, or not at all.
+    options->limit_bytes = limit.bytes(baked.effects);
+    if (options->limit_bytes && (!baked.fits || baked.bytes.size() > *options->limit_bytes)) {
+      baked = bake_scene(source, *options, progress);
+    }
+  };
+  keep_limit();
+  if (options->default_look && baked.effects != Effect::kNone && !has_room_for_light(limit, baked)) {
+    options->default_look = false;  // light that nobody asked for never costs a scene its place
+    options->limit_bytes = limit.bytes();
+    baked = bake_scene(source, *options, progress);
+    keep_limit();
+  }
+  options->coarsen = coarsen;
+  if (coarsen && !baked.fits) {
+    baked = bake_scene(source, *options, progress);
+  }
+  return baked;
+}
+
+std::string too_large_text(const FlashLimit& limit, const Baked& baked, const BakingOptions& options,
+                           int level) {
+  const std::uint64_t most = options.limit_bytes.value_or(UINT64_MAX);
+  const std::uint64_t over = baked.bytes.size() - most;
+  return (options.coarsen ? "even the coarsest tree takes " : "takes ") + grouped(baked.bytes.size()) +
+         " bytes at depth " + std::to_string(level) + ", " + limit_text(limit, baked.effects, most) + ": " +
+         grouped(over) + (over == 1 ? " byte" : " bytes") + " too many";
 }
 
 }  // namespace thimble::tools

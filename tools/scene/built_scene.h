@@ -3,6 +3,7 @@
 #ifndef THIMBLE_TOOLS_SCENE_BUILT_SCENE_H
 #define THIMBLE_TOOLS_SCENE_BUILT_SCENE_H
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,11 +11,107 @@
 
 #include "readers/source.h"
 #include "scene/host_memory.h"
-#include "scene/structure.h"
+#include "scene/scene_arguments.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
+#include "thimble/trace/ray.h"
+#include "thimble/tree/compact_tree.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/octree.h"
 
 namespace thimble::tools {
+
+// Builds what is traced, from a stream of voxels, in the memory of an arena and nowhere else.
+
+// A scene's voxels as rays are traced through them, in one of three structures.
+
+/// Only the member that `kind` names counts. Its bytes are an arena's.
+struct Structure {
+  StructureKind kind = StructureKind::kCompact;
+  DenseGrid dense;
+  Octree pool;
+  CompactTree compact;
+
+  int level() const;
+  /// A box that holds everything solid.
+  VoxelBox bounds() const;
+  /// Solid volume in voxels.
+  std::uint64_t voxels() const;
+  /// 0 for a dense grid.
+  std::uint64_t nodes() const;
+  std::uint64_t bytes() const;
+
+  Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;
+  Status render_band(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
+                     const TraceOptions& options) const;
+
+ private:
+  /// Calls `visit` with the one that is traced.
+  template <class Visit>
+  auto with_traced(const Visit& visit) const {
+    switch (kind) {
+      case StructureKind::kDense:
+        return visit(dense);
+      case StructureKind::kPool:
+        return visit(pool);
+      case StructureKind::kCompact:
+        break;
+    }
+    return visit(compact);
+  }
+};
+
+class SceneSource;
+
+/// What a dense grid of the scene must hold.
+Vec3i dense_size(const SceneSource& source);
+
+/// Builds behind what the arena holds; its layout, front to back:
+///
+///   what is there | pool of nodes, or list of keys, while building | compact tree
+///
+/// At the end the compact tree moves down over the workspace. A baked scene's tree is just taken up, without
+/// any workspace; the other structures are filled from it.
+class StructureBuilder {
+ public:
+  struct Shortage {};  ///< thrown: the arena is too small
+
+  /// `baked_in_flash`: a baked scene's tree is traced where the source has it. Otherwise it is copied into
+  /// the arena. `threads` may sort voxels. All that is given outlives the builder.
+  StructureBuilder(const SceneSource& source, Arena* arena, bool baked_in_flash, int threads,
+                   const Progress& progress)
+      : source_(source),
+        arena_(*arena),
+        baked_in_flash_(baked_in_flash),
+        threads_(threads),
+        progress_(progress) {}
+
+  /// `coarsen`: merges blocks until the arena is large enough. Throws Shortage, InputError and what the
+  /// source throws; what the arena then holds behind what was there is lost.
+  Structure build(StructureKind kind, bool coarsen);
+  /// The least bytes of an arena in which the same comes out without coarsening, where that is less than the
+  /// most that was in use; else 0. After `build`.
+  std::uint64_t least_bytes() const { return least_bytes_; }
+
+ private:
+  void build_dense();
+  void build_pool(bool coarsen);
+  void build_parts();
+  void fill_part(Bytes pool, int part_level, std::size_t part);
+  void insert(const Vec3i& corner, int block_level, std::uint8_t material);
+  void take_baked(const CompactTree& tree);
+  template <class Key>
+  void build_keys();
+  void keep_compact(Bytes tree);
+
+  const SceneSource& source_;
+  Arena& arena_;
+  bool baked_in_flash_;
+  int threads_;
+  const Progress& progress_;
+  Structure built_;
+  std::uint64_t least_bytes_ = 0;
+};
 
 class SceneSource;
 
@@ -33,7 +130,7 @@ struct BuildOptions {
 };
 
 /// Built once, then only read. Layout of the arena, front to back: render state and band, the structure
-/// (structure_builder.h), and what others take there (wide_renderer.h, quality.h).
+/// (`StructureBuilder`), and what others take there (wide_renderer.h, sampling.h).
 class BuiltScene {
  public:
   /// Streams `source` into memory of its own. Throws InputError when it does not fit the budget (the sentence

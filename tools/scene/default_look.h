@@ -20,10 +20,11 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/behind.h"
+#include "scene/backdrop.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"
 #include "scene/scene_shape.h"
+#include "scene/tone_table.h"
 
 namespace thimble::tools {
 
@@ -58,6 +59,9 @@ SceneFacts facts_expected(const SceneSource& source, const LitDescription& light
 /// Of what was built. For points it looks at up to 4,096 of them, spread evenly, and the places around.
 SceneFacts facts_of(const SceneSource& source, const LitDescription& lighting, const SceneShape& shape);
 
+/// What a baked scene keeps of them, before anything of the rule's was added.
+LookNote note_of(const SceneFacts& facts);
+
 /// "none", "gradient" or six hex digits. False for anything else.
 bool parse_background(std::string_view text, Background* background);
 
@@ -78,7 +82,7 @@ enum class LookKind : std::uint8_t {
 
 struct Look {
   LookKind kind = LookKind::kLit;
-  /// kLit: surfaces, lights and the rest, at two thirds of their brightness (tone.h).
+  /// kLit: surfaces, lights and the rest, at two thirds of their brightness (`dim`).
   LitDescription lighting;
   EffectSet effects = Effect::kNone;
   UsedMaterials used;
@@ -115,6 +119,28 @@ LitDescription baked_look(const SceneFacts& facts, const Framing& framing);
 /// What stands behind what `baked_look` lights, and what its glass and mirrors show: a sky in the colours of the
 /// gradient, for displays of many colours. False where the scene has one, wants none, or is stars.
 bool add_baked_sky(const SceneFacts& facts, LitDescription* lighting);
+
+// A look while the camera moves: what costs no rays of its own, about as bright as the finished picture.
+
+/// What of a look's effects is drawn then.
+inline constexpr EffectSet kQuickEffects = Effect::kDirectLight | Effect::kEmission | Effect::kWater |
+                                           Effect::kFog | Effect::kSky | Effect::kDepthCue;
+
+/// The light of a face in the open, for pictures without shadows: what comes from everywhere, the suns by their
+/// angles, and a share for lamps, wherever they hang. Where that is more than a face can have all get less, so that
+/// faces stay apart.
+void quick_light(const LitScene& scene, std::uint16_t (&face_light)[6]);
+
+/// The tone that suits an exposure of finished pictures: shadows and corners, which are not in it, take an eighth of
+/// a model's light away, and nothing of a sky's.
+ToneTable quick_tone(const Look& look, std::uint32_t exposure_q8);
+
+/// Colours with their tone, so that no pass over the picture gives it: exact for the brightest face.
+struct QuickLook {
+  std::uint16_t face_light[6];
+  std::vector<Rgb8> palette;
+};
+QuickLook quick_look(const Look& look, const ToneTable& tone);
 
 }  // namespace thimble::tools
 

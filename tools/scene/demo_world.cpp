@@ -1,4 +1,4 @@
-#include "scene/demo_world.h"
+#include "scene/generators.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstring>
 #include <utility>
 
@@ -15,20 +14,6 @@ constexpr std::size_t kSegmentPx = kEdgeSegmentPx;
 
 // Pixels whose samples are drawn together, about: enough for all threads, few enough to lie in a cache.
 constexpr std::int32_t kTogetherPx = 16384;
-
-// Calls run(task, worker) for each task; the worst status.
-template <class Run>
-Status for_tasks(std::int32_t tasks, int threads, const Run& run) {
-  std::atomic<Status> worst{Status::kOk};
-  each_task(static_cast<std::size_t>(tasks), threads, [&](std::size_t task, std::size_t worker) {
-    const Status status =
-        worst.load() == Status::kOk ? run(static_cast<std::int32_t>(task), worker) : Status::kOk;
-    if (status != Status::kOk) {
-      worst.store(status);
-    }
-  });
-  return worst;
-}
 
 }  // namespace
 
@@ -62,7 +47,7 @@ Status EdgeRows::draw(std::int32_t first_row, std::int32_t rows, Bytes work) {
   if (hooks_.draw_places) {
     return draw_together(first_row, rows, centres);
   }
-  return for_tasks(rows, threads_, [&](std::int32_t row, std::size_t worker) {
+  return each_until_error(rows, threads_, [&](std::int32_t row, std::size_t worker) {
     return draw_row(first_row + row, centres, samples.subspan(width * worker, width), worker);
   });
 }
@@ -83,7 +68,7 @@ Status EdgeRows::draw_centres(std::int32_t first, std::int32_t end, Bytes centre
     return hooks_.draw({camera_, y, 0, y, camera_.width_px(), false}, centres.subspan(at(y), line_), worker);
   };
   const Status status = hooks_.draw_places ? draw_all_centres(missing, end, centres.subspan(at(missing)))
-                                           : for_tasks(end - missing, threads_, draw_one);
+                                           : each_until_error(end - missing, threads_, draw_one);
   if (status == Status::kOk) {
     kept_end_ = end;
   }
@@ -150,7 +135,7 @@ Status EdgeRows::draw_together(std::int32_t first_row, std::int32_t rows, ConstB
     const auto row_of = [&](std::int32_t row) {
       return wanted_.data() + width * static_cast<std::size_t>(row);
     };
-    status = for_tasks(count, threads_, [&](std::int32_t row, std::size_t /*worker*/) {
+    status = each_until_error(count, threads_, [&](std::int32_t row, std::size_t /*worker*/) {
       return find_wanted(first + row, centres, Bytes(row_of(row), width));
     });
     if (status != Status::kOk) {
@@ -162,7 +147,7 @@ Status EdgeRows::draw_together(std::int32_t first_row, std::int32_t rows, ConstB
     if (status != Status::kOk) {
       return status;
     }
-    status = for_tasks(count, threads_, [&](std::int32_t row, std::size_t /*worker*/) {
+    status = each_until_error(count, threads_, [&](std::int32_t row, std::size_t /*worker*/) {
       finish_row(first + row, row_of(row), centre_row(first + row, centres),
                  drawn_.data() + channels_ * row_places_[static_cast<std::size_t>(row)]);
       return Status::kOk;

@@ -9,13 +9,20 @@
 #include <functional>
 #include <vector>
 
-#include "scene/sample_place.h"
 #include "thimble/base/memory.h"
 #include "thimble/base/status.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::tools {
+
+// One sample of a picture.
+
+/// A pixel of the camera that samples, and the one of the picture that it is for.
+struct SamplePlace {
+  std::int32_t x, y;
+  std::int32_t px, py;
+};
 
 /// One sample each of the pixels (px .. px + count - 1, py) of the picture: row `row` of `camera`.
 struct SampleRun {

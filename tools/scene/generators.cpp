@@ -6,8 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "scene/demo_world.h"
-#include "scene/generator_words.h"
+#include "scene/named_scenes.h"
 #include "scene/palette.h"
 #include "scene/random.h"
 

@@ -7,7 +7,7 @@
 ///   water       a basin with an island and floating bodies of glass and metal, in the sun; the water itself
 ///   is
 ///               no voxels but a still surface (water_surface.h), which only effects show
-///   demo        a castle in a valley (demo_world.h): what the firmware shows
+///   demo        a castle in a valley (demo_world.cpp): what the firmware shows
 ///
 /// each followed by `,seed=S` and `,depth=L` in any order, as in `points:1000000,seed=7,depth=10`. N may be
 /// written as 1e6 or 2.5e6.
@@ -25,7 +25,6 @@
 
 #include "readers/source.h"
 #include "scene/lit_description.h"
-#include "scene/voxel_sink.h"
 #include "thimble/bake/baked_scene.h"
 
 namespace thimble::tools {
@@ -65,6 +64,26 @@ Palette generator_palette(GeneratorKind kind);
 
 /// What light does in the scene: `water` has its surface, a sun and a sky; the others only surfaces.
 LitDescription generator_lighting(const GeneratorSpec& spec);
+
+// The scene of the demonstration: a valley among mountains, a castle on a crag in a lake, a bridge, an
+// aqueduct, a village, a stone circle, trees and a boat.
+//
+// It is made for a small screen: few tones that keep apart under the light of the faces, large plain shapes
+// (terraces, cliffs in layers), and mountains on all sides, so that a camera inside the valley sees hardly
+// any sky. It is laid out in 1/64 of the world: at depth 6 a unit is a voxel.
+
+/// Streams the world of 2^depth voxels a side, each solid voxel once, column by column. The seed moves hills,
+/// shores, trees and rocks; what is built by hand stays where it is. No heap. Time grows with 8^depth.
+void generate_demo_world(std::uint64_t seed, int depth, const VoxelSink& sink);
+
+/// Colours of the materials; index 0 is the default material.
+Palette demo_world_palette();
+
+/// Where the demonstration's orbit begins: inside the valley, above the lake, looking at the castle.
+SceneCamera demo_world_camera(int depth);
+
+/// The sun and the light from everywhere, for whoever asks for effects; of itself the scene calls for none.
+void demo_world_light(LitDescription* lit);
 
 }  // namespace thimble::tools
 

@@ -1,10 +1,12 @@
 #include "scene/lit_description.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "readers/oct.h"
-#include "scene/glow.h"
+#include "scene/emitter_lamps.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
@@ -256,12 +258,9 @@ std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const Used
   BakedLighting lighting;
   lighting.effects = effects;
   LitScene& scene = lighting.scene;
-  scene = lit.drawn(effects);
+  scene = lit_scene_for(lit, used, effects);
   const LitScene plain;
   const auto unwanted = [effects](EffectSet effect) { return (effects & effect) == 0; };
-  if (unwanted(Effect::kDirectLight)) {
-    scene.lights = {};
-  }
   scene.has_shadows = scene.has_shadows && !unwanted(Effect::kShadows);
   scene.has_depth_cue = scene.has_depth_cue && !unwanted(Effect::kDepthCue);
   if (unwanted(Effect::kAmbientOcclusion)) {
@@ -279,19 +278,194 @@ std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const Used
     scene.water = plain.water;
     scene.water_material = plain.water_material;
   }
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < scene.surfaces.size; ++i) {
-    if (used.is[i] && scene.surfaces[i].kind != SurfaceKind::kDiffuse) {
-      count = i + 1;
-    }
-  }
-  constexpr EffectSet kOfMaterials = Effect::kEmission | Effect::kMirror | Effect::kGlass | Effect::kMedia;
-  scene.surfaces = {scene.surfaces.data, (effects & kOfMaterials) != 0 ? count : 0};
   std::vector<std::uint8_t> bytes(lighting_bytes(scene));
   if (bytes.empty() || BakedLighting::make(lighting, level, {bytes.data(), bytes.size()}) != Status::kOk) {
     throw InputError("its lights, surfaces or water are beyond the limits of a baked scene");
   }
   return bytes;
+}
+
+namespace {
+
+// All that shines, each number by `scale`, which gets the most that it may become; `emit_only`: of surfaces only
+// those of that kind glow.
+template <class Scale>
+void scale_light(LitDescription* lighting, const UsedMaterials& used, bool emit_only, const Scale& scale) {
+  const auto scale_16 = [&](std::uint16_t value) {
+    return static_cast<std::uint16_t>(scale(std::uint32_t{value}, std::uint32_t{UINT16_MAX}));
+  };
+  const auto scale_rgb = [&](Rgb8 color) {
+    const auto one = [&](std::uint8_t value) {
+      return static_cast<std::uint8_t>(scale(std::uint32_t{value}, std::uint32_t{UINT8_MAX}));
+    };
+    return Rgb8{one(color.r), one(color.g), one(color.b)};
+  };
+  for (std::vector<Light>* const lights : {&lighting->lights, &lighting->lights_and_glow}) {
+    for (Light& light : *lights) {
+      for (PackedU16& channel : light.color_q8) {
+        channel = scale_16(channel);
+      }
+    }
+  }
+  LitScene& rest = lighting->rest;
+  for (std::uint16_t& channel : rest.ambient_q8) {
+    channel = scale_16(channel);
+  }
+  for (std::size_t i = 0; i < lighting->surfaces.size(); ++i) {
+    Surface& surface = lighting->surfaces[i];
+    if (used.is[i] && (!emit_only || surface.kind == SurfaceKind::kEmit)) {
+      surface.emission_q8 = scale_16(surface.emission_q8);
+    }
+    if (used.is[i] && surface.kind == SurfaceKind::kMedia) {
+      surface.albedo = scale_rgb(surface.albedo);
+    }
+  }
+  rest.sky = {scale_rgb(rest.sky.zenith), scale_rgb(rest.sky.horizon), scale_rgb(rest.sky.ground)};
+  rest.fog.color = scale_rgb(rest.fog.color);
+}
+
+}  // namespace
+
+void dim(LitDescription* lighting, const UsedMaterials& used) {
+  scale_light(lighting, used, false, [](std::uint32_t value, std::uint32_t) { return (2 * value + 1) / 3; });
+}
+
+void expose_light(std::uint32_t exposure_q8, const UsedMaterials& used, LitDescription* lighting) {
+  scale_light(lighting, used, true, [exposure_q8](std::uint32_t value, std::uint32_t most) {
+    return std::min((value * exposure_q8 + 128) >> 8, most);
+  });
+}
+
+namespace {
+
+constexpr std::size_t kNoteBytes = 12;
+constexpr std::uint8_t kNoteVersion = 1;
+constexpr unsigned kIsMesh = 1;
+constexpr unsigned kIsPoints = 2;
+constexpr unsigned kHasColors = 4;
+constexpr unsigned kHasOwnLight = 8;
+constexpr unsigned kHasOwnSky = 16;
+constexpr std::size_t kOn = 4;
+constexpr std::size_t kOff = 8;
+
+void store32(std::uint8_t* to, std::uint32_t value) {
+  for (unsigned i = 0; i < 4; ++i) {
+    to[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  }
+}
+std::uint32_t load32(const std::uint8_t* from) {
+  return from[0] | std::uint32_t{from[1]} << 8 | std::uint32_t{from[2]} << 16 | std::uint32_t{from[3]} << 24;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> look_section(const LookNote& note) {
+  std::vector<std::uint8_t> bytes(kNoteBytes);
+  bytes[0] = kNoteVersion;
+  bytes[1] = static_cast<std::uint8_t>((note.is_mesh ? kIsMesh : 0U) | (note.is_points ? kIsPoints : 0U) |
+                                       (note.has_colors ? kHasColors : 0U) |
+                                       (note.has_own_light ? kHasOwnLight : 0U) |
+                                       (note.has_own_sky ? kHasOwnSky : 0U));
+  store32(bytes.data() + kOn, note.on);
+  store32(bytes.data() + kOff, note.off);
+  return bytes;
+}
+
+std::optional<LookNote> read_look_note(ConstBytes section) {
+  if (section.size != kNoteBytes || section.data[0] != kNoteVersion) {
+    return std::nullopt;
+  }
+  const unsigned flags = section.data[1];
+  LookNote note;
+  note.is_mesh = (flags & kIsMesh) != 0;
+  note.is_points = (flags & kIsPoints) != 0;
+  note.has_colors = (flags & kHasColors) != 0;
+  note.has_own_light = (flags & kHasOwnLight) != 0;
+  note.has_own_sky = (flags & kHasOwnSky) != 0;
+  note.on = load32(section.data + kOn) & Effect::kAll;
+  note.off = load32(section.data + kOff) & Effect::kAll;
+  return note;
+}
+
+LitDescription without_rule(const LookNote& note, LitDescription baked) {
+  baked.on = note.on;
+  baked.off = note.off;
+  const LitScene plain;
+  if (!note.has_own_sky) {
+    baked.rest.has_sky = plain.has_sky;
+    baked.rest.sky = plain.sky;
+  }
+  if (!note.has_own_light) {
+    baked.lights.clear();
+    baked.lights_and_glow.clear();
+    baked.has_baked_glow = false;
+    baked.has_own_ambient = false;
+    std::copy(std::begin(plain.ambient_q8), std::end(plain.ambient_q8), std::begin(baked.rest.ambient_q8));
+    baked.rest.has_shadows = plain.has_shadows;
+  }
+  return baked;
+}
+
+EffectSet expected_effects(const SceneSource& source, const LitDescription& lit, const EffectChoice& choice,
+                           UsedMaterials* used) {
+  UsedMaterials all;
+  std::fill(std::begin(all.is), std::end(all.is), true);
+  *used = all;
+  const EffectSet most = chosen_effects(lit, all, choice);
+  if (most == Effect::kNone || most == chosen_effects(lit, {}, choice)) {
+    return most;
+  }
+  *used = used_materials(source);
+  return chosen_effects(lit, *used, choice);
+}
+
+LitScene lit_scene_for(const LitDescription& lit, const UsedMaterials& used, EffectSet effects) {
+  LitScene scene = lit.drawn(effects);
+  if ((effects & Effect::kDirectLight) == 0) {
+    scene.lights = {};
+  }
+  constexpr EffectSet kOfMaterials = Effect::kEmission | Effect::kMirror | Effect::kGlass | Effect::kMedia;
+  std::size_t count = 0;
+  for (std::size_t i = 0; (effects & kOfMaterials) != 0 && i < scene.surfaces.size; ++i) {
+    count = used.is[i] && scene.surfaces[i].kind != SurfaceKind::kDiffuse ? i + 1 : count;
+  }
+  scene.surfaces.size = count;
+  return scene;
+}
+
+std::size_t lit_table_bytes(const LitScene& scene) {
+  return scene.surfaces.size * sizeof(Surface) + scene.lights.size * sizeof(Light);
+}
+
+std::size_t lit_state_bytes(const LitScene& scene, EffectSet effects) {
+  return lit_render_bytes(effects) + (effects == Effect::kNone ? 0 : lit_table_bytes(scene));
+}
+
+void add_counts(const LitCounts& more, LitCounts* counts) {
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    counts->rays[kind] += more.rays[kind];
+    counts->hits[kind] += more.hits[kind];
+    counts->node_visits[kind] += more.node_visits[kind];
+  }
+  counts->step_limited += more.step_limited;
+  counts->pending_high_water = std::max(counts->pending_high_water, more.pending_high_water);
+}
+
+RenderCounts totals_of(const LitCounts& counts) {
+  RenderCounts all;
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    all.rays += counts.rays[kind];
+    all.hits += counts.hits[kind];
+    all.node_visits += counts.node_visits[kind];
+  }
+  all.step_limited = counts.step_limited;
+  return all;
+}
+
+const char* ray_kind_name(LitRayKind kind) {
+  constexpr std::array<const char*, kLitRayKinds> kNames{"primary", "shadow", "occlusion", "mirror",
+                                                         "glass",   "media",  "water"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace thimble::tools

@@ -14,6 +14,7 @@
 #define THIMBLE_TOOLS_SCENE_LIT_DESCRIPTION_H
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -22,7 +23,11 @@
 #include <vector>
 
 #include "readers/source.h"
+#include "scene/tone_table.h"
+#include "thimble/base/memory.h"
+#include "thimble/light/render.h"
 #include "thimble/light/scene.h"
+#include "thimble/picture/render.h"
 #include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
@@ -140,6 +145,78 @@ LitScene with_defaults(LitScene scene, EffectSet effects, bool sunless = false);
 /// rest. Throws InputError when a number is beyond the core's limits.
 std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const UsedMaterials& used,
                                            EffectSet effects, int level);
+
+// From the core's brightness to a finished picture: exposure and a shoulder, in integers.
+//
+// Light is drawn at two thirds, so that what is half again as bright as white is still told apart. A table
+// of 256 entries then brightens it by the exposure, straight up to a knee and gently on towards white, so
+// that no colour is cut off.
+
+/// All that shines, at two thirds: lights, ambient, what glows, sky, fog and clouds.
+void dim(LitDescription* lighting, const UsedMaterials& used);
+
+/// All that shines, so many 256ths as bright: what `dim` dims.
+void expose_light(std::uint32_t exposure_q8, const UsedMaterials& used, LitDescription* lighting);
+
+// What a baked scene keeps of the scene that it was made from, so that its picture without another word is the one of
+// the scene itself: the section of kind `SectionKind::kLook` (src/FORMAT.md). The core never reads it.
+
+struct LookNote {
+  bool is_mesh = false;
+  bool is_points = false;
+  bool has_colors = false;
+  bool has_own_light = false;    ///< lights, ambient and shadows are the scene's, not of default_look.h
+  bool has_own_sky = false;      ///< so is the sky, if there is one
+  EffectSet on = Effect::kNone;  ///< what the scene's author turned on and off
+  EffectSet off = Effect::kNone;
+};
+
+/// The section's 12 bytes, and back. What is not of this version and size says nothing.
+std::vector<std::uint8_t> look_section(const LookNote& note);
+std::optional<LookNote> read_look_note(ConstBytes section);
+
+/// The lighting of a baked scene without what the rule added. What glows is to be looked for again.
+LitDescription without_rule(const LookNote& note, LitDescription baked);
+
+// From a scene's lighting and --effects to what the core's lit renderer gets, and what that takes.
+//
+// The set of effects follows from the materials in the built tree; the budget is shared out before there is
+// one. So it goes in two steps:
+//
+//     LitDescription lit = source.lighting();
+//     UsedMaterials used;
+//     EffectSet effects = expected_effects(source, lit, choice, &used);
+//     lit.expect_glow();
+//     ... build, keeping back lit_state_bytes(lit_scene_for(lit, used, effects), effects) ...
+//     used = used_materials(built.compact());
+//     effects = chosen_effects(lit, used, choice);              // the same, or less
+//     lit.find_glow(built.compact());
+//     const LitScene scene = lit_scene_for(lit, used, effects);  // views into `lit`
+
+/// At least the effects that will be chosen once the tree is built, and in `used` at least its materials. The
+/// source is streamed only where its materials make a difference.
+EffectSet expected_effects(const SceneSource& source, const LitDescription& lit, const EffectChoice& choice,
+                           UsedMaterials* used);
+
+/// What these effects need of the scene, and no more, as a baked scene has it too (`lighting_section`):
+/// lights where there is direct light, surfaces up to the last used one that is not plain. The spans are
+/// those of `lit`, or of a constant.
+LitScene lit_scene_for(const LitDescription& lit, const UsedMaterials& used, EffectSet effects);
+
+/// Bytes of the tables of surfaces and lights.
+std::size_t lit_table_bytes(const LitScene& scene);
+/// Bytes that drawing keeps besides tree and band: the renderer's state and the tables. `render_bytes()`
+/// without effects.
+std::size_t lit_state_bytes(const LitScene& scene, EffectSet effects);
+
+/// Adds what another thread counted.
+void add_counts(const LitCounts& more, LitCounts* counts);
+
+/// Of rays of every kind together.
+RenderCounts totals_of(const LitCounts& counts);
+
+/// "primary", "shadow", "occlusion", "mirror", "glass", "media", "water".
+const char* ray_kind_name(LitRayKind kind);
 
 }  // namespace thimble::tools
 

@@ -1,13 +1,13 @@
 /// @file lit_streams.h
 /// Lit pictures by streams of rays (platform/wide/lit) made ready for one scene: the map of its tree and a workspace in
-/// an arena. A build without it (-DTHIMBLE_WIDE=OFF) has lit_streams_absent.cpp, which makes none.
+/// an arena. A build without it (-DTHIMBLE_WIDE=OFF) has wide_absent.cpp, which makes none.
 #ifndef THIMBLE_TOOLS_SCENE_LIT_STREAMS_H
 #define THIMBLE_TOOLS_SCENE_LIT_STREAMS_H
 
 #include <cstddef>
 #include <memory>
 
-#include "scene/sample_place.h"
+#include "scene/edge_rows.h"
 #include "thimble/base/memory.h"
 #include "thimble/light/render.h"
 #include "thimble/trace/ray.h"

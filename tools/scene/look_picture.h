@@ -13,9 +13,11 @@
 #include "output/image.h"
 #include "scene/default_look.h"
 #include "scene/edge_rows.h"
+#include "scene/lit_description.h"
 #include "scene/lit_streams.h"
-#include "scene/painting.h"
-#include "scene/tone.h"
+#include "scene/painter.h"
+#include "thimble/trace/ray.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 
@@ -105,6 +107,14 @@ Status paint_look(const LookCanvas& canvas, std::uint32_t exposure_q8, const Pro
 
 /// The same for points that shine (stars.cpp).
 Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting* painting);
+
+// The light behind a scene for many pixels at a time, in vectors where there are any.
+
+class LitStreams;
+
+/// `light_behind` of many rays, kNothingBehind where they hit; by the vectors of `streams`, unless it is null.
+void find_light_behind(const CompactTree& tree, const Look& look, const LitStreams* streams,
+                       Span<const Ray> rays, std::uint8_t* shares);
 
 }  // namespace thimble::tools
 

@@ -19,6 +19,20 @@ std::vector<std::string> scene_names();
 /// Throws InputError, which lists the names, for one that is neither a file nor known.
 std::string scene_path(const std::string& scene);
 
+// Names of files, as text.
+
+/// The last part of a path, without its folder.
+std::string file_name(const std::string& path);
+/// What the file `path` means by `name`: relative to its own folder, unless it begins at the root.
+std::string path_beside(const std::string& path, const std::string& name);
+/// One spelling of a path, links followed as far as it exists; the path itself where that fails.
+std::string canonical_path(const std::string& path);
+
+// Whether a word is a generator's, for who wants no scene of it.
+
+/// Whether `parse_generator` (generators.h) takes it, or says what is wrong with it.
+bool is_generator(const std::string& word);
+
 }  // namespace thimble::tools
 
 #endif

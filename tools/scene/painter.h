@@ -15,11 +15,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 
+#include "output/image.h"
+#include "readers/source.h"
 #include "scene/built_scene.h"
 #include "scene/edge_rows.h"
 #include "scene/lit_streams.h"
-#include "scene/quality.h"
+#include "scene/sampling.h"
 #include "scene/wide_renderer.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/camera.h"
@@ -36,45 +39,36 @@ struct PaintCounts {
   LitCounts lit;      ///< of the lit painter by kind of ray, else 0
 };
 
-class BandPainter {
- public:
-  virtual ~BandPainter() = default;
-  /// What draws, as --stats names it.
-  virtual const char* engine() const = 0;
-  virtual int threads() const { return 1; }
-  /// Most rows of a band.
-  virtual std::int32_t most_rows() const = 0;
-  /// Where bands are drawn: in the scene's budget. Empty: straight into the picture.
-  virtual Bytes work() const = 0;
-  /// Draws `band`, whose pixels are the front of `work()` if there is one; `counts` is added to. Errors, with
+/// What a picture's bands are drawn with.
+struct BandPainter {
+  const char* engine;  ///< what draws, as --stats names it
+  int threads;
+  std::int32_t most_rows;  ///< of a band
+  Bytes work;  ///< where bands are drawn: in the scene's budget. Empty: straight into the picture.
+  /// Draws `band`, whose pixels are the front of `work` if there is one; `counts` is added to. Errors, with
   /// nothing counted: kBadArgument for a camera that it does not take, kTooFine for one that it leaves to the
   /// ray painter.
-  virtual Status draw(const Band& band, PaintCounts* counts) = 0;
+  std::function<Status(const Band& band, PaintCounts* counts)> draw;
 };
 
 // What a painter is made with must live as long as it does.
 
 /// Bands as high as the scene's own has room for.
-std::unique_ptr<BandPainter> make_ray_painter(const BuiltScene& built, const Camera& camera,
-                                              const Shading& shading, PixelFormat format,
-                                              const TraceOptions& options);
+BandPainter ray_painter(const BuiltScene& built, const Camera& camera, const Shading& shading,
+                        PixelFormat format, const TraceOptions& options);
 
 /// A row at a time.
-std::unique_ptr<BandPainter> make_quality_painter(const BuiltScene& built, const QualityFrame& frame,
-                                                  const TraceOptions& options);
+BandPainter quality_painter(const BuiltScene& built, const QualityFrame& frame, const TraceOptions& options);
 
 /// The same with samples where edges are.
-std::unique_ptr<BandPainter> make_ray_edge_painter(const BuiltScene& built, const QualityFrame& frame,
-                                                   const Camera& camera, const Camera& fine,
-                                                   PixelFormat format, const TraceOptions& options);
+BandPainter ray_edge_painter(const BuiltScene& built, const QualityFrame& frame, const Camera& camera,
+                             const Camera& fine, PixelFormat format, const TraceOptions& options);
 
 /// For pictures of the size that `renderer` was made for.
-std::unique_ptr<BandPainter> make_wide_painter(WideRenderer* renderer, const Camera& camera,
-                                               const Shading& shading);
+BandPainter wide_painter(WideRenderer* renderer, const Camera& camera, const Shading& shading);
 
 /// Of the scene that `engine` was made for.
-std::unique_ptr<BandPainter> make_gpu_painter(GpuEngine* engine, const Camera& camera,
-                                              const Shading& shading);
+BandPainter gpu_painter(GpuEngine* engine, const Camera& camera, const Shading& shading);
 
 /// What a lit picture is made of beside tree, camera and shading.
 struct LitPicture {
@@ -87,33 +81,32 @@ struct LitPicture {
   LitStreams* streams = nullptr;  ///< made for these effects; null: the core draws, and those threads with it
 };
 
-/// Who draws the samples of an edge painter.
-struct EdgeEngine {
-  const char* name;
-  int threads;
-  bool is_lit;  ///< whether it counts by kind of ray
-  /// A row of a camera in kRgb888; called by so many threads at a time, each with counts of its own.
-  std::function<Status(const SampleRun& run, Bytes samples, PaintCounts* counts)> draw;
-  /// In place of `draw`, where it is set: single pixels, by threads of its own.
-  std::function<Status(const Camera& camera, Span<const SamplePlace> places, Bytes samples,
-                       PaintCounts* counts)>
-      draw_places = nullptr;
-};
-/// Of such pictures, for `fine` with kEdgeGrid times the pixels of `camera` each way.
-std::unique_ptr<BandPainter> make_edge_painter(const BuiltScene& built, const Camera& camera,
-                                               const Camera& fine, PixelFormat format, EdgeEngine engine);
-/// Bytes of a band in which it draws `rows` rows at a time.
+/// Bytes of a band in which an edge painter draws `rows` rows at a time.
 std::uint64_t edge_band_bytes(PixelFormat format, std::int32_t width_px, std::int32_t rows, int threads);
 
-/// As make_lit_painter, with samples where edges are; `picture.across` is not looked at.
-std::unique_ptr<BandPainter> make_lit_edge_painter(const BuiltScene& built, const Camera& camera,
-                                                   const Camera& fine, const Shading& shading,
-                                                   PixelFormat format, const LitPicture& picture);
+/// As lit_painter, with samples where edges are; `picture.across` is not looked at.
+BandPainter lit_edge_painter(const BuiltScene& built, const Camera& camera, const Camera& fine,
+                             const Shading& shading, PixelFormat format, const LitPicture& picture);
 
 /// For compact trees. Formats with fewer than 8 bits a channel are dithered.
-std::unique_ptr<BandPainter> make_lit_painter(const BuiltScene& built, const Camera& camera,
-                                              const Shading& shading, PixelFormat format,
-                                              const LitPicture& picture);
+BandPainter lit_painter(const BuiltScene& built, const Camera& camera, const Shading& shading,
+                        PixelFormat format, const LitPicture& picture);
+
+// A whole picture by a painter, band by band.
+
+struct Painting {
+  Image image;
+  PaintCounts counts;
+  double seconds = 0;              ///< of drawing alone
+  double preparation_seconds = 0;  ///< of what its painter wanted made first; counts as building
+  std::string engine;
+  int threads = 1;
+};
+
+/// Draws these rows of a picture from top to bottom into `painting`, whatever it held. The painter's first
+/// error ends it.
+Status paint(const BandPainter& painter, std::int32_t width_px, const RowRange& rows, PixelFormat format,
+             const Progress& progress, Painting* painting);
 
 }  // namespace thimble::tools
 

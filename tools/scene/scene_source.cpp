@@ -6,12 +6,11 @@
 #include "output/units.h"
 #include "readers/oct.h"
 #include "readers/read_any.h"
-#include "scene/fit_points.h"
 #include "scene/generators.h"
 #include "scene/named_scenes.h"
 #include "scene/palette.h"
-#include "scene/text_scene.h"
 #include "scene/voxelise.h"
+#include "scene/world_fit.h"
 #include "thimble/light/scene.h"
 #include "thimble/trace/ray.h"
 
@@ -48,19 +47,8 @@ class GeneratedScene final : public SceneSource {
     level_ = spec.depth;
   }
   std::string kind() const override {
-    switch (spec_.kind) {
-      case GeneratorKind::kPoints:
-        return "generator points";
-      case GeneratorKind::kCluster:
-        return "generator cluster";
-      case GeneratorKind::kSpheres:
-        return "generator spheres";
-      case GeneratorKind::kWater:
-        return "generator water";
-      case GeneratorKind::kDemo:
-        return "generator demo";
-    }
-    return "generator";
+    constexpr std::array kNames{"points", "cluster", "spheres", "water", "demo"};  // by GeneratorKind
+    return std::string("generator ") + kNames[static_cast<std::size_t>(spec_.kind)];
   }
   std::uint64_t points() const override { return is_point_set() ? spec_.count : 0; }
   bool is_point_set() const override {
@@ -302,15 +290,10 @@ class BakedFileScene final : public SceneSource {
   void stream(const VoxelSink& sink, const Progress& progress) const override {
     Meter meter(progress, tree().voxel_count());
     for_each_block(tree(), [&](const Vec3i& corner, int level, std::uint8_t material) {
-      const std::int32_t side = std::int32_t{1} << level;
-      for (std::int32_t z = corner.z; z < corner.z + side; ++z) {
-        for (std::int32_t y = corner.y; y < corner.y + side; ++y) {
-          for (std::int32_t x = corner.x; x < corner.x + side; ++x) {
-            sink(x, y, z, material);
-            meter.step();
-          }
-        }
-      }
+      for_voxels(corner, level, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+        sink(x, y, z, material);
+        meter.step();
+      });
     });
   }
 

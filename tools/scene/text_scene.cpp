@@ -1,4 +1,4 @@
-#include "scene/text_scene.h"
+#include "scene/scene_source.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "output/units.h"
 #include "scene/generators.h"
-#include "scene/paths.h"
+#include "scene/named_scenes.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble::tools {
@@ -114,14 +114,8 @@ class TextScene final : public SceneSource {
   void stream(const VoxelSink& sink, const Progress& progress) const override {
     stream_blocks(
         [&](const Vec3i& at, int level, std::uint8_t material) {
-          const std::int32_t size = std::int32_t{1} << level;
-          for (std::int32_t z = at.z; z < at.z + size; ++z) {
-            for (std::int32_t y = at.y; y < at.y + size; ++y) {
-              for (std::int32_t x = at.x; x < at.x + size; ++x) {
-                sink(x, y, z, material);
-              }
-            }
-          }
+          for_voxels(at, level,
+                     [&](std::int32_t x, std::int32_t y, std::int32_t z) { sink(x, y, z, material); });
         },
         progress);
   }

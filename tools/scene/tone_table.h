@@ -1,6 +1,6 @@
 /// @file tone_table.h
 /// A picture's exposure and its shoulder as a table, in integers and without anything of a system: the page draws
-/// by it, too. tone.h says how it belongs together.
+/// by it, too. lit_description.h says how it belongs together.
 #ifndef THIMBLE_TOOLS_SCENE_TONE_TABLE_H
 #define THIMBLE_TOOLS_SCENE_TONE_TABLE_H
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "scene/voxelise_cells.h"
 #include "scene/world_fit.h"
 
 namespace thimble::tools {
@@ -421,14 +420,8 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,
               const Progress& progress) {
   const BlockSink blocks = [&](const UnitPoint& voxel, int block_level, std::uint8_t material) {
-    const std::int32_t side = std::int32_t{1} << block_level;
-    for (std::int32_t z = voxel[2]; z < voxel[2] + side; ++z) {
-      for (std::int32_t y = voxel[1]; y < voxel[1] + side; ++y) {
-        for (std::int32_t x = voxel[0]; x < voxel[0] + side; ++x) {
-          sink(x, y, z, material);
-        }
-      }
-    }
+    for_voxels({voxel[0], voxel[1], voxel[2]}, block_level,
+               [&](std::int32_t x, std::int32_t y, std::int32_t z) { sink(x, y, z, material); });
   };
   voxelise(mesh, level, z_up, colors, blocks, progress);
 }

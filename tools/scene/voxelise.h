@@ -26,11 +26,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "readers/source.h"
 #include "scene/palette.h"
-#include "scene/voxel_sink.h"
 
 namespace thimble::tools {
 
@@ -139,7 +139,7 @@ ColorHistogram triangle_colors(const TriangleMesh& mesh);
 /// then comes once for each triangle that it meets, but a triangle that equals a recent one (the same
 /// quantised vertices in any order) may be left out where that changes no voxel's last material. Where there
 /// are many large ones (more than 2^24 voxels in their boxes, and more than 64 a triangle), which may cover
-/// each other many times over, they go cell by cell (voxelise_cells.h): each voxel comes once, with the
+/// each other many times over, they go cell by cell: each voxel comes once, with the
 /// material of the last triangle that meets it, and a full block as one. So time follows the triangles and
 /// the surface that they have together. Memory: 12 bytes a vertex and 48 bytes a triangle, of these at most
 /// 3 MiB; cell by cell 40 bytes a triangle more, and the lists.
@@ -148,6 +148,43 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
 /// The same, voxel by voxel.
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,
               const Progress& progress = {});
+
+// Triangles to voxels cell by cell, for a mesh whose triangles cover each other many times over: a voxel is
+// asked for until one triangle has it, and a cell until it is full, however many triangles meet it.
+
+/// A cube of 2^level voxels a side by its lowest voxel.
+struct TriangleBlock {
+  UnitPoint voxel;
+  int level;
+  /// Bit a: all that the block holds meets the slabs of the plane perpendicular to axis a; bit 3: it all meets the
+  /// triangle's bounding box.
+  std::uint8_t inside = 0;
+};
+
+/// `block.inside` where nothing but the triangle's plane is to be asked.
+inline constexpr std::uint8_t kAllInside = 0xF;
+
+/// Whether the triangle meets `block`; asks nothing that is known for the block it is part of, and adds to
+/// `block.inside` what its parts need not ask.
+bool meets_block(const TriangleBoxTest& test, TriangleBlock& block);
+/// The same where the block is known to meet the triangle's plane.
+bool meets_slabs(const TriangleBoxTest& test, TriangleBlock& block);
+
+/// A triangle and what its voxels are made of.
+struct CellTriangle {
+  UnitTriangle corners;
+  std::uint8_t material = 0;
+};
+
+/// Calls `sink` for blocks that together hold each voxel of the world of 2^level that a triangle meets, once,
+/// with the material of the last such triangle.
+///
+/// Time: the world is cut into eight, and so on, each part with a list of the triangles that meet it, down to
+/// parts of 64 voxels a side. They are filled from the last triangle on, and what is full is left alone: its
+/// cubes of 4 voxels, its cells of 16, and the triangles that are left once all of it is. Memory:
+/// at most 32 bytes a triangle and level, where all of them meet everything.
+void voxelise_cells(std::span<const CellTriangle> triangles, int level, const BlockSink& sink,
+                    const Progress& progress);
 
 }  // namespace thimble::tools
 

@@ -1,4 +1,4 @@
-#include "scene/voxelise_cells.h"
+#include "scene/voxelise.h"
 
 #include <algorithm>
 #include <array>

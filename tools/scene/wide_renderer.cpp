@@ -6,6 +6,7 @@
 #include "scene/built_scene.h"
 #include "scene/host_memory.h"
 #include "wide/raster/renderer.h"
+#include "wide/rays/ray_map.h"
 #include "wide/threads.h"
 
 namespace thimble::tools {
@@ -121,6 +122,15 @@ Status WideRenderer::render(const Camera& camera, const Shading& shading, const 
   const Status status = wide::render(lists_, camera, shading, band, workspace_, counts, options, &stats);
   work->add(stats.counts);
   return status;
+}
+
+FirstHits wide_first_hits(BuiltScene* built) {
+  wide::RayMap map;
+  if (built->structure() != StructureKind::kCompact ||
+      wide::RayMap::make(built->compact(), &built->arena(), &map) != Status::kOk) {
+    return nullptr;
+  }
+  return [map](Span<const Ray> rays, Span<Hit> hits) { return wide::first_hit(map, rays, hits); };
 }
 
 }  // namespace thimble::tools

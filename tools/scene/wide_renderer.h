@@ -1,11 +1,12 @@
 /// @file wide_renderer.h
 /// The wide renderer (platform/wide) made ready for pictures of one size: its lists of voxels and its
-/// workspace in an arena. A build without it (-DTHIMBLE_WIDE=OFF) has wide_renderer_absent.cpp, which makes none.
+/// workspace in an arena. A build without it (-DTHIMBLE_WIDE=OFF) has wide_absent.cpp, which makes none.
 #ifndef THIMBLE_TOOLS_SCENE_WIDE_RENDERER_H
 #define THIMBLE_TOOLS_SCENE_WIDE_RENDERER_H
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "thimble/picture/camera.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
+#include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 #include "wide/raster/kernels.h"
 #include "wide/raster/voxel_lists.h"
@@ -70,6 +72,13 @@ class WideRenderer {
   std::int32_t rows_ = 0;
   double seconds_ = 0;
 };
+
+/// What each ray of many enters first, as the core says, by vectors; `visits` are steps of this engine. Any number of
+/// threads at a time. Status as `closest_hit`.
+using FirstHits = std::function<Status(Span<const Ray> rays, Span<Hit> hits)>;
+/// Takes the bytes of the map that it needs from the scene's arena. Empty where they do not fit, where the structure is
+/// not a compact tree, and in a build without vectors: the core then traces.
+FirstHits wide_first_hits(BuiltScene* built);
 
 }  // namespace thimble::tools
 

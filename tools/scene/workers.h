@@ -3,8 +3,12 @@
 #ifndef THIMBLE_TOOLS_SCENE_WORKERS_H
 #define THIMBLE_TOOLS_SCENE_WORKERS_H
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+
+#include "thimble/base/status.h"
 
 namespace thimble::tools {
 
@@ -13,6 +17,20 @@ namespace thimble::tools {
 /// time have the same. More threads than processors are no gain, but are what was asked for. `run` throws nothing.
 void each_task(std::size_t tasks, int threads,
                const std::function<void(std::size_t task, std::size_t worker)>& run);
+
+/// The same for tasks that may fail: run(task, worker) returns a Status, and after an error no other task begins.
+template <class Run>
+Status each_until_error(std::int32_t tasks, int threads, const Run& run) {
+  std::atomic<Status> worst{Status::kOk};
+  each_task(static_cast<std::size_t>(tasks), threads, [&](std::size_t task, std::size_t worker) {
+    const Status status =
+        worst.load() == Status::kOk ? run(static_cast<std::int32_t>(task), worker) : Status::kOk;
+    if (status != Status::kOk) {
+      worst.store(status);
+    }
+  });
+  return worst;
+}
 
 }  // namespace thimble::tools
 

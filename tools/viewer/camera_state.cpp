@@ -120,4 +120,122 @@ void CameraState::change_scene(const OpenScene& scene) {
   }
 }
 
+namespace {
+
+constexpr double kRightAngle = 1.57079632679489661923;
+constexpr double kLeastDistance = 0.25;  // in voxels
+// Within the -4 .. 5 worlds from which rays may start.
+constexpr double kLowWorlds = -3.99;
+constexpr double kHighWorlds = 4.99;
+
+double rounded(double value, double steps) {
+  return std::round(value * steps) / steps;
+}
+
+}  // namespace
+
+Orbit::Orbit(const Real3& eye, const Real3& target, const Real3& up, double side)
+    : target_(target), side_(side) {
+  const Real3 way = minus(target, eye);
+  distance_ = std::sqrt(dot(way, way));
+  const double flat = std::hypot(way[0], way[1]);
+  pitch_ = std::atan2(way[2], flat);
+  if (flat > 1e-9 * distance_) {
+    yaw_ = std::atan2(way[0], way[1]);
+  } else {
+    pitch_ = way[2] > 0 ? kRightAngle : -kRightAngle;
+    const double sign = way[2] > 0 ? -1 : 1;
+    yaw_ = std::atan2(sign * up[0], sign * up[1]);
+  }
+  keep_in_reach();
+}
+
+bool Orbit::is_vertical() const {
+  return std::abs(pitch_) > kRightAngle - 1e-4;
+}
+
+Real3 Orbit::forward() const {
+  if (is_vertical()) {
+    return {0, 0, pitch_ > 0 ? 1.0 : -1.0};
+  }
+  return {std::cos(pitch_) * std::sin(yaw_), std::cos(pitch_) * std::cos(yaw_), std::sin(pitch_)};
+}
+
+Real3 Orbit::right() const {
+  return {std::cos(yaw_), -std::sin(yaw_), 0};
+}
+
+Real3 Orbit::up() const {
+  if (is_vertical()) {
+    const double sign = pitch_ > 0 ? -1 : 1;
+    return {rounded(sign * std::sin(yaw_), 1e4), rounded(sign * std::cos(yaw_), 1e4), 0};
+  }
+  return cross(right(), forward());
+}
+
+Real3 Orbit::eye() const {
+  Real3 eye = minus(target_, scaled(forward(), distance_));
+  for (double& coordinate : eye) {
+    coordinate = rounded(coordinate, 1e3);
+  }
+  return eye;
+}
+
+// As far from the eye as it takes to keep a direction in so many digits.
+Real3 Orbit::target() const {
+  constexpr double kFarEnough = 4;
+  Real3 target = distance_ > kFarEnough ? target_ : plus(eye(), scaled(forward(), std::max(distance_, 1.0)));
+  const double steps = distance_ > kFarEnough ? 1e3 : 1e4;
+  for (double& coordinate : target) {
+    coordinate = rounded(coordinate, steps);
+  }
+  if (is_vertical()) {
+    const Real3 from = eye();
+    target[0] = from[0];
+    target[1] = from[1];
+  }
+  return target;
+}
+
+void Orbit::turn(double right, double up) {
+  yaw_ = std::remainder(yaw_ + right, 4 * kRightAngle);
+  pitch_ = std::clamp(pitch_ + up, -kRightAngle, kRightAngle);
+  keep_in_reach();
+}
+
+void Orbit::move(double right, double up, double forward) {
+  target_ = plus(target_, plus(scaled(this->right(), right),
+                               plus(scaled(this->up(), up), scaled(this->forward(), forward))));
+  keep_in_reach();
+}
+
+void Orbit::approach(double factor) {
+  distance_ *= factor;
+  keep_in_reach();
+}
+
+void Orbit::look_at(const Real3& point) {
+  const Real3 from = minus(target_, scaled(forward(), distance_));
+  const Real3 way = minus(point, from);
+  if (dot(way, way) > kLeastDistance * kLeastDistance) {
+    *this = Orbit(from, point, up(), side_);
+  }
+}
+
+// The target in the world or near it; the eye at most as far behind it as rays may start.
+void Orbit::keep_in_reach() {
+  for (double& coordinate : target_) {
+    coordinate = std::clamp(coordinate, -side_, 2 * side_);
+  }
+  const Real3 ahead = forward();
+  double most = 4 * side_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double limit = (ahead[axis] > 0 ? kLowWorlds : kHighWorlds) * side_;
+    if (std::abs(ahead[axis]) > 1e-12) {
+      most = std::min(most, (target_[axis] - limit) / ahead[axis]);
+    }
+  }
+  distance_ = std::clamp(distance_, kLeastDistance, std::max(most, kLeastDistance));
+}
+
 }  // namespace thimble::tools::viewer

@@ -7,13 +7,16 @@
 #ifndef THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
 #define THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "scene/default_look.h"
@@ -25,10 +28,46 @@
 #include "scene/scene_shape.h"
 #include "thimble/picture/render.h"
 #include "viewer/open_scene.h"
-#include "viewer/sample_passes.h"
 #include "wide/threads.h"
 
 namespace thimble::tools::viewer {
+
+// A picture from coarse to fine of which no sample is drawn twice: the samples of a coarse pass are among those of the
+// finer ones.
+
+/// The first samples of a picture's pixels, as far as passes have drawn them.
+struct KeptSamples {
+  int step = 0;                                    ///< every how-many-th pixel has it, each way; 0: none
+  std::vector<std::array<std::uint8_t, 4>> drawn;  ///< a place for each pixel
+};
+
+/// One pass: every `step`-th pixel with its first sample, or with step 0 all samples of all pixels.
+class SamplePass {
+ public:
+  /// `fine` has `across` x `across` pixels for each of the picture's. What is in `kept` is of the same picture; a
+  /// pass with a step leaves its own samples there.
+  SamplePass(const LookRows& look, const Camera& fine, int across, int step, KeptSamples* kept);
+
+  /// Some rows of the pass's picture into `image`, which holds all of it.
+  Status draw(std::int32_t first, std::int32_t rows, Image* image);
+  /// After the last row.
+  void end();
+
+ private:
+  template <class Visit>
+  void each_pixel(std::int32_t first, std::int32_t rows, std::int32_t columns, const Visit& visit) const;
+
+  const LookRows& look_;
+  const Camera& fine_;
+  int across_;
+  int step_;
+  std::int32_t width_px_;  // of the picture
+  KeptSamples* kept_;
+  // Of the rows that are drawn together:
+  std::vector<SamplePlace> places_;
+  std::vector<std::uint8_t> colors_;
+  std::vector<std::uint8_t> samples_;
+};
 
 /// What the command line says of how pictures look.
 struct LookWishes {
@@ -152,6 +191,49 @@ class FinishedPicture {
   std::vector<Rgb8> quick_palette_;  // toned, as bright as the brightest face
   mutable std::once_flag exposed_;
   mutable std::uint32_t exposure_ = 256;
+};
+
+// From coarse to fine while nothing moves: the finished picture of a view, drawn on other threads.
+//
+// Every 8th, 4th and 2nd pixel with all of the light, stretched; every pixel; then the picture with its
+// samples, row by row from the top. Whoever shows it takes what there is whenever there is more. Cancelling
+// takes no time: the threads notice at their next row.
+
+class Refinement {
+ public:
+  Refinement(std::shared_ptr<const FinishedPicture> picture, int threads);
+  /// Cancels, and waits for the rows that are being drawn.
+  ~Refinement();
+  Refinement(const Refinement&) = delete;
+  Refinement& operator=(const Refinement&) = delete;
+
+  void cancel();
+  /// Whether its threads have ended: finished, cancelled or failed.
+  bool has_ended() const;
+  /// Whether what `take` gives now is the finished picture.
+  bool is_finished() const;
+  /// What the drawing threw, as a sentence; empty for nothing.
+  std::string fault() const;
+  /// Copies the picture as far as it is into `rgb`; false, and nothing done, where there is nothing new.
+  bool take(std::vector<std::uint8_t>* rgb);
+  /// Of the picture that `take` took last: every how-many-th pixel it has, 0 for the finished one; and the
+  /// share of it that is drawn, in per cent.
+  int step() const { return taken_step_; }
+  int percent() const { return taken_percent_; }
+  const FinishedPicture& picture() const { return *picture_; }
+
+ private:
+  struct State;
+  static void run(State* state);
+
+  std::shared_ptr<const FinishedPicture> picture_;
+  std::unique_ptr<State> state_;
+  std::uint64_t taken_ = 0;
+  int taken_step_ = kMostRefinedStep;
+  int taken_percent_ = 0;
+  std::thread thread_;
+
+  static constexpr int kMostRefinedStep = 8;
 };
 
 }  // namespace thimble::tools::viewer

@@ -1,6 +1,10 @@
 #include "viewer/open_scene.h"
 
+#include <sys/stat.h>
+
+#include <algorithm>
 #include <exception>
+#include <utility>
 
 namespace thimble::tools::viewer {
 namespace {
@@ -50,6 +54,52 @@ std::shared_ptr<const OpenScene> SceneReading::take() {
     std::rethrow_exception(error_);
   }
   return std::move(scene_);
+}
+
+FileWatch::FileWatch(std::string path) {
+  watch({std::move(path)});
+}
+
+FileWatch::Mark FileWatch::look(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    return {};
+  }
+  return {true, status.st_ino, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+}
+
+void FileWatch::watch(const std::vector<std::string>& paths) {
+  std::vector<Watched> files;
+  for (const std::string& path : paths) {
+    const auto known =
+        std::find_if(files_.begin(), files_.end(), [&](const Watched& each) { return each.path == path; });
+    const Mark now = known == files_.end() ? look(path) : Mark{};
+    files.push_back(known == files_.end() ? Watched{path, now, now} : *known);
+  }
+  files_ = std::move(files);
+}
+
+bool FileWatch::has_changed(double seconds) {
+  if (looked_at_ >= 0 && seconds < looked_at_ + kLookSeconds) {
+    return false;
+  }
+  looked_at_ = seconds;
+  bool rest = true;
+  bool changed = false;
+  for (Watched& file : files_) {
+    const Mark now = look(file.path);
+    // One that is gone may come back: editors write a new file beside the old one.
+    rest = rest && now == file.last && (now.exists || !file.known.exists);
+    changed = changed || now != file.known;
+    file.last = now;
+  }
+  if (!rest || !changed) {
+    return false;
+  }
+  for (Watched& file : files_) {
+    file.known = file.last;
+  }
+  return true;
 }
 
 }  // namespace thimble::tools::viewer

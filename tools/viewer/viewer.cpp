@@ -17,9 +17,9 @@
 #include "scene/moving_pool.h"
 #include "viewer/camera_state.h"
 #include "viewer/fast_frames.h"
-#include "viewer/file_watch.h"
+#include "viewer/finished_picture.h"
+#include "viewer/open_scene.h"
 #include "viewer/picking.h"
-#include "viewer/refinement.h"
 #include "viewer/saving.h"
 
 namespace thimble::tools::viewer {

@@ -2,7 +2,7 @@
 /// A scene to look around in: the loop between a screen, the camera and what draws.
 ///
 /// While the camera moves, frames are drawn by the clock (fast_frames.h); once it rests, the finished picture
-/// comes out of them on other threads (refinement.h), and ends as what `thimble render` makes. Everything
+/// comes out of them on other threads (finished_picture.h), and ends as what `thimble render` makes. Everything
 /// else, screen included, happens on the thread that calls.
 #ifndef THIMBLE_TOOLS_VIEWER_VIEWER_H
 #define THIMBLE_TOOLS_VIEWER_VIEWER_H

@@ -1,4 +1,4 @@
-// What the readers ask of a system (readers/file_bytes.h, scene/paths.h, scene/...), from what the page
+// What the readers ask of a system (readers/file_bytes.h, scene/named_scenes.h, scene/...), from what the page
 // handed over.
 #include "web/files.h"
 
@@ -12,7 +12,6 @@
 #include "readers/file_bytes.h"
 #include "scene/host_memory.h"
 #include "scene/named_scenes.h"
-#include "scene/paths.h"
 #include "scene/workers.h"
 
 namespace thimble::tools {
@@ -90,7 +89,7 @@ SharedBytes share(FileBytes bytes) {
   return {kept->bytes(), kept};
 }
 
-// ---- scene/paths.h
+// ---- scene/named_scenes.h
 
 std::string file_name(const std::string& path) {
   return path.substr(path.rfind('/') + 1);

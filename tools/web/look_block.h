@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "scene/behind.h"
+#include "scene/backdrop.h"
 #include "scene/tone_table.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"

@@ -9,7 +9,6 @@
 #include "scene/default_look.h"
 #include "scene/framing.h"
 #include "scene/look_picture.h"
-#include "scene/quick_look.h"
 #include "web/look_block.h"
 
 namespace thimble::tools {

@@ -7,8 +7,8 @@
 
 #include "boards/board_table.h"
 #include "output/units.h"
+#include "scene/baking.h"
 #include "scene/board_fit.h"
-#include "scene/flash_baking.h"
 #include "scene/framing.h"
 #include "scene/generators.h"
 #include "scene/scene_source.h"

@@ -5,7 +5,7 @@
 // rest the page asks for rows of the picture that `thimble render` draws of the scene (scene/look_picture.h), with
 // one sample a pixel, then with all. bake.wasm says how the scene looks from a camera (look_block.h).
 #include "apps/shown_scene.h"
-#include "scene/behind.h"
+#include "scene/backdrop.h"
 #include "scene/magnify.h"
 #include "scene/moving_pool.h"
 #include "scene/tone_table.h"

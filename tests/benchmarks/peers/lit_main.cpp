@@ -12,7 +12,7 @@
 #include "benchmarks/peers/contest.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
-#include "scene/lit_setup.h"
+#include "scene/lit_description.h"
 #include "scene/lit_streams.h"
 #include "scene/scene_shape.h"
 #include "scene/scene_source.h"

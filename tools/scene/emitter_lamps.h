@@ -1,8 +1,8 @@
-/// @file glow.h
+/// @file emitter_lamps.h
 /// What glows as lamps (Effect::kEmitterLight): a fixed set of places for a scene, so that a point is lit by
 /// one ray to each.
-#ifndef THIMBLE_TOOLS_SCENE_GLOW_H
-#define THIMBLE_TOOLS_SCENE_GLOW_H
+#ifndef THIMBLE_TOOLS_SCENE_EMITTER_LAMPS_H
+#define THIMBLE_TOOLS_SCENE_EMITTER_LAMPS_H
 
 #include <cstddef>
 #include <vector>

@@ -1,7 +1,7 @@
-/// @file film.h
+/// @file animation.h
 /// Films as files: pictures one after the other as a GIF of one palette, or as YUV4MPEG2.
-#ifndef THIMBLE_TOOLS_SCENE_FILM_H
-#define THIMBLE_TOOLS_SCENE_FILM_H
+#ifndef THIMBLE_TOOLS_SCENE_ANIMATION_H
+#define THIMBLE_TOOLS_SCENE_ANIMATION_H
 
 #include <cstddef>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "scene/quality.h"
+#include "scene/sampling.h"
 
 #include <algorithm>
 

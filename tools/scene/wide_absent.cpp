@@ -1,4 +1,5 @@
-// What a build without the wide renderer has in its place: it is never made, so that the core draws.
+// What a build without the wide renderer has in its place: nothing of it is made, so that the core draws and traces.
+#include "scene/lit_streams.h"
 #include "scene/wide_renderer.h"
 
 namespace thimble::wide {
@@ -37,6 +38,16 @@ std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* /*built*/, std::int
 Status WideRenderer::render(const Camera& /*camera*/, const Shading& /*shading*/, const Band& /*band*/,
                             RenderCounts* /*counts*/, wide::Counts* /*work*/) {
   return Status::kTooFine;
+}
+
+FirstHits wide_first_hits(BuiltScene* /*built*/) {
+  return nullptr;
+}
+
+std::unique_ptr<LitStreams> LitStreams::make(const CompactTree& /*tree*/, Arena* /*arena*/,
+                                             EffectSet /*effects*/, const LitScene& /*scene*/,
+                                             int /*threads*/) {
+  return nullptr;
 }
 
 }  // namespace thimble::tools

@@ -1,4 +1,4 @@
-#include "scene/glow.h"
+#include "scene/emitter_lamps.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "scene/film.h"
+#include "scene/animation.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
-/// @file quality.h
+/// @file sampling.h
 /// What trades a picture's error for time, beside the camera: samples a pixel, a cut-off, a depth.
-#ifndef THIMBLE_TOOLS_SCENE_QUALITY_H
-#define THIMBLE_TOOLS_SCENE_QUALITY_H
+#ifndef THIMBLE_TOOLS_SCENE_SAMPLING_H
+#define THIMBLE_TOOLS_SCENE_SAMPLING_H
 
 #include <cstdint>
 
