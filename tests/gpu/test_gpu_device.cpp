@@ -7,9 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "golden/golden_table.h"
-#include "golden/scenes.h"
 #include "gpu/renderer.h"
+#include "support/frames.h"
 #include "support/hard_frames.h"
 #include "support/ray_cases.h"
 #include "support/wide_cases.h"
@@ -26,73 +25,36 @@ bool has_device() {
   return false;
 }
 
+const Engine kDevice{"gpu device",
+                     [](Subject&, const FrameCase& frame) {
+                       return frame.band.stride_bytes == 0 && frame.band.rows > 0 &&
+                              !has_pages(frame.band.format);
+                     },
+                     [](const Engine&, Subject& subject, const FrameCase& frame, std::mt19937_64&,
+                        const Band& band, RenderCounts* counts) {
+                       gpu::Renderer renderer(subject.tree(), frame.shading.palette, {});
+                       return renderer.draw(frame.camera, frame.shading, band, counts);
+                     },
+                     false};
+
 }  // namespace
 
-TEST_CASE("gpu device: the golden frames -> their CRCs") {
-  if (!has_device()) {
-    return;
-  }
-  std::vector<std::uint8_t> bytes(std::size_t{256} << 10);
-  for (int i = 0; i < golden::frame_count(); ++i) {
-    const golden::Frame& frame = golden::frame(i);
-    CAPTURE(frame.name);
-    Arena arena(Bytes(bytes.data(), bytes.size()));
-    golden::World world;
-    REQUIRE(golden::build_scene(frame.scene, golden::Structure::kCompact, &arena, &world) == Status::kOk);
-    Camera camera;
-    Shading shading;
-    REQUIRE(golden::set_up(frame, &camera, &shading) == Status::kOk);
-    std::vector<std::uint8_t> pixels(band_bytes(frame.format, frame.width_px, frame.height_px));
-    Band band;
-    band.pixels = {pixels.data(), pixels.size()};
-    band.format = frame.format;
-    band.rows = frame.height_px;
-    RenderCounts expected;
-    REQUIRE(render_band(world.compact, camera, shading, band, &expected) == Status::kOk);
-    std::fill(pixels.begin(), pixels.end(), std::uint8_t{0xAB});
-    gpu::Renderer renderer(world.compact, shading.palette, {});
-    RenderCounts counts;
-    REQUIRE(renderer.draw(camera, shading, band, &counts) == Status::kOk);
-    CHECK(crc32({pixels.data(), pixels.size()}) == golden::kGoldenTable[i].crc32);
-    CHECK(counts.hits == expected.hits);
-    CHECK(counts.rays == expected.rays);
+TEST_CASE("gpu device: the golden frames -> every pixel and hit is the core's") {
+  if (has_device()) {
+    check_golden_frames({kDevice});
   }
 }
 
 TEST_CASE("gpu device: hard cameras, bands of any rows -> every pixel is the core's") {
-  if (!has_device()) {
-    return;
+  if (has_device()) {
+    check_frames({{kDevice},
+                  {worlds::kAny, worlds::kSolid},
+                  {cameras::kAny, cameras::kHard},
+                  61000,
+                  100'000,
+                  20'000,
+                  12});
   }
-  int drawn = 0;
-  for (int i = 0; i < many_or_few(12, 2); ++i) {
-    const std::uint64_t seed = 61000 + static_cast<std::uint64_t>(i);
-    std::mt19937_64 random(seed);
-    CAPTURE(seed);
-    const WideScene scene =
-        i % 2 == 0 ? random_scene(random) : solid_scene(random, static_cast<int>(pick(random, 4, 9)));
-    std::vector<Rgb8> palette;
-    for (int k = 0; k < 256; ++k) {
-      palette.push_back({static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(7 * k), 90});
-    }
-    const Span<const Rgb8> colors(palette.data(), palette.size());
-    gpu::Renderer renderer(scene.tree, colors, {});
-    for (int k = 0; k < 12; ++k) {
-      FrameCase frame;
-      if (!(k % 3 == 0 ? random_frame(random, scene, &frame) : hard_frame(random, scene, &frame)) ||
-          has_pages(frame.band.format)) {
-        continue;
-      }
-      frame.shading.palette = colors;
-      frame.band.stride_bytes = 0;
-      std::vector<std::uint8_t> ours(band_size(frame));
-      frame.band.pixels = {ours.data(), ours.size()};
-      REQUIRE(renderer.draw(frame.camera, frame.shading, frame.band) == Status::kOk);
-      std::uint64_t hits = 0;
-      CHECK(count_different(ours, draw_core(scene, frame, &hits)) == 0);
-      ++drawn;
-    }
-  }
-  CHECK(drawn > 10);
 }
 
 TEST_CASE("gpu device: hard rays -> every hit is the core's") {
@@ -148,7 +110,8 @@ TEST_CASE("gpu device: several frames under way -> each one is its camera's") {
   std::vector<FrameCase> frames;
   while (frames.size() < 3) {
     FrameCase frame;
-    if (hard_frame(random, scene, &frame)) {
+    if (make_frame(random, scene, cameras::kHard, &frame)) {
+      frame.band.stride_bytes = 0;
       frame.band.format = PixelFormat::kRgb888;
       frame.shading.palette = {};
       frames.push_back(frame);

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "golden/golden_table.h"
-#include "golden/scenes.h"
 #include "gpu/kernel/cpp.h"
 #include "support/compact_damage.h"
+#include "support/frames.h"
 #include "support/gpu_kernels.h"
 #include "support/hard_frames.h"
 #include "support/ray_cases.h"
@@ -65,64 +64,18 @@ void trace_everyhow(const CompactTree& tree, const std::vector<Ray>& rays, int* 
 
 }  // namespace
 
-TEST_CASE("gpu kernels: the golden frames -> their CRCs") {
-  std::vector<std::uint8_t> bytes(std::size_t{256} << 10);
-  int drawn = 0;
-  for (int i = 0; i < golden::frame_count(); ++i) {
-    const golden::Frame& frame = golden::frame(i);
-    CAPTURE(frame.name);
-    Arena arena(Bytes(bytes.data(), bytes.size()));
-    golden::World world;
-    REQUIRE(golden::build_scene(frame.scene, golden::Structure::kCompact, &arena, &world) == Status::kOk);
-    Camera camera;
-    Shading shading;
-    REQUIRE(golden::set_up(frame, &camera, &shading) == Status::kOk);
-    Band band;
-    band.format = frame.format;
-    band.rows = frame.height_px;
-    const gpu::SceneWords scene = gpu::make_scene_words(world.compact);
-    for (const Pairs pairs : kPairs) {
-      std::uint64_t outside = 0;
-      const auto pixels = draw_by_kernel(scene, camera, shading, band, pairs, &outside);
-      CHECK(crc32({pixels.data(), pixels.size()}) == golden::kGoldenTable[i].crc32);
-      CHECK(outside == 0);
-      ++drawn;
-    }
-  }
-  CHECK(drawn == 2 * golden::frame_count());
+TEST_CASE("gpu kernels: the golden frames -> every pixel is the core's") {
+  check_golden_frames(kernel_engines());
 }
 
 TEST_CASE("gpu kernels: hard cameras in random and solid scenes -> every pixel is the core's") {
-  const int kScenes = many_or_few(40, 4);
-  const int kFrames = many_or_few(75, 10);
-  int drawn = 0;
-  std::uint64_t outside = 0;
-  for (int i = 0; i < kScenes; ++i) {
-    const std::uint64_t seed = 39000 + static_cast<std::uint64_t>(i);
-    std::mt19937_64 random(seed);
-    CAPTURE(seed);
-    const WideScene scene =
-        i % 2 == 0 ? random_scene(random) : solid_scene(random, static_cast<int>(pick(random, 4, 9)));
-    const gpu::SceneWords words = gpu::make_scene_words(scene.tree);
-    for (int k = 0; k < kFrames; ++k) {
-      CAPTURE(k);
-      FrameCase frame;
-      if (!(k % 3 == 0 ? random_frame(random, scene, &frame) : hard_frame(random, scene, &frame))) {
-        continue;
-      }
-      frame.band.stride_bytes = 0;
-      if (has_pages(frame.band.format)) {
-        frame.band.format = PixelFormat::kRgb888;
-      }
-      const auto ours = draw_by_kernel(words, frame.camera, frame.shading, frame.band,
-                                       k % 8 == 7 ? Pairs::kAlways : Pairs::kAsNeeded, &outside);
-      std::uint64_t hits = 0;
-      CHECK(ours == draw_core(scene, frame, &hits));
-      ++drawn;
-    }
-  }
-  CHECK(outside == 0);
-  CHECK(drawn > kScenes * kFrames * 3 / 5);
+  check_frames({kernel_engines(),
+                {worlds::kAny, worlds::kSolid},
+                {cameras::kAny, cameras::kHard},
+                39000,
+                1'000'000,
+                40'000,
+                75});
 }
 
 TEST_CASE("gpu kernels: hard rays, whatever words they need -> every hit is the core's") {

@@ -409,8 +409,8 @@ TEST_CASE("panel formats: the wide renderer, any number of threads -> the same")
         const int threads = band.rows % 3 + 1;
         const wide::Options options = tests::options_of(threads, wide::Order::kAuto);
         Picture workspace(wide::workspace_bytes(size.width, band.rows, threads));
-        return wide::render(scene.lists, camera, shading, band, {workspace.data(), workspace.size()}, nullptr,
-                            options);
+        return wide::render(scene.lists(), camera, shading, band, {workspace.data(), workspace.size()},
+                            nullptr, options);
       });
     }
   }

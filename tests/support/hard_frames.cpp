@@ -117,15 +117,4 @@ bool hard_camera(std::mt19937_64& random, const WideScene& scene, Camera* camera
   return camera->set(view, scene.level) == Status::kOk;
 }
 
-bool hard_frame(std::mt19937_64& random, const WideScene& scene, FrameCase* frame) {
-  if (!random_frame(random, scene, frame) || !hard_camera(random, scene, &frame->camera)) {
-    return false;
-  }
-  set_depth_range(scene, frame);
-  frame->band.stride_bytes = 0;
-  frame->band.first_row = 0;
-  frame->band.rows = frame->camera.height_px();
-  return true;
-}
-
 }  // namespace thimble::tests

@@ -17,9 +17,6 @@ WideScene solid_scene(std::mt19937_64& random, int level, wide::ListKind kind = 
 /// A camera on the lattice or off it, in what is solid or near; false where the core refuses what was drawn.
 bool hard_camera(std::mt19937_64& random, const WideScene& scene, Camera* camera);
 
-/// A whole picture by such a camera, of any format and shading, rows without gaps.
-bool hard_frame(std::mt19937_64& random, const WideScene& scene, FrameCase* frame);
-
 }  // namespace thimble::tests
 
 #endif

@@ -12,13 +12,6 @@
 namespace thimble::tests {
 namespace {
 
-void make_lists(WideScene* scene, wide::ListKind kind) {
-  scene->tree = open_or_throw(*scene->bytes);
-  scene->list_bytes = std::make_unique<HeapBytes>(wide::VoxelLists::bytes(scene->tree, kind));
-  Arena arena(scene->list_bytes->span());
-  REQUIRE(wide::VoxelLists::make(scene->tree, &arena, &scene->lists, kind) == Status::kOk);
-}
-
 // Fills the octree with something; says what.
 std::string fill_randomly(std::mt19937_64& random, int level, Octree* octree) {
   std::string what;
@@ -114,8 +107,7 @@ bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* came
   const Vec3Q8 eye = inside ? random_point(random, level, 0, 1) : random_point(random, level, -4, 5);
   // At something solid, or anywhere.
   Vec3Q8 target = random_point(random, level, 0, 1);
-  const auto entries = scene.lists.entries();
-  if (entries.size != 0 && pick(random, 0, 1) == 0) {
+  if (!scene.tree.empty() && pick(random, 0, 1) == 0) {
     const VoxelBox& bounds = scene.tree.bounds();
     for (int axis = 0; axis < 3; ++axis) {
       target[axis] = Q8::from_raw(static_cast<std::int32_t>(
@@ -168,6 +160,15 @@ bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* came
 
 }  // namespace
 
+const wide::VoxelLists& WideScene::lists() const {
+  if (list_bytes_ == nullptr) {
+    list_bytes_ = std::make_unique<HeapBytes>(wide::VoxelLists::bytes(tree, kind));
+    Arena arena(list_bytes_->span());
+    REQUIRE(wide::VoxelLists::make(tree, &arena, &lists_, kind) == Status::kOk);
+  }
+  return lists_;
+}
+
 WideScene make_scene(int level, const std::function<void(Octree*)>& fill, std::size_t pool_bytes,
                      wide::ListKind kind) {
   WideScene scene;
@@ -177,7 +178,8 @@ WideScene make_scene(int level, const std::function<void(Octree*)>& fill, std::s
   REQUIRE(Octree::make(level, pool.span(), &octree) == Status::kOk);
   fill(&octree);
   scene.bytes = std::make_unique<HeapBytes>(compact_of(octree));
-  make_lists(&scene, kind);
+  scene.tree = open_or_throw(*scene.bytes);
+  scene.kind = kind;
   return scene;
 }
 
@@ -186,7 +188,7 @@ WideScene scene_of(ConstBytes tree, const std::string& what) {
   scene.what = what;
   scene.bytes = std::make_unique<HeapBytes>(tree.size);
   std::copy(tree.begin(), tree.end(), scene.bytes->span().data);
-  make_lists(&scene, wide::ListKind::kFastest);
+  scene.tree = open_or_throw(*scene.bytes);
   scene.level = scene.tree.level();
   return scene;
 }
@@ -285,8 +287,8 @@ std::optional<std::vector<std::uint8_t>> draw_wide(const WideScene& scene, const
   Band band = frame.band;
   band.pixels = pixels.span();
   RenderCounts counts;
-  const Status status =
-      wide::render(scene.lists, frame.camera, frame.shading, band, workspace.span(), &counts, options, stats);
+  const Status status = wide::render(scene.lists(), frame.camera, frame.shading, band, workspace.span(),
+                                     &counts, options, stats);
   if (hits != nullptr) {
     *hits = counts.hits;
   }
@@ -307,16 +309,6 @@ std::vector<std::uint8_t> draw_core(const WideScene& scene, const FrameCase& fra
   CHECK(render_band(scene.tree, frame.camera, frame.shading, band, &counts) == Status::kOk);
   *hits = counts.hits;
   return pixels;
-}
-
-std::size_t count_different(const std::vector<std::uint8_t>& ours,
-                            const std::vector<std::uint8_t>& expected) {
-  REQUIRE(ours.size() == expected.size());
-  std::size_t different = 0;
-  for (std::size_t at = 0; at < expected.size(); ++at) {
-    different += ours[at] != expected[at] ? 1U : 0U;
-  }
-  return different;
 }
 
 wide::Options options_of(int threads, wide::Order order) {

@@ -19,13 +19,20 @@
 namespace thimble::tests {
 
 // A tree and its lists, in exactly the bytes that are asked for.
-struct WideScene {
+class WideScene {
+ public:
+  // Made when they are first asked for, which takes long for worlds of high levels.
+  const wide::VoxelLists& lists() const;
+
   std::string what;
   int level = 0;
   std::unique_ptr<HeapBytes> bytes;
-  std::unique_ptr<HeapBytes> list_bytes;
   CompactTree tree;
-  wide::VoxelLists lists;
+  wide::ListKind kind = wide::ListKind::kFastest;
+
+ private:
+  mutable std::unique_ptr<HeapBytes> list_bytes_;
+  mutable wide::VoxelLists lists_;
 };
 
 // What `fill` puts into an octree of this level.
@@ -56,7 +63,6 @@ std::optional<std::vector<std::uint8_t>> draw_wide(const WideScene& scene, const
                                                    std::uint64_t* hits = nullptr,
                                                    wide::Stats* stats = nullptr);
 std::vector<std::uint8_t> draw_core(const WideScene& scene, const FrameCase& frame, std::uint64_t* hits);
-std::size_t count_different(const std::vector<std::uint8_t>& ours, const std::vector<std::uint8_t>& expected);
 
 // Kept from frame to frame, as programs that draw films do.
 wide::Threads* threads_of(int count);

@@ -26,19 +26,19 @@ TEST_CASE("wide: a few solid blocks among single voxels -> given as voxels; more
   };
   // 8 voxels for 1 box: 7 more.
   const WideScene few = made(2, 7 * 2 * 8 - 2, 1);
-  CHECK_FALSE(few.lists.has_blocks());
-  CHECK(few.lists.entries().size == 7 * 2 * 8 - 2 + 2 * 8);
-  CHECK(few.lists.face_area() == few.lists.entries().size);
-  CHECK(made(2, 7 * 2 * 8 - 3, 1).lists.has_blocks());
-  CHECK_FALSE(made(1, 8 * 63, 2).lists.has_blocks());
-  CHECK(made(1, 8 * 60, 2).lists.has_blocks());
+  CHECK_FALSE(few.lists().has_blocks());
+  CHECK(few.lists().entries().size == 7 * 2 * 8 - 2 + 2 * 8);
+  CHECK(few.lists().face_area() == few.lists().entries().size);
+  CHECK(made(2, 7 * 2 * 8 - 3, 1).lists().has_blocks());
+  CHECK_FALSE(made(1, 8 * 63, 2).lists().has_blocks());
+  CHECK(made(1, 8 * 60, 2).lists().has_blocks());
   // Blocks keep their colours, each voxel of them.
   const WideScene colored = made(3, 1600, 2);
-  REQUIRE_FALSE(colored.lists.has_blocks());
-  REQUIRE(colored.lists.materials().size == colored.lists.entries().size);
+  REQUIRE_FALSE(colored.lists().has_blocks());
+  REQUIRE(colored.lists().materials().size == colored.lists().entries().size);
   std::size_t of_first = 0;
-  for (std::size_t i = 0; i < colored.lists.entries().size; ++i) {
-    of_first += colored.lists.materials()[i] == 0 ? 1U : 0U;
+  for (std::size_t i = 0; i < colored.lists().entries().size; ++i) {
+    of_first += colored.lists().materials()[i] == 0 ? 1U : 0U;
   }
   CHECK(of_first == 64);
   std::mt19937_64 random(5);
@@ -61,7 +61,7 @@ TEST_CASE("wide: a few solid blocks among single voxels -> given as voxels; more
     (void)octree->coarsen_to(octree->nodes_used() - 2);
   });
   REQUIRE(merged.tree.merged());
-  CHECK(merged.lists.has_blocks());
+  CHECK(merged.lists().has_blocks());
 }
 
 TEST_CASE("wide: an arena or a workspace that is too small -> kOutOfMemory, nothing taken, nothing drawn") {
@@ -96,7 +96,7 @@ TEST_CASE("wide: an arena or a workspace that is too small -> kOutOfMemory, noth
         band.pixels = Bytes(pixels.data(), pixels.size());
         wide::Options options;
         options.threads = threads_of(threads);
-        CHECK(wide::render(scene.lists, frame.camera, frame.shading, band, workspace.span(), nullptr,
+        CHECK(wide::render(scene.lists(), frame.camera, frame.shading, band, workspace.span(), nullptr,
                            options) == Status::kOutOfMemory);
         CHECK(std::all_of(pixels.begin(), pixels.end(), [](std::uint8_t byte) { return byte == 0xA5; }));
       }
@@ -119,7 +119,7 @@ TEST_CASE("wide: bands that cannot be -> refused as render_band refuses them") {
   std::vector<std::uint8_t> pixels(600);
   std::vector<std::uint8_t> workspace(wide::workspace_bytes(20, 10));
   const auto draw = [&](const Camera& of, const Band& band) {
-    return wide::render(scene.lists, of, {}, band, Bytes(workspace.data(), workspace.size()), nullptr);
+    return wide::render(scene.lists(), of, {}, band, Bytes(workspace.data(), workspace.size()), nullptr);
   };
   Band band;
   band.pixels = Bytes(pixels.data(), pixels.size());
@@ -171,7 +171,6 @@ TEST_CASE("wide: damaged trees -> refused, or some picture within the bytes") {
       refused += status == Status::kDamaged ? 1 : 0;
       continue;
     }
-    scene.lists = lists;
     FrameCase frame;
     if (random_frame(random, scene, &frame)) {
       (void)draw_wide(scene, frame, random_options(random));

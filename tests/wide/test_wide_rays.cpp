@@ -358,16 +358,4 @@ TEST_CASE("rays: boxes -> empty where nothing solid is in them") {
   CHECK_FALSE(wide::RayMap(CompactTree()).is_empty({{0, 0, 0}, {1, 1, 1}}));  // without a map nobody knows
 }
 
-// THIMBLE_LONG=1: ten million rays and more, each by every instruction set.
-TEST_CASE("rays: a long run -> the core's answers") {
-  if (std::getenv("THIMBLE_LONG") == nullptr) {
-    return;
-  }
-  std::uint64_t traced = 0;
-  for (std::uint64_t seed = 500000; traced < 10'000'000; seed += 100) {
-    traced += check_random_scenes(seed, 100, 10000);
-  }
-  MESSAGE(traced, " rays");
-}
-
 }  // namespace thimble::tests

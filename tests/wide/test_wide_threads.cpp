@@ -38,44 +38,6 @@ void look_at_corner(int view_number, std::int32_t width, std::int32_t height, Fr
 
 }  // namespace
 
-TEST_CASE("wide: several threads with a picture each -> put together, every pixel is the core's") {
-  const BestInstructionSet after;
-  const int kFrames = many_or_few(24, 2);
-  std::mt19937_64 random(77);
-  const auto fill = [&](Octree* octree) {
-    for (int i = 0; i < 200000; ++i) {
-      const Vec3i at = random_voxel(random, 0, 511);
-      REQUIRE(octree->insert(at, static_cast<std::uint8_t>(pick(random, 1, 3))) == Status::kOk);
-    }
-  };
-  const WideScene scene = make_scene(9, fill, std::size_t{24} << 20);
-  int drawn = 0;
-  for (int i = 0; i < kFrames; ++i) {
-    FrameCase frame;
-    if (!random_frame(random, scene, &frame)) {
-      continue;
-    }
-    frame.shading.mode = i % 2 == 0 ? ShadeMode::kDepth : ShadeMode::kColor;
-    wide::use_instruction_set(i % wide::instruction_set_count());
-    std::uint64_t expected_hits = 0;
-    const auto expected = draw_core(scene, frame, &expected_hits);
-    for (const int threads : {2, 3, 4}) {
-      CAPTURE(i);
-      CAPTURE(threads);
-      CAPTURE(wide::instruction_set());
-      const wide::Options options = options_of(threads, wide::Order::kFlat);
-      std::uint64_t hits = 0;
-      const auto ours = draw_wide(scene, frame, options, &hits);
-      if (ours) {
-        CHECK(*ours == expected);
-        CHECK(hits == expected_hits);
-        ++drawn;
-      }
-    }
-  }
-  CHECK(drawn >= kFrames);
-}
-
 TEST_CASE("wide: work in some rows, several threads -> parts change hands, every pixel is the core's") {
   const int kRepeats = many_or_few(10, 3);
   const std::int64_t kPoints = many_or_few<std::int64_t>(900000, 100000);
@@ -102,7 +64,7 @@ TEST_CASE("wide: work in some rows, several threads -> parts change hands, every
       }
     };
     const WideScene scene = make_scene(9, fill, std::size_t{64} << 20, wide::ListKind::kBoxes);
-    REQUIRE(scene.lists.has_blocks() == has_blocks);
+    REQUIRE(scene.lists().has_blocks() == has_blocks);
     for (int v = 0; v < 4; ++v) {
       CAPTURE(v);
       // Large pictures take long enough for other threads to come, whatever else the machine does.
