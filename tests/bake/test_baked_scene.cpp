@@ -12,7 +12,6 @@
 #include <zlib.h>
 
 #include "support/baked_damage.h"
-#include "support/counts.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/octree.h"
@@ -21,8 +20,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-
-const int kScale = thimble::tests::many_or_few(8, 1);
 
 constexpr Rgb8 kColors[] = {{1, 2, 3}, {200, 100, 50}, {9, 8, 7}};
 constexpr char kName[] = "a scene";
@@ -213,17 +210,6 @@ TEST_CASE("baked scene: its bytes -> as FORMAT.md has them, the checksum being z
   CHECK(at == bytes.size);
 }
 
-TEST_CASE("baked scene: outputs too small by any number of bytes -> refused and untouched") {
-  const WholeScene whole(perspective());
-  const std::size_t needed = baked_bytes(whole.parts);
-  for (std::size_t size = 0; size < needed; ++size) {
-    const HeapBytes to(size);
-    std::memset(to.span().data, 0x5A, size);
-    REQUIRE(BakedScene::make(whole.parts, to.span(), nullptr) == Status::kOutOfMemory);
-    REQUIRE(std::all_of(to.view().begin(), to.view().end(), [](std::uint8_t byte) { return byte == 0x5A; }));
-  }
-}
-
 TEST_CASE("baked scene: parts too long or a camera without a view -> refused") {
   WholeScene whole(perspective());
   const HeapBytes to(1U << 16);
@@ -268,98 +254,6 @@ TEST_CASE("baked scene: parts too long or a camera without a view -> refused") {
   camera = perspective();
   camera.forward = {0, kMaxViewComponent, kMaxViewComponent + 1};
   CHECK(refused(camera));
-}
-
-TEST_CASE("baked scene: its camera -> the very rays of the view that it was made from") {
-  for (const SceneCamera& baked : {perspective(), orthographic()}) {
-    Camera expected;
-    const Vec3i forward = baked.forward == Vec3i{} ? look_at(baked.eye, baked.target) : baked.forward;
-    if (baked.is_perspective) {
-      const PerspectiveView view{baked.eye, forward, baked.up, baked.fov_degrees, 96, 64, 0};
-      REQUIRE(expected.set(view, 3) == Status::kOk);
-    } else {
-      const OrthographicView view{baked.eye, forward, baked.up, baked.span, 96, 64, 12};
-      REQUIRE(expected.set(view, 3) == Status::kOk);
-    }
-    Camera camera;
-    REQUIRE(set_camera(baked, 96, 64, 3, &camera) == Status::kOk);
-    for (std::int32_t y = 0; y < 64; y += 7) {
-      for (std::int32_t x = 0; x < 96; x += 5) {
-        CHECK(camera.ray(x, y).origin == expected.ray(x, y).origin);
-        CHECK(camera.ray(x, y).direction == expected.ray(x, y).direction);
-      }
-    }
-    CHECK(set_camera(baked, 0, 64, 3, &camera) == Status::kBadArgument);
-    CHECK(camera.width_px() == 96);
-  }
-}
-
-TEST_CASE("baked scene: every truncation -> refused; bytes behind it -> no matter") {
-  const WholeScene whole(perspective());
-  const HeapBytes bytes = whole.baked();
-  for (std::size_t size = 0; size < bytes.view().size; ++size) {
-    const HeapBytes cut = copy_of(bytes.view(), size);
-    BakedScene scene;
-    REQUIRE(BakedScene::open(cut.view(), &scene) == Status::kDamaged);
-    REQUIRE(BakedScene::validate(cut.view()) != nullptr);
-    REQUIRE(scene.bytes().empty());
-  }
-  const HeapBytes longer = copy_of(bytes.view(), bytes.view().size + 9);
-  BakedScene scene;
-  REQUIRE(BakedScene::open(longer.view(), &scene) == Status::kOk);
-  CHECK(scene.bytes().size == bytes.view().size);
-  CHECK(BakedScene::validate(longer.view()) == nullptr);
-}
-
-TEST_CASE("baked scene: every byte changed, one at a time -> not valid, and refused or safe to use") {
-  for (const bool coarsened : {false, true}) {
-    const WholeScene whole(coarsened ? orthographic() : perspective(), coarsened);
-    const HeapBytes bytes = whole.baked();
-    for (std::size_t at = 0; at < bytes.view().size; ++at) {
-      for (const unsigned change : {0x01U, 0x02U, 0x10U, 0x80U, 0xFFU}) {
-        CAPTURE(at);
-        CAPTURE(change);
-        const HeapBytes damaged = copy_of(bytes.view(), bytes.view().size);
-        damaged.span()[at] = static_cast<std::uint8_t>(damaged.span()[at] ^ change);
-        REQUIRE(BakedScene::validate(damaged.view()) != nullptr);
-        const char* text = use_damaged(damaged.view(), {3, -5, 7});
-        CAPTURE(text);
-        REQUIRE(text == nullptr);
-        // The same with checksums that agree.
-        repair_baked_checksums(damaged.span());
-        REQUIRE(use_damaged(damaged.view(), {3, -5, 7}) == nullptr);
-      }
-    }
-  }
-}
-
-TEST_CASE("baked scene: many bytes changed under right checksums -> refused or safe to use") {
-  const std::uint32_t seed = 20240;
-  std::mt19937 random(seed);
-  CAPTURE(seed);
-  const WholeScene whole(perspective());
-  const HeapBytes bytes = whole.baked();
-  int opened = 0;
-  for (int i = 0; i < 4000 * kScale; ++i) {
-    CAPTURE(i);
-    const std::size_t size = random() % 4 == 0 ? random() % bytes.view().size : bytes.view().size;
-    const HeapBytes damaged = copy_of(bytes.view(), size);
-    for (unsigned change = 0; change < 1 + random() % 4 && size != 0; ++change) {
-      // Half of them in the header and the list.
-      const std::size_t at = random() % (random() % 2 == 0 ? std::min<std::size_t>(size, entry(5)) : size);
-      damaged.span()[at] = static_cast<std::uint8_t>(random() % 4 == 0 ? random() % 4 : random());
-    }
-    repair_baked_checksums(damaged.span());
-    const Vec3i direction{static_cast<std::int32_t>(random() % 2001) - 1000,
-                          static_cast<std::int32_t>(random() % 2001) - 1000,
-                          static_cast<std::int32_t>(random() % 3)};
-    const char* text = use_damaged(damaged.view(), direction);
-    CAPTURE(text);
-    REQUIRE(text == nullptr);
-    BakedScene scene;
-    opened += BakedScene::open(damaged.view(), &scene) == Status::kOk ? 1 : 0;
-  }
-  CHECK(opened > 400);  // else the damage was never past the door
 }
 
 TEST_CASE("baked scene: sections of unknown kinds that are optional -> passed over, up to sixteen in all") {
@@ -449,21 +343,6 @@ TEST_CASE("baked scene: less than a header, a bare header, other bytes -> the ph
   CHECK(at_of(0, "shorter than a header") == 0);
   CHECK(at_of(kBakedHeaderBytes - 1, "shorter than a header") == 0);
   CHECK(at_of(kBakedHeaderBytes, "not a baked scene") == 0);
-}
-
-TEST_CASE("baked scene: a palette that fills the last section -> no byte behind the scene is written") {
-  const HeapBytes tree = small_tree();
-  const Rgb8 colors[] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}, {13, 14, 15}};
-  BakedParts parts;
-  parts.tree = tree.view();
-  parts.palette = {colors, 4};
-  const std::size_t size = baked_bytes(parts);
-  std::vector<std::uint8_t> bytes(size + 8, 0xA5);
-  REQUIRE(BakedScene::make(parts, {bytes.data(), bytes.size()}, nullptr) == Status::kOk);
-  CHECK(bytes[size - 1] == 12);
-  for (std::size_t i = size; i < bytes.size(); ++i) {
-    CHECK(bytes[i] == 0xA5);
-  }
 }
 
 TEST_CASE("baked scene: a part that fills the last section -> no byte behind the scene is written") {

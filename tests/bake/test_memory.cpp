@@ -1,5 +1,5 @@
-// Memory: the arena; the way from voxels to pixels without a call of the global allocator; and every budget
-// from nothing to enough, byte by byte.
+// Memory: the arena; the way from voxels to pixels without a call of the global allocator; and one arena of every size for
+// pool, tree and band.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "reference/reference.h"
 #include "support/allocation_trap.h"
 #include "support/scene_under_test.h"
 #include "thimble/base/memory.h"
@@ -74,41 +73,6 @@ Camera small_camera() {
   Camera camera;
   REQUIRE(camera.set(view, kLevel) == Status::kOk);
   return camera;
-}
-
-// Whether pool and compact tree give the same hits, and the hits of the reference.
-bool traces_right(const Octree& pool, const CompactTree* tree, const reference::BitGrid& grid) {
-  const Camera camera = small_camera();
-  for (std::int32_t y = 0; y < camera.height_px(); y += 3) {
-    for (std::int32_t x = 0; x < camera.width_px(); x += 3) {
-      const Ray ray = camera.ray(x, y);
-      const reference::Hit expected = reference::walk(grid, to_reference(ray));
-      Hit hit;
-      if (closest_hit(pool, ray, &hit) != Status::kOk || !tests::same_answer(hit, expected)) {
-        return false;
-      }
-      if (tree != nullptr &&
-          (closest_hit(*tree, ray, &hit) != Status::kOk || !tests::same_answer(hit, expected))) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-// The voxels that `tree` says are solid.
-reference::BitGrid grid_of(const Octree& tree) {
-  reference::BitGrid grid({kSide, kSide, kSide});
-  for (int z = 0; z < kSide; ++z) {
-    for (int y = 0; y < kSide; ++y) {
-      for (int x = 0; x < kSide; ++x) {
-        if (tree.test({x, y, z})) {
-          grid.set({x, y, z});
-        }
-      }
-    }
-  }
-  return grid;
 }
 
 }  // namespace
@@ -214,72 +178,6 @@ TEST_CASE("memory: build, compact, render, sort with the global allocator trappe
   some.clear();
   some.shrink_to_fit();
   CHECK(clear_allocation_trap() == 2);
-}
-
-TEST_CASE(
-    "memory: every budget of a pool, byte by byte -> the promised status, guards intact, a sound tree") {
-  Guarded plenty(65536);
-  Octree full;
-  REQUIRE(Octree::make(kLevel, plenty.span(), &full) == Status::kOk);
-  REQUIRE(build(full) == Status::kOk);
-  const std::size_t enough = Octree::octree_bytes(full.nodes_high_water());
-  std::size_t least_ok = SIZE_MAX;
-  for (std::size_t size = 0; size <= enough + 8; ++size) {
-    Guarded bytes(size, size % 5);
-    Octree tree;
-    REQUIRE(Octree::make(kLevel, bytes.span(), &tree) == Status::kOk);
-    REQUIRE(tree.capacity_bytes() <= size);
-    const Status status = build(tree);
-    REQUIRE(bytes.intact());
-    REQUIRE((status == Status::kOk || status == Status::kOutOfMemory));
-    if (status == Status::kOk) {
-      least_ok = std::min(least_ok, size);
-      REQUIRE(tree.voxels() == full.voxels());
-    } else {
-      REQUIRE(least_ok == SIZE_MAX);  // once enough, always enough
-    }
-    REQUIRE(tree.high_water_bytes() <= tree.capacity_bytes());
-    // What went in before it was full is there and is traced right; checked on every seventh size, which
-    // meets all alignments.
-    if (size % 7 == 0 || size + 8 >= enough) {
-      const HeapBytes compact = compact_of(tree);
-      REQUIRE(CompactTree::validate(compact.view()) == nullptr);
-      const CompactTree view = open_or_throw(compact);
-      const reference::BitGrid grid = grid_of(tree);
-      REQUIRE(static_cast<std::uint64_t>(grid.count()) == tree.voxels());
-      REQUIRE(traces_right(tree, &view, grid));
-    }
-  }
-  CHECK(least_ok <= enough);
-}
-
-TEST_CASE("memory: every budget of a coarsening pool -> from one node on everything fits, nothing vanishes") {
-  Guarded plenty(65536);
-  Octree full;
-  REQUIRE(Octree::make(kLevel, plenty.span(), &full) == Status::kOk);
-  REQUIRE(build(full) == Status::kOk);
-  const std::size_t enough = Octree::octree_bytes(full.nodes_high_water());
-  for (std::size_t size = 0; size <= enough; size += size < 64 ? 1 : 5) {
-    Guarded bytes(size, size % 3);
-    Octree tree;
-    REQUIRE(Octree::make(kLevel, bytes.span(), &tree) == Status::kOk);
-    tree.set_coarsen(true);
-    const Status status = build(tree);
-    REQUIRE(bytes.intact());
-    REQUIRE(status == (tree.capacity() > 0 ? Status::kOk : Status::kOutOfMemory));
-    if (status != Status::kOk) {
-      REQUIRE(tree.empty());
-      continue;
-    }
-    bool all_there = true;
-    for (std::size_t i = 0; i < kSheet; ++i) {
-      all_there = all_there && tree.test(sheet_voxel(i));
-    }
-    REQUIRE(all_there);
-    const HeapBytes compact = compact_of(tree);
-    REQUIRE(CompactTree::validate(compact.view()) == nullptr);
-    REQUIRE(open_or_throw(compact).solid_added() == tree.solid_added());
-  }
 }
 
 TEST_CASE(

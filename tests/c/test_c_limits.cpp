@@ -68,20 +68,6 @@ TEST_CASE("C face: defaults -> every member is set to what C++ has") {
   CHECK(config.subpixel_bits == from.subpixel_bits);
 }
 
-TEST_CASE("C face: the view of a scene -> every member is set") {
-  const CWorld world;
-  thimble_scene_t scene = {};
-  REQUIRE(thimble_scene_open(&scene, world.bytes().data, world.bytes().size) == THIMBLE_OK);
-  auto view = garbage<thimble_view_t>();
-  REQUIRE(thimble_scene_view(&scene, &view) == THIMBLE_OK);
-  const SceneCamera& camera = world.scene.camera();
-  CHECK(view.direction_bits == camera.direction_bits);
-  CHECK(view.eye_q8.z == camera.eye.z.raw);
-  CHECK(view.target_q8.x == camera.target.x.raw);
-  CHECK(view.forward.y == camera.forward.y);
-  CHECK(view.up.x == camera.up.x);
-}
-
 TEST_CASE("C face: sizes of a refined frame -> 1 and the largest are taken, one beyond is not") {
   constexpr std::int32_t kMost = kMaxPicturePx;
   CHECK(thimble_frame_bytes(THIMBLE_FORMAT_GRAY8, 1, 1) != 0);
@@ -143,18 +129,4 @@ TEST_CASE("C face: nothing for a handle, nothing for bytes -> the answer that th
   REQUIRE(thimble_octree_make(&octree, 3, memory.data(), 8000) == THIMBLE_OK);
   CHECK(thimble_tree_make(&tree, &octree, nullptr, 0) == THIMBLE_OUT_OF_MEMORY);
   CHECK(thimble_tree_make(&tree, &octree, nullptr, 1) == THIMBLE_BAD_ARGUMENT);
-}
-
-TEST_CASE("C face: a ray that misses -> no axis, nothing else") {
-  const CWorld world;
-  thimble_scene_t scene = {};
-  REQUIRE(thimble_scene_open(&scene, world.bytes().data, world.bytes().size) == THIMBLE_OK);
-  const thimble_ray_t away = {{-256, -256, -256}, {-1, 0, 0}};
-  auto hit = garbage<thimble_hit_t>();
-  REQUIRE(thimble_scene_trace(&scene, &away, 1000, &hit) == THIMBLE_OK);
-  CHECK(hit.kind == THIMBLE_MISS);
-  CHECK(hit.axis == -1);
-  CHECK(hit.side == 0);
-  CHECK(hit.t_numerator == 0);
-  CHECK(hit.t_denominator == 1);
 }

@@ -120,30 +120,12 @@ TEST_CASE("light limits: lights of any channels -> direct light and shadows wher
   }
 }
 
-TEST_CASE("light limits: a lamp of no reach -> no ray to it and no light, however near it is") {
-  testing::LitWorld world;
-  world.box({0, 0, 0}, {32, 32, 4}, 1);
-  world.surfaces[1] = testing::surface(SurfaceKind::kDiffuse, {255, 255, 255});
-  for (const int reach : {0, 1}) {
-    world.lights = {testing::lamp({16 * 256, 16 * 256, 5 * 256}, UINT16_MAX, reach)};
-    world.scene.has_shadows = true;
-    world.finish();
-    world.look({16 * 256 + 3, 16 * 256 + 5, 20 * 256}, {16 * 256, 16 * 256, 4 * 256}, 20);
-    LitCounts counts;
-    const std::vector<Rgb8> lit = world.draw(Effect::kDirectLight | Effect::kShadows, &counts);
-    world.lights.clear();
-    world.finish();
-    CHECK((lit == world.draw(Effect::kDirectLight | Effect::kShadows)) == (reach == 0));
-    CHECK((counts.rays[static_cast<int>(LitRayKind::kShadow)] == 0) == (reach == 0));
-  }
-}
-
 TEST_CASE("light limits: the first material behind the palette -> the default color, not what lies behind") {
   testing::LitWorld world;
   world.box({0, 0, 0}, {32, 32, 4}, 3);
   world.finish();
   world.look({16 * 256 + 3, 16 * 256 + 5, 20 * 256}, {16 * 256, 16 * 256, 4 * 256}, 20);
-  set_ambient(&world.scene, 256);
+  testing::set_ambient(&world.scene, 256);
   world.scene.surfaces = {};
   Rgb8 colors[4] = {{9, 9, 9}, {9, 9, 9}, {9, 9, 9}, {200, 30, 90}};
   world.shading.default_color = {40, 180, 220};

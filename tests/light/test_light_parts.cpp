@@ -54,15 +54,6 @@ TEST_CASE("light parts: a solid entered at t = 1/256 -> absorbs what it does for
   }
 }
 
-TEST_CASE("light parts: a lamp of no reach straight above a face -> does not shine, however bright it is") {
-  lit::Spot spot;
-  spot.at = LitWorld::point({4096, 4096, 1024});
-  spot.face = {2, false};
-  lit::LightRay ray;
-  CHECK_FALSE(light_ray(lamp({4096, 4096, 1280}, UINT16_MAX, 0), spot, &ray));
-  CHECK(light_ray(lamp({4096, 4096, 1280}, UINT16_MAX, 1), spot, &ray));
-}
-
 TEST_CASE("light parts: a mirror of all light -> sends on the 65535 of 65536 that its color leaves") {
   const Parts parts;
   lit::Frame frame = parts.frame(Effect::kMirror);

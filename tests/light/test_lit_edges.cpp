@@ -76,14 +76,7 @@ TEST_CASE(
     "lit edges: a lamp in the plane of a face, in its very middle -> the face stays dark; above it, bright") {
   Slab slab;
   slab.finish();
-  OrthographicView view;
-  view.eye = {Q8::saturate(16), Q8::saturate(16), Q8::saturate(12)};
-  view.forward = {0, 0, -1};
-  view.up = {0, 1, 0};
-  view.span = Q14::saturate(9);
-  view.width_px = 9;
-  view.height_px = 9;
-  REQUIRE(slab.camera.set(view, 5) == Status::kOk);
+  slab.look_straight_down({16 * 256, 16 * 256, 12 * 256}, 9 << 14, 9, 9);
   const std::vector<Rgb8> dark = slab.draw(Effect::kDirectLight);
   CHECK(unlike(dark, dark[0], 0) == 0);
   slab.lights = {lamp({16 << 8, 16 << 8, 4 << 8}, 65535, 200)};
@@ -128,14 +121,7 @@ TEST_CASE(
   world.surfaces[1] = surface(SurfaceKind::kDiffuse, kGround);
   set_ambient(&world.scene, 100);
   world.finish();
-  OrthographicView view;
-  view.eye = LitWorld::point({16 * 256 + 128, 16 * 256 + 128, 30 * 256});
-  view.forward = {0, 0, -1};
-  view.up = {0, 1, 0};
-  view.span = Q14::saturate(1);
-  view.width_px = 1;
-  view.height_px = 1;
-  REQUIRE(world.camera.set(view, 5) == Status::kOk);
+  world.look_straight_down({16 * 256 + 128, 16 * 256 + 128, 30 * 256}, 1 << 14, 1, 1);
   const Vec3Q8 spot = LitWorld::point({16 * 256 + 128, 16 * 256 + 128, 9 * 256});
   std::uint32_t visits = 0;
   const Vec3i normal = lit::surface_normal(world.tree, lit::Body{world.scene.surfaces, Effect::kNone, 0},
@@ -210,14 +196,7 @@ TEST_CASE("lit edges: black metal seen straight on, or hardly a mirror -> what i
     Slab slab;
     slab.surfaces[1] = surface(SurfaceKind::kMetal, black ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255});
     slab.finish();
-    OrthographicView view;
-    view.eye = {Q8::saturate(16), Q8::saturate(16), Q8::saturate(12)};
-    view.forward = {0, 0, -1};
-    view.up = {0, 1, 0};
-    view.span = Q14::saturate(8);
-    view.width_px = 16;
-    view.height_px = 12;
-    REQUIRE(slab.camera.set(view, 5) == Status::kOk);
+    slab.look_straight_down({16 * 256, 16 * 256, 12 * 256}, 8 << 14, 16, 12);
     slab.shading.background = {90, 160, 230};
     LitCounts counts;
     const std::vector<Rgb8> picture = slab.draw(Effect::kMirror, &counts);
@@ -430,15 +409,7 @@ TEST_CASE("lit edges: a floor under dark water -> each lamp is dimmed by its own
     world.scene.water_material.index_q12 = kMinIndexQ12;
     world.scene.water_material.density_q8 = 256;
     world.finish();
-    OrthographicView view;
-    view.eye = LitWorld::point(
-        {16 * 256 + 128, 16 * 256 + 128, 4 * 256 + 64});  // a quarter of a voxel above the floor
-    view.forward = {0, 0, -1};
-    view.up = {0, 1, 0};
-    view.span = Q14::from_raw(1 << 10);
-    view.width_px = 1;
-    view.height_px = 1;
-    REQUIRE(world.camera.set(view, 5) == Status::kOk);
+    world.look_straight_down({16 * 256 + 128, 16 * 256 + 128, 4 * 256 + 64}, 1 << 10, 1, 1);
     return int{
         world.draw(Effect::kDirectLight | Effect::kShadows | (water ? Effect::kWater : Effect::kNone))[0].r};
   };
@@ -589,14 +560,7 @@ TEST_CASE(
     world.lights = {sun({1, 2, 5}, 200)};
     world.scene.has_shadows = true;
     world.finish();
-    OrthographicView view;
-    view.eye = LitWorld::point({16 * 256 + 40, 16 * 256 + 40, 6 * 256});
-    view.forward = {0, 0, -1};
-    view.up = {0, 1, 0};
-    view.span = Q14::saturate(1);
-    view.width_px = 1;
-    view.height_px = 1;
-    REQUIRE(world.camera.set(view, 5) == Status::kOk);
+    world.look_straight_down({16 * 256 + 40, 16 * 256 + 40, 6 * 256}, 1 << 14, 1, 1);
     std::uint8_t pixel[3] = {};
     LitOptions options;
     options.max_visits = round == 2 ? 7 : UINT32_MAX;

@@ -39,6 +39,28 @@ struct House : LitWorld {
   }
 };
 
+// The same with its map.
+struct MappedHouse : House {
+  explicit MappedHouse(bool empty = false, int level = 5)
+      : House(empty, level), room(most_brick_map_bytes(tree)) {
+    map_it();
+  }
+  void map_it() { REQUIRE(BrickMap::make(tree, room.span(), &map) == Status::kOk); }
+
+  HeapBytes room;
+  BrickMap map;
+};
+
+// What is proven of the house's first sun.
+struct ProvenSun {
+  explicit ProvenSun(const MappedHouse& world) : bytes(SunBricks::bytes(world.map)) {
+    REQUIRE(SunBricks::make(world.map, world.lights[0].place, bytes.span(), &sun) == Status::kOk);
+    sun.prove();
+  }
+  HeapBytes bytes;
+  SunBricks sun;
+};
+
 constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
 
 template <EffectSet kSet>
@@ -72,26 +94,21 @@ void compare(const LitWorld& world, const BrickMap& map, Span<const SunBricks> s
 TEST_CASE(
     "lit frames by the map: every format, with dither and without, counted or not -> the tree's bytes") {
   for (const bool empty : {false, true}) {
-    const House world(empty);
-    HeapBytes room(most_brick_map_bytes(5));
-    BrickMap map;
-    REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
-    HeapBytes sun_bytes(SunBricks::bytes(map));
-    SunBricks sun;
-    REQUIRE(SunBricks::make(map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOk);
-    sun.prove();
+    const MappedHouse world(empty);
+    const ProvenSun proven(world);
     for (int number = 0; number < kPixelFormats; ++number) {
       const auto format = static_cast<PixelFormat>(number);
       for (int bits = 0; bits < 8; ++bits) {
         const bool dither = (bits & 1) != 0;
         const bool counted = (bits & 2) != 0;
         const std::size_t offset = (bits & 4) != 0 ? 1 : 0;  // of a buffer that begins between halfwords
-        compare<kSun>(world, map, {&sun, 1}, format, dither, counted, offset);
-        compare<kSun | Effect::kEmission | Effect::kSky>(world, map, {&sun, bits < 4 ? 1U : 0U}, format,
-                                                         dither, counted, offset);
-        compare<Effect::kDirectLight>(world, map, {}, format, dither, counted, offset);
-        compare<kSun | Effect::kEmission>(world, map, {&sun, 1}, format, dither, counted, offset);
-        compare<kSun | Effect::kSky>(world, map, {&sun, 1}, format, dither, counted, offset);
+        compare<kSun>(world, world.map, {&proven.sun, 1}, format, dither, counted, offset);
+        compare<kSun | Effect::kEmission | Effect::kSky>(world, world.map, {&proven.sun, bits < 4 ? 1U : 0U},
+                                                         format, dither, counted, offset);
+        compare<Effect::kDirectLight>(world, world.map, {}, format, dither, counted, offset);
+        compare<kSun | Effect::kEmission>(world, world.map, {&proven.sun, 1}, format, dither, counted,
+                                          offset);
+        compare<kSun | Effect::kSky>(world, world.map, {&proven.sun, 1}, format, dither, counted, offset);
       }
     }
   }
@@ -101,32 +118,24 @@ TEST_CASE(
 TEST_CASE(
     "lit frames by the map: large faces in formats of halfwords and less, counted or not -> the tree's "
     "bytes") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
-  HeapBytes sun_bytes(SunBricks::bytes(map));
-  SunBricks sun;
-  REQUIRE(SunBricks::make(map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOk);
-  sun.prove();
+  MappedHouse world;
+  const ProvenSun proven(world);
   world.look({-6 * 256 + 3, -9 * 256 + 17, 18 * 256}, {16 * 256, 16 * 256, 4 * 256}, 40, 240, 176);
   for (const PixelFormat format : {PixelFormat::kRgb565, PixelFormat::kRgb565Be, PixelFormat::kBgr565,
                                    PixelFormat::kGray4, PixelFormat::kMono1Pages}) {
     for (const bool counted : {false, true}) {
-      compare<kSun>(world, map, {&sun, 1}, format, true, counted, 0);
-      compare<Effect::kDirectLight>(world, map, {}, format, true, counted, 0);
-      compare<kSun | Effect::kEmission | Effect::kSky>(world, map, {&sun, 1}, format, true, counted, 0);
-      compare<kSun | Effect::kEmission>(world, map, {&sun, 1}, format, true, counted, 0);
-      compare<kSun | Effect::kSky>(world, map, {&sun, 1}, format, true, counted, 0);
+      compare<kSun>(world, world.map, {&proven.sun, 1}, format, true, counted, 0);
+      compare<Effect::kDirectLight>(world, world.map, {}, format, true, counted, 0);
+      compare<kSun | Effect::kEmission | Effect::kSky>(world, world.map, {&proven.sun, 1}, format, true,
+                                                       counted, 0);
+      compare<kSun | Effect::kEmission>(world, world.map, {&proven.sun, 1}, format, true, counted, 0);
+      compare<kSun | Effect::kSky>(world, world.map, {&proven.sun, 1}, format, true, counted, 0);
     }
   }
 }
 
 TEST_CASE("lit frames by the map: rows of whole tiles -> nothing is written behind the last") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  MappedHouse world;
   for (const Vec3i& target : {Vec3i{16 * 256, 16 * 256, 0}, Vec3i{0, 16 * 256, 60 * 256}}) {  // ground, sky
     world.look({16 * 256, 3 * 256, 12 * 256}, target, 60, 96, 48);
     std::vector<std::uint16_t> pixels(96 * 64, 0x5A5A);
@@ -135,8 +144,8 @@ TEST_CASE("lit frames by the map: rows of whole tiles -> nothing is written behi
                     0,
                     0,
                     48};
-    REQUIRE(render_lit_band<kSun>(world.tree, map, world.camera, world.shading, world.scene, {}, band) ==
-            Status::kOk);
+    REQUIRE(render_lit_band<kSun>(world.tree, world.map, world.camera, world.shading, world.scene, {},
+                                  band) == Status::kOk);
     int written = 0;
     for (std::size_t i = 96 * 48; i < pixels.size(); ++i) {
       written += pixels[i] == 0x5A5A ? 0 : 1;
@@ -146,16 +155,13 @@ TEST_CASE("lit frames by the map: rows of whole tiles -> nothing is written behi
 }
 
 TEST_CASE("lit frames by the map: effects that there are not -> by the map as without, no node is read") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  MappedHouse world;
   LitCounts counts[2];
   std::vector<std::uint8_t> pixels[2];
   for (int i = 0; i < 2; ++i) {
     pixels[i].resize(band_bytes(PixelFormat::kRgb888, 53, 37));
     const EffectSet effects = kSun | (i == 0 ? Effect::kNone : ~Effect::kAll);
-    REQUIRE(render_lit_band(effects, world.tree, map, world.camera, world.shading, world.scene, {},
+    REQUIRE(render_lit_band(effects, world.tree, world.map, world.camera, world.shading, world.scene, {},
                             {{pixels[i].data(), pixels[i].size()}, PixelFormat::kRgb888, 0, 0, 37},
                             &counts[i]) == Status::kOk);
   }
@@ -167,25 +173,19 @@ TEST_CASE("lit frames by the map: effects that there are not -> by the map as wi
 
 // The middle row's points lie on a plane between voxels, in which the light of a level sun runs.
 TEST_CASE("lit frames by the map: large faces under a sun without x, y or z -> the tree's bytes") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  MappedHouse world;
   world.look({-6 * 256 + 3, -9 * 256 + 17, 6 * 256}, {16 * 256, 16 * 256, 6 * 256}, 40, 240, 177);
   for (const Vec3i& direction :
        {Vec3i{0, -9, 16}, Vec3i{-5, 0, 16}, Vec3i{-5, -9, 0}, Vec3i{-1, -9, 0}, Vec3i{-9, -5, 0}}) {
     CAPTURE(direction.x);
     world.lights[0].place = direction;
-    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
+    compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, true, 0);
   }
 }
 
 // A column of points less than 1/256 beside an edge of two voxels, at the end of the shadow of both.
 TEST_CASE("lit frames by the map: points on voxels' edges under a sun without x -> the tree's bytes") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  MappedHouse world;
   world.lights[0].place = Vec3i{0, -9, 40};
   const Vec3Q8 eye = LitWorld::point({18 * 256, 44 * 256, 30 * 256});
   for (const int width : {31, 33}) {
@@ -193,34 +193,28 @@ TEST_CASE("lit frames by the map: points on voxels' edges under a sun without x 
       REQUIRE(world.camera.set(
                   PerspectiveView{eye, {off, -16500, -28000}, {}, Q16::saturate(3), width, 24, 15}, 5) ==
               Status::kOk);
-      compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
+      compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, true, 0);
     }
   }
 }
 
 TEST_CASE("lit frames by the map: suns of 12 bits -> the tree's bytes") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  MappedHouse world;
   for (const Vec3i& direction :
        {Vec3i{-3900, -4000, 4095}, Vec3i{-4000, -2100, 4090}, Vec3i{2900, -4095, 4000}}) {
     CAPTURE(direction.x);
     world.lights[0].place = direction;
-    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
+    compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, true, 0);
   }
 }
 
 // The picture's middle column runs through the edges of boxes, which only the tree can name.
 TEST_CASE("lit frames by the map: rays through edges, counted or not -> the tree's bytes") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  MappedHouse world;
   world.look({-6 * 256, -6 * 256, 8 * 256}, {16 * 256, 16 * 256, 8 * 256}, 46, 53, 37);
   for (const bool counted : {false, true}) {
-    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, counted, 0);
-    compare<Effect::kDirectLight>(world, map, {}, PixelFormat::kRgb888, true, counted, 0);
+    compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, counted, 0);
+    compare<Effect::kDirectLight>(world, world.map, {}, PixelFormat::kRgb888, true, counted, 0);
   }
 }
 
@@ -257,10 +251,7 @@ TEST_CASE("lit frames by the map: rays that start far outside, along each axis -
 // Neighbours that go opposite ways along the axis on which they are fastest, so a quad has no such axis.
 TEST_CASE(
     "lit frames by the map: rays of wide views in a few pixels, from within a house -> the tree's bytes") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  MappedHouse world;
   const struct {
     Vec3i forward;
     int fov;
@@ -280,17 +271,14 @@ TEST_CASE(
                                              view.height,
                                              8},
                              5) == Status::kOk);
-    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
+    compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, true, 0);
   }
 }
 
 TEST_CASE(
     "lit frames by the map: a set that is known only at run time, with lamps and without -> the tree's "
     "bytes") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+  MappedHouse world;
   world.scene.occlusion = {6, 160, 8};
   world.surfaces[4].kind = SurfaceKind::kMetal;
   world.surfaces[4].mirror = 190;
@@ -307,7 +295,7 @@ TEST_CASE(
     if (lamps) {
       world.lights.push_back(lamp({12 * 256, 14 * 256 + 9, 9 * 256}, 300, 12));
       world.finish();
-      REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+      world.map_it();
     }
     std::vector<EffectSet> sets{Effect::kDirectLight};
     for (unsigned bits = 0; bits < 32; ++bits) {
@@ -322,7 +310,7 @@ TEST_CASE(
       std::vector<std::uint8_t> bytes;
       LitCounts by_map;
       LitCounts by_tree;
-      REQUIRE(draw(effects, map, &bytes, &by_map) == Status::kOk);
+      REQUIRE(draw(effects, world.map, &bytes, &by_map) == Status::kOk);
       const std::vector<Rgb8> right = world.draw(effects, &by_tree);
       REQUIRE(3 * right.size() == bytes.size());
       bool same = true;
@@ -345,59 +333,39 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "lit frames by the map: too little room, a stranger's map, too many lights -> a status, nothing drawn") {
-  House world;
-  HeapBytes room(most_brick_map_bytes(5));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
+    "lit frames by the map: too little room, a stranger's world.map, too many lights -> a status, nothing "
+    "drawn") {
+  MappedHouse world;
   std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, 53, 37), 0x5A);
   const std::vector<std::uint8_t> before = bytes;
   const auto draw = [&](const BrickMap& by, std::size_t size) {
     return render_lit_band<kSun>(world.tree, by, world.camera, world.shading, world.scene, {},
                                  {{bytes.data(), size}, PixelFormat::kGray8, 0, 0, 37});
   };
-  CHECK(draw(map, bytes.size() - 1) == Status::kOutOfMemory);
+  CHECK(draw(world.map, bytes.size() - 1) == Status::kOutOfMemory);
   CHECK(draw(BrickMap(), bytes.size()) == Status::kDamaged);
-  const House stranger(true);
-  HeapBytes other_room(most_brick_map_bytes(5));
-  BrickMap other;
-  REQUIRE(BrickMap::make(stranger.tree, other_room.span(), &other) == Status::kOk);
-  CHECK(draw(other, bytes.size()) == Status::kDamaged);
+  const MappedHouse stranger(true);
+  CHECK(draw(stranger.map, bytes.size()) == Status::kDamaged);
   const std::vector<Light> lights = world.lights;
   world.lights.resize(kMaxLights + 1, lamp({2000, 2000, 2000}));
   world.finish();
-  CHECK(draw(map, bytes.size()) == Status::kOutOfRange);
+  CHECK(draw(world.map, bytes.size()) == Status::kOutOfRange);
   world.lights = lights;
   world.surfaces.resize(kMaxSurfaces + 1);
   world.finish();
-  CHECK(draw(map, bytes.size()) == Status::kOutOfRange);
+  CHECK(draw(world.map, bytes.size()) == Status::kOutOfRange);
   CHECK(bytes == before);
-
-  SunBricks sun;
-  const std::size_t size = SunBricks::bytes(map);
-  REQUIRE(size > 1);
-  HeapBytes sun_bytes(size);
-  CHECK(SunBricks::make(map, {1, 2, 3}, {nullptr, size}, &sun) == Status::kOutOfMemory);
-  CHECK(SunBricks::make(map, {1, 2, 3}, {sun_bytes.span().data, size - 1}, &sun) == Status::kOutOfMemory);
-  CHECK(SunBricks::make(map, {0, 0, 0}, sun_bytes.span(), &sun) == Status::kBadArgument);
-  CHECK(SunBricks::make(BrickMap(), {1, 2, 3}, sun_bytes.span(), &sun) == Status::kBadArgument);
-  CHECK_FALSE(sun.belongs_to(map, {1, 2, 3}));
-  CHECK(SunBricks::make(map, {1, 2, 3}, sun_bytes.span(), &sun) == Status::kOk);
-  CHECK(sun.belongs_to(map, {1, 2, 3}));
 }
 
 TEST_CASE("lit frames by the map: a world of level 9 -> the tree's bytes, and nothing is proven of a sun") {
-  const House world(false, 9);
-  HeapBytes room(most_brick_map_bytes(world.tree));
-  BrickMap map;
-  REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
-  CHECK(SunBricks::bytes(map) == 0);
+  const MappedHouse world(false, 9);
+  CHECK(SunBricks::bytes(world.map) == 0);
   HeapBytes sun_bytes(4096);
   SunBricks sun;
-  CHECK(SunBricks::make(map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOutOfRange);
-  CHECK_FALSE(sun.belongs_to(map, world.lights[0].place));
-  compare<kSun>(world, map, {}, PixelFormat::kRgb888, false, true, 0);
-  compare<kSun>(world, map, {&sun, 1}, PixelFormat::kGray8, true, false, 0);
+  CHECK(SunBricks::make(world.map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOutOfRange);
+  CHECK_FALSE(sun.belongs_to(world.map, world.lights[0].place));
+  compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, false, true, 0);
+  compare<kSun>(world, world.map, {&sun, 1}, PixelFormat::kGray8, true, false, 0);
 }
 
 // ---- balls

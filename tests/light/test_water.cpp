@@ -294,39 +294,6 @@ TEST_CASE("water: nothing disturbs it -> the same bytes for ever, and not one co
   CHECK(pool.water.volume_q16() == std::uint64_t{599} * 256 * 1111);
 }
 
-TEST_CASE("water: disturbed and left alone -> comes to rest exactly flat, and costs nothing from then on") {
-  int longest = 0;
-  for (int number = 0; number < 60 / kShare; ++number) {
-    CAPTURE(number);
-    std::mt19937 random(static_cast<unsigned>(number) + 99);
-    Pool pool;
-    make_random_pool(pool, random);
-    pool.config.damping_q12 = std::max(pool.config.damping_q12, 8);
-    REQUIRE(pool.open() == Status::kOk);
-    const std::uint32_t flat = pool.water.state_crc32();
-    for (int i = 0; i < 4; ++i) {
-      disturb(pool, random);
-      pool.water.step();
-    }
-    int steps = 0;
-    while (!pool.water.is_still() && steps < 20000) {
-      pool.water.step();
-      ++steps;
-    }
-    REQUIRE(pool.water.is_still());
-    CHECK(pool.water.state_crc32() == flat);
-    longest = std::max(longest, steps);
-    const std::uint32_t done = pool.water.steps_done();
-    const std::uint64_t updated = pool.water.columns_updated();
-    for (int i = 0; i < 100; ++i) {
-      pool.water.step();
-    }
-    CHECK(pool.water.steps_done() == done);
-    CHECK(pool.water.columns_updated() == updated);
-  }
-  MESSAGE("longest way to rest: ", longest, " steps");
-}
-
 TEST_CASE(
     "water: about to be laid flat -> nothing that can be seen is left, or the bound of WATER.md holds") {
   for (const std::int32_t damping : {0, 4, 24, 200}) {
@@ -688,24 +655,6 @@ TEST_CASE("water: bytes at any address and too few of them -> in bounds, or refu
   CHECK(water_bytes(0, 64) == 0);
   CHECK(water_bytes(64, 4097) == 0);
   static_assert(water_bytes(4096, 4096) == 134234115);
-}
-
-TEST_CASE("water: the same calls -> the same state on every machine") {
-  Pool pool;
-  make_pool(pool, 24, 18);
-  for (std::int32_t x = 6; x < 10; ++x) {
-    pool.block(x, 7);
-    pool.block(x, 8);
-  }
-  REQUIRE(pool.open() == Status::kOk);
-  REQUIRE(pool.water.touch(1234, 2345, 900, 333) == Status::kOk);
-  for (int step = 0; step < 64; ++step) {
-    if (step == 20) {
-      REQUIRE(pool.water.drop(4000, 1500, 500, 700, 300) == Status::kOk);
-    }
-    pool.water.step();
-  }
-  CHECK(pool.water.state_crc32() == 639579105U);
 }
 
 }  // namespace

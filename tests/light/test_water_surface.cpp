@@ -403,27 +403,9 @@ TEST_CASE("water surface: no array -> the same answers as an array of that level
   }
 }
 
-Columns steps_of_water() {
-  // Heights of 1, 2 and 1 voxel side by side, the corner at (10, 20, 5).
-  return {{10, 20, 5}, 3, 1, {65536, 2 * 65536, 65536}};
-}
 Ray ray_of(std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t dx, std::int32_t dy,
            std::int32_t dz) {
   return {{Q8::from_raw(x), Q8::from_raw(y), Q8::from_raw(z)}, {dx, dy, dz}};
-}
-
-TEST_CASE("water surface: a ray down onto a column -> its top, at the height's fraction") {
-  Columns columns = steps_of_water();
-  columns.q16[0] = 65536 + 77 * 256;
-  const WaterSurface surface = columns.surface();
-  WaterHit hit;
-  REQUIRE(water_enter(surface, ray_of(10 * 256 + 9, 20 * 256 + 9, 10 * 256, 0, 0, -3), &hit));
-  CHECK(hit.column_x == 0);
-  CHECK(hit.column_y == 0);
-  CHECK(hit.axis == 2);
-  CHECK(hit.side == 1);
-  CHECK(hit.t_numerator == 4 * 256 - 77);
-  CHECK(hit.t_denominator == 256 * 3);
 }
 
 TEST_CASE("water surface: camera exactly on the surface -> inside only when it looks down") {
@@ -445,48 +427,6 @@ TEST_CASE("water surface: camera exactly on the surface -> inside only when it l
   CHECK(water_holds(surface, floor, {1, 0, 0}));
   CHECK(water_holds(surface, floor, {0, 0, 1}));
   CHECK_FALSE(water_holds(surface, floor, {0, 0, -1}));
-}
-
-TEST_CASE("water surface: a level ray into a crest -> the side of the higher column only") {
-  const Columns columns = steps_of_water();
-  const WaterSurface surface = columns.surface();
-  WaterHit hit;
-  const Ray ray = ray_of(0, 20 * 256 + 128, 6 * 256 + 128, 5, 0, 0);
-  REQUIRE(water_enter(surface, ray, &hit));
-  CHECK(hit.column_x == 1);
-  CHECK(hit.axis == 0);
-  CHECK(hit.side == -1);
-  CHECK(hit.t_numerator == 11 * 256);
-  CHECK(hit.t_denominator == 5 * 256);
-  // From inside it comes out on the other side of the crest, and lower down at the border.
-  REQUIRE(water_leave(surface, ray_of(11 * 256, 20 * 256 + 128, 6 * 256 + 128, -5, 0, 0), &hit) == false);
-  REQUIRE(water_leave(surface, ray_of(11 * 256 + 1, 20 * 256 + 128, 6 * 256 + 128, -5, 0, 0), &hit));
-  CHECK(hit.column_x == 1);
-  CHECK(hit.axis == 0);
-  CHECK(hit.side == -1);
-  CHECK(hit.t_numerator == 1);
-  REQUIRE(water_leave(surface, ray_of(11 * 256 + 1, 20 * 256 + 128, 5 * 256 + 128, 5, 0, 0), &hit));
-  CHECK(hit.column_x == 2);
-  CHECK(hit.side == 1);
-  CHECK(hit.t_numerator == 2 * 256 - 1);
-}
-
-TEST_CASE(
-    "water surface: a ray through the edge between two tops -> no gap, and no hit where it only touches") {
-  // Two columns of the same height: a ray that slides down through the shared upper edge enters once.
-  Columns columns = steps_of_water();
-  columns.q16 = {65536, 65536, 65536};
-  const WaterSurface flat = columns.surface();
-  WaterHit hit;
-  const std::int32_t top = 6 * 256;
-  REQUIRE(water_enter(flat, ray_of(11 * 256 - 100, 20 * 256 + 1, top + 100, 1, 0, -1), &hit));
-  CHECK(hit.column_x == 1);
-  CHECK(hit.axis == 0);
-  CHECK(hit.t_numerator == 100);
-  // Over the corner of a higher column without a stretch in it.
-  const Columns steps = steps_of_water();
-  CHECK_FALSE(
-      water_enter(steps.surface(), ray_of(11 * 256 - 300, 20 * 256 + 1, 7 * 256 - 300, 1, 0, 1), &hit));
 }
 
 TEST_CASE("water surface: a long way in large moving water -> at most the columns that are crossed") {

@@ -86,55 +86,6 @@ TEST_CASE("edge samples: strengths -> the largest difference of a channel to the
   CHECK(strengths_of({}, {0, 0, 0, 255, 0, 0, 0, 0}, {}, 4) == Row{255, 255});
 }
 
-TEST_CASE("edge samples: a segment with few edges -> four each; with more, pairs to the strongest first") {
-  Row few(64);
-  few[3] = 15;  // none yet
-  few[7] = 16;
-  few[63] = 255;
-  Row expected(64);
-  expected[7] = expected[63] = 4;
-  CHECK(samples_of(few) == expected);
-  // 18 edges take all 72; 19 leave 34 for second pairs, which 17 get, the strongest and the leftmost others.
-  Row many(64);
-  std::fill_n(many.begin(), 18, std::uint8_t{40});
-  CHECK(samples_of(many) == [] {
-    Row row(64);
-    std::fill_n(row.begin(), 18, std::uint8_t{4});
-    return row;
-  }());
-  many[18] = 41;
-  Row of_many = samples_of(many);
-  CHECK(of_many[18] == 4);
-  CHECK(std::count(of_many.begin(), of_many.begin() + 16, 4) == 16);
-  CHECK(of_many[16] == 2);
-  CHECK(of_many[17] == 2);
-  // 36 of all get a pair: the leftmost where all are equal, else not the weakest of 37.
-  Row crowd(64, 90);
-  CHECK(samples_of(crowd) == [] {
-    Row row(64);
-    std::fill_n(row.begin(), 36, std::uint8_t{2});
-    return row;
-  }());
-  std::fill_n(crowd.begin(), 27, std::uint8_t{3});
-  crowd[30] = 89;
-  const Row of_crowd = samples_of(crowd);
-  CHECK(of_crowd[30] == 0);
-  CHECK(std::count(of_crowd.begin(), of_crowd.end(), 2) == 36);
-}
-
-TEST_CASE(
-    "edge samples: segments -> counted from the left, none shares with the next, the last has its share") {
-  Row row(64 + 64 + 10, 200);
-  std::fill_n(row.begin() + 64, 64, std::uint8_t{0});
-  const Row samples = samples_of(row);
-  CHECK(std::count(samples.begin(), samples.begin() + 64, 2) == 36);
-  CHECK(std::count(samples.begin() + 64, samples.begin() + 128, 0) == 64);
-  CHECK(std::count(samples.begin() + 128, samples.end(), 2) == 5);  // 72 * 10 / 64 = 11
-  CHECK(samples_of({}).empty());
-  CHECK(samples_of({255}) == Row{0});  // 72 / 64 is one, and samples come in pairs
-  CHECK(samples_of({255, 16}) == Row{2, 0});
-}
-
 TEST_CASE("edge samples: random strengths -> what sorting gives, within the segment's share") {
   std::mt19937_64 random(3);
   for (int round = 0; round < 4000; ++round) {

@@ -18,14 +18,6 @@
 namespace thimble::tests::picture_edges {
 namespace {
 
-struct OwnedPool {
-  explicit OwnedPool(int level, std::size_t nodes = 4000) : bytes(Octree::octree_bytes(nodes)) {
-    REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
-  }
-  std::vector<std::uint8_t> bytes;
-  Octree octree;
-};
-
 // From 1.5 worlds before the world along y, 90 degrees: the world fills the middle of the picture.
 Camera ahead(int level, int width_px = 24, int height_px = 24, int bits = 0) {
   PerspectiveView view;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "scene/random.h"
@@ -158,13 +157,6 @@ void check_against_rays(const Structure& structure, const Camera& camera, const 
   }
 }
 
-std::vector<std::uint8_t> whole_frame(const Scene& scene, const Camera& camera, const Shading& shading,
-                                      PixelFormat format) {
-  std::vector<std::uint8_t> frame(band_bytes(format, kWidthPx, kHeightPx));
-  REQUIRE(render_band(scene.compact, camera, shading, band_over(frame, format, 0, kHeightPx)) == Status::kOk);
-  return frame;
-}
-
 /// Draws what must be refused, and checks the status, the bytes and the counters.
 template <class Structure>
 void check_refused(Status wanted, const Structure& structure, const Camera& camera, Band band,
@@ -191,103 +183,6 @@ TEST_CASE(
     check_against_rays(scene.pool, camera);
     check_against_rays(scene.grid, camera);
   }
-}
-
-TEST_CASE("render_band: bands of any height in any order -> the picture of one frame") {
-  const Scene scene(0xBA4D);
-  constexpr std::uint64_t kSeed = 0x04DE4;
-  SplitMix64 random(kSeed);
-  for (const Camera& camera :
-       {usual_camera(), parallel(point(-3001, -7003, 9987), point(4096, 4096, 4000))}) {
-    for (const PixelFormat format : kFormats) {
-      const Shading shading = shading_of(ShadeMode::kDepth, camera);
-      const auto wanted = whole_frame(scene, camera, shading, format);
-      const std::size_t line = row_bytes(format, kWidthPx);
-      for (int height = 1; height <= kHeightPx; height += height < 9 ? 1 : 7) {
-        CAPTURE(kSeed);
-        CAPTURE(height);
-        std::vector<int> starts;
-        for (int row = 0; row < kHeightPx; row += height) {
-          starts.push_back(row);
-        }
-        for (std::size_t i = starts.size(); i > 1; --i) {
-          std::swap(starts[i - 1], starts[random.below(i)]);
-        }
-        std::vector<std::uint8_t> drawn(wanted.size(), kGuard);
-        for (const int row : starts) {
-          const int rows = std::min(height, kHeightPx - row);
-          // One buffer for all bands, as a board has it: what the last one left does not matter.
-          std::vector<std::uint8_t> buffer(band_bytes(format, kWidthPx, rows), kGuard);
-          REQUIRE(render_band(scene.compact, camera, shading, band_over(buffer, format, row, rows)) ==
-                  Status::kOk);
-          std::copy(buffer.begin(), buffer.end(), drawn.begin() + static_cast<std::ptrdiff_t>(line) * row);
-        }
-        CHECK(drawn == wanted);
-      }
-    }
-  }
-}
-
-TEST_CASE("render_band: a stride with gaps -> rows in place, gaps and what lies around untouched") {
-  const Scene scene(0x6A9);
-  const Camera camera = usual_camera();
-  for (const PixelFormat format : kFormats) {
-    const Shading shading = shading_of(ShadeMode::kNormal, camera);
-    const auto wanted = whole_frame(scene, camera, shading, format);
-    const std::size_t line = row_bytes(format, kWidthPx);
-    for (const std::size_t gap : {std::size_t{0}, std::size_t{1}, std::size_t{13}}) {
-      constexpr int kFirst = 7;
-      constexpr int kRows = 9;
-      const std::size_t stride = line + gap;
-      std::vector<std::uint8_t> bytes(16 + stride * kRows + 16, kGuard);
-      Band band = band_over(bytes, format, kFirst, kRows, stride);
-      // Just enough: no gap is needed behind the last row.
-      band.pixels = Bytes(bytes.data() + 16, stride * (kRows - 1) + line);
-      REQUIRE(render_band(scene.compact, camera, shading, band) == Status::kOk);
-      for (std::size_t i = 0; i < bytes.size(); ++i) {
-        const std::size_t offset = i - 16;
-        const bool inside = i >= 16 && offset < stride * kRows && offset % stride < line;
-        const std::uint8_t expected =
-            inside ? wanted[line * (kFirst + offset / stride) + offset % stride] : kGuard;
-        REQUIRE(bytes[i] == expected);
-      }
-    }
-  }
-}
-
-TEST_CASE("render_band: rows outside, stride or bytes too small -> refused, nothing written") {
-  const Scene scene(0xBAD);
-  const Camera camera = usual_camera();
-  const PixelFormat format = PixelFormat::kRgb565;
-  const std::size_t line = row_bytes(format, kWidthPx);
-  std::vector<std::uint8_t> bytes(line * kHeightPx, kGuard);
-  constexpr RowRange kRowsOutside[] = {
-      {-1, 1},           {0, -1},        {0, kHeightPx + 1},     {kHeightPx, 1}, {kHeightPx - 1, 2},
-      {1, INT32_MAX},    {INT32_MAX, 1}, {INT32_MAX, INT32_MAX}, {INT32_MIN, 1}, {0, INT32_MIN},
-      {kHeightPx + 1, 0}};
-  for (const RowRange& range : kRowsOutside) {
-    CAPTURE(range.first);
-    CAPTURE(range.rows);
-    check_refused(Status::kBadArgument, scene.compact, camera,
-                  band_over(bytes, format, range.first, range.rows));
-  }
-  check_refused(Status::kBadArgument, scene.compact, camera, band_over(bytes, format, 0, 1, line - 1));
-  check_refused(Status::kBadArgument, scene.compact, camera, band_over(bytes, format, 0, 1, 1));
-
-  for (const int rows : {1, 2, kHeightPx}) {
-    for (const std::size_t stride : {line, line + 5}) {
-      Band band = band_over(bytes, format, 0, rows, stride);
-      band.pixels.size = std::min(bytes.size(), stride * static_cast<std::size_t>(rows - 1) + line) - 1;
-      check_refused(Status::kOutOfMemory, scene.compact, camera, band);
-    }
-  }
-  // A stride whose product with the rows wraps around.
-  check_refused(Status::kOutOfMemory, scene.compact, camera,
-                band_over(bytes, format, 0, 3, SIZE_MAX / 2 + 1));
-  check_refused(Status::kOutOfMemory, scene.compact, camera, band_over(bytes, format, 0, 2, SIZE_MAX));
-  Band nothing;
-  nothing.rows = 1;
-  check_refused(Status::kOutOfMemory, scene.compact, camera, nothing);
 }
 
 TEST_CASE("render_band: Width::k32 at the border of what it takes -> all rays of a picture or none") {
@@ -367,31 +262,6 @@ TEST_CASE("render_band: a camera that looks past what is occupied -> no node vis
   CHECK(visits(pinhole(point(-900, -900, -900), point(-5000, -5000, -5000))) == 0);
   CHECK(visits(parallel(point(-4000, 4096, 8192 + 3000), point(8000, 4096, 8192 + 3000))) == 0);
   CHECK(visits(pinhole(point(-3000, -3000, 3000), point(200, 200, 200))) > 0);
-}
-
-TEST_CASE("render_band: a step limit -> counted, its pixels like misses, the others as without") {
-  const Scene scene(0x57E9);
-  const Camera camera = usual_camera();
-  for (const std::uint32_t limit : {0U, 1U, 4U, 12U}) {
-    TraceOptions options;
-    options.max_visits = limit;
-    const Shading shading = shading_of(ShadeMode::kNormal, camera);
-    RenderCounts wanted;
-    const auto picture =
-        picture_by_rays(scene.compact, camera, shading, PixelFormat::kRgb888, wanted, options);
-    std::vector<std::uint8_t> drawn(picture.size(), kGuard);
-    RenderCounts counts;
-    const Band band = band_over(drawn, PixelFormat::kRgb888, 0, kHeightPx);
-    REQUIRE(render_band(scene.compact, camera, shading, band, &counts, options) == Status::kOk);
-    CAPTURE(limit);
-    CHECK(drawn == picture);
-    CHECK(counts.step_limited == wanted.step_limited);
-    CHECK(counts.step_limited > 0);
-    CHECK(counts.node_visits <= std::uint64_t{limit} * counts.rays);
-    if (limit == 0) {
-      CHECK(counts.hits == 0);
-    }
-  }
 }
 
 TEST_CASE("render_band: hits lie between the planes of depth_range -> depth shading uses its whole scale") {

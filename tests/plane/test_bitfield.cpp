@@ -401,34 +401,6 @@ TEST_CASE("cells: places far outside, up to the ends of the integers -> clear, a
 
 // --- Discs
 
-TEST_CASE("discs: every diameter -> the cells whose centres lie in the circle, the same under turns") {
-  for (int diameter = 0; diameter <= 150; ++diameter) {
-    CAPTURE(diameter);
-    const DiscStamp disc = disc_stamp(diameter);
-    CHECK(disc.diameter == diameter);
-    CHECK((disc.rows != nullptr) == (diameter <= kMaxSmallDisc));
-    const Cells cells = cells_of_disc(diameter, {0, 0});
-    CHECK(disc_cells(disc) == cells.size());
-    if (disc.rows != nullptr) {
-      for (int row = -16; row < diameter + 16; ++row) {
-        std::uint32_t mask = 0;
-        for (const Vec2i& cell : cells) {
-          mask |= cell.y == row ? 1U << cell.x : 0U;
-        }
-        CHECK(disc.rows[row] == mask);
-      }
-    }
-    for (const Vec2i& cell : cells) {
-      CHECK(in_disc(diameter, diameter - 1 - cell.x, cell.y));
-      CHECK(in_disc(diameter, cell.y, cell.x));
-    }
-  }
-  CHECK(disc_stamp(-3).diameter == 0);
-  CHECK(disc_stamp(INT32_MAX).diameter == kMaxDisc);
-  // pi / 4 of the square, to the nearest parts in ten thousand.
-  CHECK(disc_cells(disc_stamp(4096)) == doctest::Approx(3.14159265 / 4 * 4096.0 * 4096.0).epsilon(1e-5));
-}
-
 TEST_CASE("disc_corner: a centre between cells -> the nearest place, and the middle of a place stays") {
   for (int diameter = 1; diameter <= 20; ++diameter) {
     for (int corner = -3; corner <= 3; ++corner) {
@@ -737,51 +709,6 @@ TEST_CASE("rays: along rows and columns of an empty paper's world -> a word each
             Status::kOk);
     CHECK(hit.visits <= 25 + 3);
   }
-}
-
-TEST_CASE("rays: by hand -> the cell, axis, t and corner written here") {
-  Both both(70, 70);
-  both.field.set(Vec2i{40, 10});
-  both.field.set(Vec2i{10, 40});
-  both.field.set(Vec2i{40, 40});
-  const auto trace = [&both](const FieldRay& ray) {
-    FieldHit hit;
-    REQUIRE(both.field.first_hit(ray, &hit) == Status::kOk);
-    return hit;
-  };
-  FieldHit hit = trace(ray_q8(0, 0, 5, 5));
-  CHECK(hit.kind == FieldHitKind::kHit);
-  CHECK(hit.cell == Vec2i{40, 40});
-  CHECK(hit.axis == 0);
-  CHECK(hit.corner);
-  CHECK(hit.t_numerator == 40 * 256);
-  CHECK(hit.t_denominator == 5 * 256);
-  CHECK(hit.visits == 41);
-  hit = trace(ray_q8(10 * 256 + 1, 69 * 256, 0, -3));
-  CHECK(hit.cell == Vec2i{10, 40});
-  CHECK(hit.axis == 1);
-  CHECK(!hit.corner);
-  CHECK(hit.t_numerator == 28 * 256);
-  CHECK(hit.t_denominator == 3 * 256);
-  // Along the edge x = 40, both ways: it belongs to the cell on its right.
-  CHECK(trace(ray_q8(40 * 256, 0, 0, 1)).cell == Vec2i{40, 10});
-  CHECK(trace(ray_q8(40 * 256, 70 * 256, 0, -1)).cell == Vec2i{40, 40});
-  CHECK(trace(ray_q8(41 * 256, 0, 0, 1)).kind == FieldHitKind::kMiss);
-  // On its edge and on its way out, or in.
-  hit = trace(ray_q8(40 * 256, 40 * 256 + 9, 1, 0));
-  CHECK(hit.cell == Vec2i{40, 40});
-  CHECK(hit.axis == -1);
-  CHECK(hit.t_numerator == 0);
-  CHECK(hit.t_denominator == 1);
-  CHECK(trace(ray_q8(40 * 256, 40 * 256 + 9, -1, 0)).cell == Vec2i{10, 40});
-  CHECK(trace(ray_q8(41 * 256, 40 * 256 + 9, -1, 0)).axis == -1);
-  // Into the field's own corner from outside.
-  both.field.set(Vec2i{0, 0});
-  hit = trace(ray_q8(-256, -512, 1, 2));
-  CHECK(hit.cell == Vec2i{0, 0});
-  CHECK(hit.axis == 0);
-  CHECK(hit.corner);
-  CHECK(trace(ray_q8(-256, 256, 1, -1)).kind == FieldHitKind::kMiss);
 }
 
 // --- Normals

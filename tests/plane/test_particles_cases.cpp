@@ -75,13 +75,6 @@ TEST_CASE("particles: held for long under gravity, let go without -> goes on for
   CHECK(ball_of(shadow, 0).vx_q16 == q16(1));
 }
 
-TEST_CASE("particles: two balls at the very same place -> the second is refused") {
-  ShadowedWorld shadow(box(40, 40, 2));
-  REQUIRE(shadow.world.spawn(q16(20), q16(20), 0, 0, 5, nullptr) == Status::kOk);
-  CHECK(shadow.world.spawn(q16(20), q16(20), 0, 0, 5, nullptr) == Status::kOutOfMemory);
-  run(shadow, 100);
-}
-
 TEST_CASE("particles: a box of no cells, or smaller than the ball -> stays empty, steps, takes the pointer") {
   for (const Vec2i size : {Vec2i{0, 0}, Vec2i{0, 40}, Vec2i{40, 0}, Vec2i{1, 1}, Vec2i{5, 40}}) {
     ParticleConfig config = box(size.x, size.y, 3);
@@ -231,52 +224,6 @@ TEST_CASE("particles: pointer events outside the box -> nothing breaks") {
       shadow.note_walls();
       REQUIRE(shadow.fault() == "");
     }
-  }
-}
-
-TEST_CASE("particles: drag -> the ball under the pointer follows it, sleepers in its way wake") {
-  ShadowedWorld shadow(box(200, 100, 30));
-  shadow.fill(30, 0);
-  for (int step = 0; step < 2000 && shadow.world.awake() != 0; ++step) {
-    run(shadow, 1);
-  }
-  REQUIRE(shadow.world.awake() == 0);
-  const Particle ball = ball_of(shadow, 7);
-  const Vec2i at{ball.x_q16 >> 16, ball.y_q16 >> 16};
-  shadow.world.set_pointer(PointerMode::kDrag, at);
-  REQUIRE(shadow.world.dragged() == 7);
-  for (int step = 0; step < 60; ++step) {
-    shadow.world.set_pointer(PointerMode::kDrag, {100, at.y - step});
-    run(shadow, 1);
-  }
-  shadow.world.set_pointer(PointerMode::kDrag, {100, 10});
-  run(shadow, 100);
-  CHECK(ball_of(shadow, 7).corner.y < 30);
-  shadow.world.set_pointer(PointerMode::kNone, {100, 10});
-  CHECK(shadow.world.dragged() == kNoBall);
-  for (int step = 0; step < 3000 && shadow.world.awake() != 0; ++step) {
-    run(shadow, 1);
-  }
-  CHECK(shadow.world.awake() == 0);
-}
-
-TEST_CASE(
-    "particles: attract and repel -> balls within the radius go to the pointer or from it, others do not") {
-  for (const bool attract : {true, false}) {
-    ParticleConfig config = box(200, 100, 3);
-    config.gravity_q16 = {0, 0};
-    ShadowedWorld shadow(config);
-    REQUIRE(shadow.world.spawn(q16(80), q16(50), 0, 0, 5, nullptr) == Status::kOk);
-    REQUIRE(shadow.world.spawn(q16(100), q16(70), 0, 0, 5, nullptr) == Status::kOk);
-    REQUIRE(shadow.world.spawn(q16(180), q16(50), 0, 0, 5, nullptr) == Status::kOk);
-    run(shadow, 100);
-    CHECK(shadow.world.asleep() == 3);
-    shadow.world.set_pointer(attract ? PointerMode::kAttract : PointerMode::kRepel, {100, 50}, 40, q16(0.1));
-    run(shadow, 8);
-    CHECK(shadow.world.asleep() == 1);
-    CHECK((ball_of(shadow, 0).vx_q16 > 0) == attract);
-    CHECK((ball_of(shadow, 1).vy_q16 < 0) == attract);
-    CHECK(ball_of(shadow, 2).vx_q16 == 0);
   }
 }
 

@@ -154,52 +154,6 @@ TEST_CASE("particles edges: a ball that is taken away while it is dragged -> the
   CHECK(owned.ball(again).x_q16 / 65536 == 10);
 }
 
-// 32,768 balls fill one word of the highest level: behind the last one that is awake there is no word to look
-// at.
-TEST_CASE("particles edges: the last of 32,768 balls awake, or the last but some -> just those move") {
-  constexpr std::uint32_t kCount = 32768;
-  ParticleConfig config = weightless(512, 130, kCount);
-  config.most_diameter = 1;
-  OwnedWorld owned(config);
-  ParticleWorld& world = owned.world;
-  for (std::uint32_t id = 0; id < kCount; ++id) {
-    const auto x = static_cast<std::int32_t>(2 * (id % 256));
-    const auto y = static_cast<std::int32_t>(id / 256);
-    REQUIRE(world.spawn(x * 65536 + 32769, y * 65536 + 32769, 0, 0, 1, nullptr) == Status::kOk);
-  }
-  for (int step = 0; step < 24; ++step) {
-    world.step();
-  }
-  REQUIRE(world.asleep() == kCount);
-  for (const std::uint32_t id : {31744U, 31744U + 31U, 32000U, 32700U, 32735U, 32736U, 32767U, 31743U, 0U}) {
-    const std::int32_t before = owned.ball(id).x_q16;
-    REQUIRE(world.set_velocity(id, 65536, 0) == Status::kOk);
-    world.step();
-    CAPTURE(id);
-    CHECK(world.counters().moves == 1);
-    CHECK(owned.ball(id).x_q16 == before + 65536);
-    REQUIRE(world.set_velocity(id, 0, 0) == Status::kOk);
-    for (int step = 0; step < 24; ++step) {
-      world.step();
-      CHECK(world.counters().moves == 0);
-    }
-    CHECK(world.asleep() == kCount);
-  }
-}
-
-TEST_CASE("particles edges: a restitution above 1 -> refused; 0 and 1 -> taken") {
-  OwnedWorld owned(weightless(20, 20, 2));
-  const std::uint32_t before = owned.world.config().restitution_q16;
-  for (const std::uint32_t wrong : {65537U, 1U << 31, UINT32_MAX}) {
-    CHECK(owned.world.set_restitution(wrong) == Status::kOutOfRange);
-    CHECK(owned.world.config().restitution_q16 == before);
-  }
-  for (const std::uint32_t right : {0U, 65536U}) {
-    CHECK(owned.world.set_restitution(right) == Status::kOk);
-    CHECK(owned.world.config().restitution_q16 == right);
-  }
-}
-
 // In a shaft a pointer moves the lower of two balls up and down by four cells, so that neither keeps to its
 // place: the one above falls asleep in the step in which the one that holds it has kept to its hollow for
 // 200, and the other never does.

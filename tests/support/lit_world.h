@@ -53,6 +53,13 @@ class LitWorld {
     REQUIRE(camera.set(PerspectiveView{from, forward, {}, Q16::saturate(fov), width, height, 0},
                        tree.level()) == Status::kOk);
   }
+  /// A parallel camera that looks down along z.
+  void look_straight_down(const Vec3i& eye_q8, std::int32_t span_q14, int width, int height) {
+    REQUIRE(
+        camera.set(
+            OrthographicView{point(eye_q8), {0, 0, -1}, {0, 1, 0}, Q14::from_raw(span_q14), width, height, 0},
+            tree.level()) == Status::kOk);
+  }
   static Vec3Q8 point(const Vec3i& raw) {
     return {Q8::from_raw(raw.x), Q8::from_raw(raw.y), Q8::from_raw(raw.z)};
   }

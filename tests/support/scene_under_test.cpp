@@ -1,6 +1,8 @@
 // One set of voxels in every structure.
 #include "support/scene_under_test.h"
 
+#include <doctest/doctest.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -75,6 +77,11 @@ HeapBytes from_sorted(std::vector<Key> keys, int key_bits, int level, std::uint8
 }
 
 }  // namespace
+
+OwnedPool::OwnedPool(int level, std::size_t nodes) : words(2 * nodes + 1) {
+  REQUIRE(Octree::make(level, {reinterpret_cast<std::uint8_t*>(words.data()), 8 * nodes}, &octree) ==
+          Status::kOk);
+}
 
 std::uint8_t material_at(const reference::Voxel& voxel, unsigned materials, std::uint64_t salt) {
   std::uint64_t hash = code_of(voxel) + salt * 0x9E3779B97F4A7C15ULL;

@@ -13,6 +13,7 @@
 
 #include "reference/reference.h"
 #include "thimble/trace/ray.h"
+#include "thimble/tree/brick_map.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
 #include "thimble/tree/octree.h"
@@ -34,6 +35,21 @@ class HeapBytes {
   std::size_t size_;
 };
 
+/// A pool in words of its own.
+struct OwnedPool {
+  explicit OwnedPool(int level, std::size_t nodes = 40000);
+  OwnedPool(const OwnedPool&) = delete;
+  OwnedPool& operator=(const OwnedPool&) = delete;
+  /// As if something else had written into it: node `index` is followed by `next`.
+  void cut_chain(std::uint32_t index, std::uint32_t next) {
+    std::uint32_t& word = words[2 * std::size_t{index} + 1];
+    word = (word & 31U) | next << 5;
+  }
+
+  std::vector<std::uint32_t> words;
+  Octree octree;
+};
+
 /// Which material a voxel of a test scene has: a hash of its place with as many values as `materials`.
 std::uint8_t material_at(const reference::Voxel& voxel, unsigned materials, std::uint64_t salt);
 
@@ -50,6 +66,18 @@ HeapBytes compact_of_keys_64(const std::vector<reference::Voxel>& voxels, int le
 
 /// Opens bytes that must be a compact tree; throws `std::logic_error` when they are none.
 CompactTree open_or_throw(const HeapBytes& bytes);
+
+/// A tree's brick map in room of its own; `status` says whether it was made.
+struct OwnedMap {
+  OwnedMap(const CompactTree& from, std::size_t room_bytes)
+      : tree(from), room(room_bytes), status(BrickMap::make(tree, room.span(), &map, &size)) {}
+
+  CompactTree tree;
+  HeapBytes room;
+  BrickMap map;
+  std::size_t size = 0;
+  Status status;
+};
 
 /// Whether an engine's hit is the reference's: kind, voxel, t as a fraction, axis.
 bool same_answer(const Hit& hit, const reference::Hit& expected);

@@ -11,15 +11,6 @@
 namespace thimble::tests::trace_edges {
 namespace {
 
-struct OwnedPool {
-  explicit OwnedPool(int level, std::size_t nodes = 400) : words(2 * nodes) {
-    REQUIRE(Octree::make(level, {reinterpret_cast<std::uint8_t*>(words.data()), 8 * nodes}, &octree) ==
-            Status::kOk);
-  }
-  std::vector<std::uint32_t> words;
-  Octree octree;
-};
-
 Ray along_x(std::int32_t y_q8, std::int32_t z_q8, std::int32_t direction = 1) {
   Ray ray;
   ray.origin = {Q8::from_raw(-256), Q8::from_raw(y_q8), Q8::from_raw(z_q8)};
@@ -63,8 +54,7 @@ TEST_CASE("trace edges: a pool whose chain breaks off -> what is left is hit, th
     for (int i = 1; i < kept; ++i) {
       last = pool.octree.node(last).next;
     }
-    std::uint32_t& word = pool.words[2 * std::size_t{last} + 1];
-    word = (word & 31U) | Octree::kNone << 5;
+    pool.cut_chain(last, Octree::kNone);
     const auto seen = [&](const Vec3i& voxel) {
       Hit hit;
       Ray ray = along_x(voxel.y * 256 + 100, voxel.z * 256 + 100);

@@ -11,7 +11,6 @@
 #include "support/deep_worlds.h"
 #include "support/ray_cases.h"
 #include "thimble/base/memory.h"
-#include "thimble/picture/render.h"
 #include "thimble/trace/ray.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/octree.h"
@@ -240,94 +239,6 @@ TEST_CASE("deep map: an empty world, a full one, one voxel -> the bytes that the
   }
 }
 
-// A tree whose nodes are damaged still opens, as those that are read from flash do.
-TEST_CASE("deep map: a damaged tree -> its map is made inside the room, or refused") {
-  std::mt19937_64 random(915);
-  int made = 0;
-  for (int turn = 0; turn < 100; ++turn) {
-    const ChipScene scene =
-        make_deep_scene(random, turn % 2 == 0 ? DeepWorld::kCorners : DeepWorld::kBlocks, 9);
-    const HeapBytes bytes(scene.tree_bytes.view().size);
-    std::memcpy(bytes.span().data, scene.tree_bytes.view().data, bytes.view().size);
-    const auto first = static_cast<std::size_t>(scene.tree.masks() - scene.tree_bytes.view().data);
-    const int last = static_cast<int>(first + scene.tree.node_count()) - 1;
-    for (int change = pick_int(random, 1, 40); change > 0; --change) {
-      bytes.span().data[pick_int(random, static_cast<int>(first), last)] =
-          static_cast<std::uint8_t>(random());
-    }
-    CompactTree tree;
-    if (CompactTree::open(bytes.view(), &tree) != Status::kOk) {
-      continue;
-    }
-    const std::size_t most = std::min(most_brick_map_bytes(tree), std::size_t{1} << 23);
-    const HeapBytes room(most);
-    std::size_t size = 0;
-    BrickMap map;
-    const Status status = BrickMap::make(tree, room.span(), &map, &size);
-    CHECK((status == Status::kOk || status == Status::kOutOfMemory || status == Status::kOutOfRange));
-    if (status == Status::kOk) {
-      CHECK(size <= most);
-      CHECK(BrickMap::validate({room.view().data, size}) == nullptr);
-      for (std::uint32_t number = 1; number < map.brick_count(); ++number) {
-        (void)map.material(tree, number, number & 63U);
-      }
-      ++made;
-    }
-  }
-  CHECK(made > 30);
-}
-
-// Each byte of a small map, and random ones of larger: what opens is read inside its bytes (AddressSanitizer looks).
-TEST_CASE("deep map: damaged bytes -> refused, or each place and material read inside them") {
-  std::mt19937_64 random(912);
-  int opened = 0;
-  int refused = 0;
-  for (int turn = 0; turn < 600; ++turn) {
-    const ChipScene scene =
-        make_deep_scene(random, turn % 20 == 0 ? DeepWorld::kBlocks : DeepWorld::kCorners, 9);
-    const std::size_t size = scene.map.size_bytes();
-    const HeapBytes bytes(size);
-    std::memcpy(bytes.span().data, scene.map_words.data(), size);
-    for (int change = pick_int(random, 1, 3); change > 0; --change) {
-      const int last = static_cast<int>(size) - 1;
-      const int part = pick_int(random, 0, 3);
-      const auto at =
-          static_cast<std::size_t>(part == 0   ? pick_int(random, 0, 47)
-                                   : part == 1 ? pick_int(random, 48, last)
-                                               : pick_int(random, std::max(48, last - 1500), last));
-      bytes.span().data[at] = static_cast<std::uint8_t>(random());
-    }
-    BrickMap map;
-    if (BrickMap::open(bytes.view(), &map) != Status::kOk) {
-      CHECK(BrickMap::validate(bytes.view()) != nullptr);
-      ++refused;
-      continue;
-    }
-    ++opened;
-    for (int look = 0; look < 300; ++look) {
-      Vec3i at;
-      for (int axis = 0; axis < 3; ++axis) {
-        at[axis] = pick_int(random, 0, 511);
-      }
-      const Cell cell = cell_of(map, at);
-      if (cell.number != 0) {
-        (void)map.material(scene.tree, cell.number, cell.bit);
-      }
-    }
-    for (std::uint32_t number = 1; number < map.brick_count(); ++number) {
-      (void)map.material(scene.tree, number, number & 63U);
-    }
-    const Camera camera = hard_deep_camera(random, scene.tree);
-    const std::size_t size_px = band_bytes(PixelFormat::kGray8, camera.width_px(), camera.height_px());
-    const HeapBytes pixels(size_px);
-    const Status status = render_band(scene.tree, map, camera, Shading(),
-                                      {pixels.span(), PixelFormat::kGray8, 0, 0, camera.height_px()});
-    CHECK(status == (map.belongs_to(scene.tree) ? Status::kOk : Status::kDamaged));
-  }
-  CHECK(opened > 50);
-  CHECK(refused > 100);
-}
-
 TEST_CASE("deep map: each count of origins and each entry of the table moved -> damaged") {
   std::mt19937_64 random(913);
   const ChipScene scene = make_deep_scene(random, DeepWorld::kBlocks, 9);
@@ -358,47 +269,4 @@ TEST_CASE("deep map: each count of origins and each entry of the table moved -> 
   }
   BrickMap map;
   CHECK(BrickMap::open(bytes.view(), &map) == Status::kOk);
-}
-
-// A floor of two materials and a voxel far from it; pixels of a camera by it.
-TEST_CASE("deep map: each bit of a small map -> refused, or drawn inside its bytes and to an end") {
-  std::vector<std::uint8_t> pool(Octree::octree_bytes(200));
-  Octree octree;
-  REQUIRE(Octree::make(9, {pool.data(), pool.size()}, &octree) == Status::kOk);
-  for (int x = 0; x < 6; ++x) {
-    REQUIRE(octree.insert({x, x / 2, 0}, static_cast<std::uint8_t>(x / 2)) == Status::kOk);
-  }
-  REQUIRE(octree.insert({20, 3, 5}, 7) == Status::kOk);
-  const HeapBytes tree_bytes = compact_of(octree);
-  const CompactTree tree = open_or_throw(tree_bytes);
-  const HeapBytes room(most_brick_map_bytes(tree));
-  std::size_t size = 0;
-  REQUIRE(BrickMap::make(tree, room.span(), nullptr, &size) == Status::kOk);
-  const HeapBytes bytes(size);
-  std::memcpy(bytes.span().data, room.view().data, size);
-  Camera camera;
-  const Vec3Q8 eye{Q8::from_raw(10 * 256), Q8::from_raw(-9 * 256), Q8::from_raw(8 * 256)};
-  REQUIRE(camera.set(PerspectiveView{eye, {0, 12, -6}, {}, Q16::saturate(80), 32, 24, 0}, 9) == Status::kOk);
-  std::vector<std::uint8_t> pixels(32 * 24);
-  const Band band{{pixels.data(), pixels.size()}, PixelFormat::kGray8, 0, 0, 24};
-  int drawn = 0;
-  int told = 0;
-  for (std::size_t bit = 0; bit < 8 * size; ++bit) {
-    CAPTURE(bit);
-    std::uint8_t& changed = bytes.span().data[bit / 8];
-    const auto mask = static_cast<std::uint8_t>(1 << bit % 8);
-    changed ^= mask;
-    BrickMap map;
-    const bool opens = BrickMap::open(bytes.view(), &map) == Status::kOk;
-    told += BrickMap::validate(bytes.view()) != nullptr ? 1 : 0;
-    if (opens && map.belongs_to(tree)) {
-      RenderCounts counts;
-      REQUIRE(render_band(tree, map, camera, Shading(), band, &counts) == Status::kOk);
-      REQUIRE(counts.rays == pixels.size());
-      ++drawn;
-    }
-    changed ^= mask;
-  }
-  CHECK(told == static_cast<int>(8 * size));
-  CHECK(drawn > 100);
 }

@@ -13,15 +13,6 @@
 namespace thimble::tests::edited_world_edges {
 namespace {
 
-struct OwnedPool {
-  explicit OwnedPool(int level, std::size_t nodes = 4000) : words(nodes) {
-    REQUIRE(Octree::make(level, {reinterpret_cast<std::uint8_t*>(words.data()), 8 * nodes}, &octree) ==
-            Status::kOk);
-  }
-  std::vector<std::uint64_t> words;
-  Octree octree;
-};
-
 TEST_CASE("edited worlds: one of no tree, of a level without maps, of too much room -> refused") {
   OwnedPool pool(2);
   REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);

@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "golden/scenes.h"
-#include "support/compact_damage.h"
 #include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
@@ -221,37 +219,6 @@ TEST_CASE("shared tree: every second voxel of a large world -> one node a level"
   check_same_hits(shared.tree, open_or_throw(compact), 9, 300 * kWorldScale);
 }
 
-TEST_CASE("shared tree: the golden frames -> the pictures of the compact tree, and the same visits") {
-  std::vector<std::uint8_t> memory(1 << 20);
-  std::map<int, std::string> different;
-  for (int index = 0; index < golden::frame_count(); ++index) {
-    const golden::Frame& frame = golden::frame(index);
-    CAPTURE(frame.name);
-    Arena arena(Bytes(memory.data(), memory.size()));
-    golden::World world;
-    REQUIRE(golden::build_scene(frame.scene, golden::Structure::kCompact, &arena, &world) == Status::kOk);
-    const OwnedShared shared(world.compact);
-    CHECK(shared.fault() == nullptr);
-    Camera camera;
-    Shading shading;
-    REQUIRE(golden::set_up(frame, &camera, &shading) == Status::kOk);
-    std::array<std::vector<std::uint8_t>, 2> pictures;
-    std::array<RenderCounts, 2> counts;
-    for (std::size_t i = 0; i < 2; ++i) {
-      pictures[i].resize(band_bytes(frame.format, frame.width_px, frame.height_px));
-      Band band;
-      band.pixels = Bytes(pictures[i].data(), pictures[i].size());
-      band.format = frame.format;
-      band.rows = frame.height_px;
-      REQUIRE((i == 0 ? render_band(shared.tree, camera, shading, band, &counts[i])
-                      : render_band(world.compact, camera, shading, band, &counts[i])) == Status::kOk);
-    }
-    CHECK(pictures[0] == pictures[1]);
-    CHECK(counts[0].node_visits == counts[1].node_visits);
-    CHECK(counts[0].hits == counts[1].hits);
-  }
-}
-
 TEST_CASE("shared tree: too small a workspace or result -> out of memory, and not a byte written") {
   std::mt19937_64 random(5);
   for (int world = 0; world < 6; ++world) {
@@ -301,109 +268,6 @@ TEST_CASE("shared tree: trees that differ only in how nodes share a count -> the
   const OwnedShared b(open_or_throw(coarse));
   CHECK(
       std::equal(a.bytes.view().begin(), a.bytes.view().end(), b.bytes.view().begin(), b.bytes.view().end()));
-}
-
-TEST_CASE("shared tree: damaged bytes -> found, or traced within the bytes to an end") {
-  std::mt19937_64 random(41);
-  for (int world = 0; world < 4; ++world) {
-    CAPTURE(world);
-    Pool pool(4, random, world % 2 == 0 ? 1U : 3U, world >= 2);
-    const HeapBytes bytes = compact_of(pool.octree);
-    const OwnedShared shared(open_or_throw(bytes));
-    const std::size_t size = shared.build.bytes;
-    std::vector<Ray> rays;
-    rays.reserve(12);
-    RayCases cases(91, {16, 16, 16});
-    for (int i = 0; i < 12; ++i) {
-      rays.push_back(to_core(cases.next().ray));
-    }
-    HeapBytes work(shared_check_bytes(size));
-    const auto use = [&](const HeapBytes& damaged) {
-      SharedTree tree;
-      const Status status = SharedTree::open(damaged.view(), &tree);
-      if (status != Status::kOk) {
-        CHECK(SharedTree::validate(damaged.view(), work.span()) != nullptr);
-        return;
-      }
-      for (const Ray& ray : rays) {
-        if (check_ray(ray, tree.level()) != Status::kOk) {
-          continue;
-        }
-        Hit hit;
-        REQUIRE(closest_hit(tree, ray, &hit) == Status::kOk);
-        REQUIRE(hit.visits <= most_visits(tree.level()));
-        if (hit.kind == HitKind::kHit) {
-          const std::int32_t side = 1 << tree.level();
-          for (int axis = 0; axis < 3; ++axis) {
-            REQUIRE(hit.voxel[axis] >= 0);
-            REQUIRE(hit.voxel[axis] < side);
-          }
-        }
-      }
-    };
-    // Cut off anywhere.
-    for (std::size_t length = 0; length < size; length += length < 100 ? 1 : 1 + size / 200) {
-      const HeapBytes cut(length);
-      std::copy_n(shared.bytes.view().begin(), length, cut.span().begin());
-      SharedTree tree;
-      CHECK(SharedTree::open(cut.view(), &tree) == Status::kDamaged);
-      CHECK(SharedTree::validate(cut.view(), work.span()) != nullptr);
-    }
-    // Each byte changed: the checksum finds it. With the checksum put right, what is wrong with the nodes is
-    // found, or harmless.
-    int found = 0;
-    for (std::size_t at = 0; at < size; ++at) {
-      for (const unsigned change : {0x01U, 0x80U, 0xFFU}) {
-        const HeapBytes damaged(size);
-        std::copy_n(shared.bytes.view().begin(), size, damaged.span().begin());
-        damaged.span()[at] = static_cast<std::uint8_t>(damaged.span()[at] ^ change);
-        CHECK(SharedTree::validate(damaged.view(), work.span()) != nullptr);
-        use(damaged);
-        const std::uint32_t front = crc32({damaged.view().data, 12});
-        const std::uint32_t checksum = crc32({damaged.view().data + 16, size - 16}, front);
-        for (std::size_t i = 0; i < 4; ++i) {
-          damaged.span()[12 + i] = static_cast<std::uint8_t>(checksum >> (8 * i));
-        }
-        found += SharedTree::validate(damaged.view(), work.span()) != nullptr ? 1 : 0;
-        use(damaged);
-      }
-    }
-    CHECK(found * 3 > static_cast<int>(size));
-    // Noise behind a sound header.
-    for (int round = 0; round < 50 * kWorldScale; ++round) {
-      const HeapBytes damaged(size);
-      std::copy_n(shared.bytes.view().begin(), size, damaged.span().begin());
-      for (std::size_t at = 64; at < size; ++at) {
-        damaged.span()[at] = static_cast<std::uint8_t>(random());
-      }
-      use(damaged);
-    }
-  }
-}
-
-TEST_CASE("shared tree: a damaged compact tree -> refused or shared, never outside, always an end") {
-  std::mt19937_64 random(8);
-  Pool pool(4, random, 3, true);
-  const HeapBytes bytes = compact_of(pool.octree);
-  HeapBytes work(1 << 16);
-  HeapBytes out(1 << 16);
-  int refused = 0;
-  for (std::size_t at = 0; at < bytes.view().size; ++at) {
-    const HeapBytes damaged(bytes.view().size);
-    std::copy_n(bytes.view().begin(), damaged.view().size, damaged.span().begin());
-    damaged.span()[at] = static_cast<std::uint8_t>(random());
-    CompactTree tree;
-    if (CompactTree::open(damaged.view(), &tree) != Status::kOk) {
-      continue;
-    }
-    const Status status = SharedTree::make(tree, out.span(), work.span(), nullptr);
-    refused += status == Status::kDamaged ? 1 : 0;
-    SharedTree shared;
-    if (status == Status::kOk) {
-      CHECK(SharedTree::open(out.view(), &shared) == Status::kOk);
-    }
-  }
-  CHECK(refused > 0);
 }
 
 TEST_CASE("shared tree: what several materials would take -> the bytes of that world in two materials") {

@@ -18,20 +18,6 @@
 namespace thimble::tests::tree_edges {
 namespace {
 
-struct OwnedPool {
-  explicit OwnedPool(int level, std::size_t nodes = 4000) : words(2 * nodes + 1) {
-    REQUIRE(Octree::make(level, {reinterpret_cast<std::uint8_t*>(words.data()), 8 * nodes}, &octree) ==
-            Status::kOk);
-  }
-  /// As if something else had written into the pool: node `index` is followed by `next`.
-  void cut_chain(std::uint32_t index, std::uint32_t next) {
-    std::uint32_t& word = words[2 * std::size_t{index} + 1];
-    word = (word & 31U) | next << 5;
-  }
-  std::vector<std::uint32_t> words;
-  Octree octree;
-};
-
 void put(std::uint8_t* at, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) {
     at[i] = static_cast<std::uint8_t>(value >> (8 * i));
@@ -75,47 +61,6 @@ TEST_CASE("tree edges: a pool whose chain leads out of it -> no child there, and
   CHECK(pool.octree.child(root, 1) == 1000000);
   CHECK(pool.octree.node(1000000).first_child == Octree::kNone);
   CHECK(pool.octree.child(root, 2) == Octree::kNone);
-}
-
-// The material of a world that one node has to hold is that of its largest piece, the lowest of equal ones.
-TEST_CASE("tree edges: a pool of one node that coarsens -> the world, in the material of its largest piece") {
-  struct Row {
-    std::array<Vec3i, 2> first;  // of material 5
-    int count;
-    Vec3i last;  // of material 9
-    int material;
-  };
-  for (const Row& row :
-       {Row{{{{1, 0, 0}}}, 1, {0, 0, 0}, 9}, Row{{{{1, 0, 0}}}, 1, {0, 1, 0}, 5},
-        Row{{{{1, 0, 0}, {0, 1, 0}}}, 2, {0, 0, 0}, 5}, Row{{{{1, 0, 0}, {0, 1, 0}}}, 2, {1, 0, 0}, 5}}) {
-    OwnedPool pool(1, 1);
-    pool.octree.set_coarsen(true);
-    for (int i = 0; i < row.count; ++i) {
-      REQUIRE(pool.octree.insert(row.first[static_cast<std::size_t>(i)], 5) == Status::kOk);
-    }
-    const std::uint64_t there = static_cast<std::uint64_t>(row.count) + (pool.octree.test(row.last) ? 0 : 1);
-    REQUIRE(pool.octree.insert(row.last, 9) == Status::kOk);
-    CHECK(pool.octree.nodes_used() == 1);
-    CHECK(pool.octree.voxels() == 8);
-    CHECK(pool.octree.solid_added() == 8 - there);
-    CHECK(pool.octree.material({1, 1, 1}) == row.material);
-    CHECK(pool.octree.node(pool.octree.root()).merged);
-  }
-}
-
-TEST_CASE("tree edges: a block into a pool too small for its path -> the block above it, merged") {
-  for (int nodes = 1; nodes <= 3; ++nodes) {
-    OwnedPool pool(4, static_cast<std::size_t>(nodes));
-    pool.octree.set_coarsen(true);
-    REQUIRE(pool.octree.insert_block({8, 8, 0}, 1, 7) == Status::kOk);
-    // The path's last node is of level 4, 3, 2.
-    const std::uint64_t side = std::uint64_t{16} >> (nodes - 1);
-    CHECK(pool.octree.nodes_used() == static_cast<std::uint32_t>(nodes));
-    CHECK(pool.octree.voxels() == side * side * side);
-    CHECK(pool.octree.solid_added() == side * side * side - 8);
-    CHECK(pool.octree.material({8, 8, 0}) == 7);
-    CHECK(pool.octree.test({0, 0, 0}) == (nodes == 1));
-  }
 }
 
 // Seven truly full blocks and one that merging filled make no solid block: a hit on that one reports its
@@ -570,16 +515,6 @@ TEST_CASE("tree edges: an empty tree of several materials, shared -> empty") {
 
 // ---- brick maps
 
-struct MapOf {
-  explicit MapOf(const CompactTree& from, std::size_t room_bytes)
-      : tree(from), room(room_bytes), status(BrickMap::make(tree, room.span(), &map, &size)) {}
-  CompactTree tree;
-  HeapBytes room;
-  BrickMap map;
-  std::size_t size = 0;
-  Status status;
-};
-
 TEST_CASE("tree edges: a brick map of no tree, or of a level without maps -> out of range, and of no tree") {
   HeapBytes out(most_brick_map_bytes(2));
   BrickMap map;
@@ -593,7 +528,7 @@ TEST_CASE("tree edges: a brick map of no tree, or of a level without maps -> out
   OwnedPool pool(2);
   REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);
   const HeapBytes bytes = compact_of(pool.octree);
-  const MapOf made(open_or_throw(bytes), most_brick_map_bytes(2));
+  const OwnedMap made(open_or_throw(bytes), most_brick_map_bytes(2));
   REQUIRE(made.status == Status::kOk);
   CHECK(made.map.belongs_to(made.tree));
   CHECK_FALSE(map.belongs_to(made.tree));
@@ -614,7 +549,7 @@ TEST_CASE(
   REQUIRE(pool.octree.insert({5, 1, 1}, 2) == Status::kOk);
   const HeapBytes bytes = compact_of(pool.octree);
   const auto fault_with = [&](std::size_t at, std::uint8_t value) {
-    const MapOf made(open_or_throw(bytes), most_brick_map_bytes(3));
+    const OwnedMap made(open_or_throw(bytes), most_brick_map_bytes(3));
     REQUIRE(made.status == Status::kOk);
     REQUIRE(made.map.brick_count() == 3);
     made.room.span()[at] = value;
@@ -654,7 +589,7 @@ TEST_CASE("tree edges: 65,535 bricks, the empty one included -> a map; one more 
     HeapBytes bytes(size);
     CompactTree tree;
     REQUIRE(CompactTree::make(span, 8, bytes.span(), &tree) == Status::kOk);
-    const MapOf made(tree, most_brick_map_bytes(8));
+    const OwnedMap made(tree, most_brick_map_bytes(8));
     CHECK(made.status == (kinds == 254 ? Status::kOk : Status::kOutOfRange));
     CHECK(made.map.brick_count() == (kinds == 254 ? kMaxBricks : 0));
   }
@@ -697,7 +632,7 @@ TEST_CASE("tree edges: a brick whose nodes begin at 2^24 -> out of range; one be
     CompactTree tree;
     REQUIRE(CompactTree::open({base, size}, &tree) == Status::kOk);
     REQUIRE(tree.first_child(0) == child);
-    const MapOf made(tree, most_brick_map_bytes(2));
+    const OwnedMap made(tree, most_brick_map_bytes(2));
     CHECK(made.status == (child < kEnd ? Status::kOk : Status::kOutOfRange));
     if (child < kEnd) {
       CHECK(made.map.mixed_count() == 1);

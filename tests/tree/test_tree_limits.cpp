@@ -22,14 +22,6 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-struct OwnedOctree {
-  explicit OwnedOctree(int level, std::size_t nodes = 40000) : bytes(Octree::octree_bytes(nodes)) {
-    REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
-  }
-  std::vector<std::uint8_t> bytes;
-  Octree octree;
-};
-
 bool equal_bytes(const HeapBytes& a, const HeapBytes& b) {
   return std::equal(a.view().begin(), a.view().end(), b.view().begin(), b.view().end());
 }
@@ -46,8 +38,8 @@ void store_32(std::uint8_t* at, std::uint32_t value) {
 // ---- the octree
 
 TEST_CASE("tree limits: an octree that was used and cleared -> as a new one, and its bytes those of none") {
-  OwnedOctree used(4);
-  OwnedOctree fresh(4);
+  OwnedPool used(4);
+  OwnedPool fresh(4);
   const HeapBytes none = compact_of(fresh.octree);
   for (int round = 0; round < 3; ++round) {
     for (std::int32_t i = 0; i < 40; ++i) {
@@ -76,7 +68,7 @@ TEST_CASE(
     for (const bool removes : {false, true}) {
       const std::size_t taken = 1 + 8 * static_cast<std::size_t>(removes ? level - 1 : level);
       for (std::size_t less = 0; less < 2; ++less) {
-        OwnedOctree owned(level, taken - less);
+        OwnedPool owned(level, taken - less);
         REQUIRE(owned.octree.insert_block({0, 0, 0}, level, 1) == Status::kOk);
         const Status status = removes ? owned.octree.remove({1, 2, 3}) : owned.octree.insert({1, 2, 3}, 2);
         CAPTURE(level);
@@ -85,9 +77,9 @@ TEST_CASE(
       }
     }
     // A voxel alone takes a node a level.
-    OwnedOctree alone(level, static_cast<std::size_t>(level));
+    OwnedPool alone(level, static_cast<std::size_t>(level));
     CHECK(alone.octree.insert({1, 2, 3}, 2) == Status::kOk);
-    OwnedOctree small(level, static_cast<std::size_t>(level) - 1);
+    OwnedPool small(level, static_cast<std::size_t>(level) - 1);
     CHECK(small.octree.insert({1, 2, 3}, 2) == Status::kOutOfMemory);
   }
 }
@@ -97,7 +89,7 @@ TEST_CASE(
     "tree limits: prices of a world of two levels -> merged from the step on that the definition says") {
   std::mt19937_64 random(20260811);
   for (int world = 0; world < 200; ++world) {
-    OwnedOctree owned(2, 20);
+    OwnedPool owned(2, 20);
     int voxels = 0;
     int nodes = 0;
     for (std::int32_t octant = 0; octant < 8; ++octant) {
@@ -152,18 +144,6 @@ TEST_CASE("tree limits: worlds of 2, 4 and 8 a side by keys of either size -> th
 
 // ---- brick maps
 
-struct OwnedMap {
-  OwnedMap(const HeapBytes& bytes, std::size_t room_bytes)
-      : tree(open_or_throw(bytes)),
-        room(room_bytes),
-        status(BrickMap::make(tree, room.span(), &map, &size)) {}
-  CompactTree tree;
-  HeapBytes room;
-  BrickMap map;
-  std::size_t size = 0;
-  Status status;
-};
-
 // The bits of the cell of `voxel`, or 0 outside the map's box.
 bool map_has(const BrickMap& map, const Vec3i& voxel, std::uint32_t* number = nullptr) {
   std::size_t entry = 0;
@@ -186,7 +166,7 @@ bool map_has(const BrickMap& map, const Vec3i& voxel, std::uint32_t* number = nu
 TEST_CASE("tree limits: maps of mixed bricks alone, of others alone and of one -> each material as it is") {
   for (int kind = 0; kind < 4; ++kind) {
     for (const int side : {4, 8, 16}) {
-      OwnedOctree owned(side == 4 ? 2 : side == 8 ? 3 : 4);
+      OwnedPool owned(side == 4 ? 2 : side == 8 ? 3 : 4);
       const auto material = [&](const Vec3i& at) {
         const int mixed = kind == 0 ? 1 : kind == 1 ? 0 : (at.x / 4 + at.y / 4 + at.z / 4) % 2;
         return static_cast<std::uint8_t>(mixed != 0 ? 1 + (at.x + at.y + at.z) % 3 : 7);
@@ -199,7 +179,7 @@ TEST_CASE("tree limits: maps of mixed bricks alone, of others alone and of one -
         }
       }
       const HeapBytes bytes = compact_of(owned.octree);
-      const OwnedMap made(bytes, most_brick_map_bytes(owned.octree.level()));
+      const OwnedMap made(open_or_throw(bytes), most_brick_map_bytes(owned.octree.level()));
       REQUIRE(made.status == Status::kOk);
       CHECK(BrickMap::validate({made.room.view().data, made.size}) == nullptr);
       CHECK((made.map.mixed_count() == 0) == (kind == 1 || (kind > 1 && side == 4)));
@@ -218,24 +198,24 @@ TEST_CASE("tree limits: maps of mixed bricks alone, of others alone and of one -
       // While it is made it takes 2 bytes a brick more, and nothing else where no brick is shared.
       if (kind != 3) {
         const std::size_t least = made.size + 2 * std::size_t{made.map.brick_count()};
-        const OwnedMap again(bytes, least);
+        const OwnedMap again(open_or_throw(bytes), least);
         REQUIRE(again.status == Status::kOk);
         CHECK(again.size == made.size);
         CHECK(std::equal(made.room.view().begin(), made.room.view().begin() + made.size,
                          again.room.view().begin()));
-        CHECK(OwnedMap(bytes, least - 2).status == Status::kOutOfMemory);
+        CHECK(OwnedMap(open_or_throw(bytes), least - 2).status == Status::kOutOfMemory);
       }
     }
   }
 }
 
 TEST_CASE("tree limits: a map's header with a number beyond its range -> damaged, and told by validate") {
-  OwnedOctree owned(4);
+  OwnedPool owned(4);
   REQUIRE(owned.octree.insert({1, 1, 1}, 5) == Status::kOk);
   REQUIRE(owned.octree.insert({5, 1, 1}, 6) == Status::kOk);
   REQUIRE(owned.octree.insert({5, 2, 1}, 5) == Status::kOk);
   const HeapBytes bytes = compact_of(owned.octree);
-  const OwnedMap made(bytes, most_brick_map_bytes(4));
+  const OwnedMap made(open_or_throw(bytes), most_brick_map_bytes(4));
   REQUIRE(made.status == Status::kOk);
   std::uint8_t* const base = made.room.span().data;
   const auto fault_with = [&](std::size_t at, std::uint8_t value) {
@@ -277,7 +257,7 @@ TEST_CASE("tree limits: a map's header with a number beyond its range -> damaged
 
 // Bounds are in the header, under no other care than the checksum's: what lies beyond them is left out.
 TEST_CASE("tree limits: a map of a tree whose bounds are too small -> within them each voxel, nothing else") {
-  OwnedOctree owned(5);
+  OwnedPool owned(5);
   Octree& octree = owned.octree;
   for (const Vec3i& at : {Vec3i{0, 0, 0}, Vec3i{16, 16, 16}, Vec3i{8, 24, 8}}) {
     REQUIRE(octree.insert_block(at, 3, 4) == Status::kOk);
@@ -285,7 +265,7 @@ TEST_CASE("tree limits: a map of a tree whose bounds are too small -> within the
   REQUIRE(octree.insert_block({16, 0, 0}, 4, 2) == Status::kOk);
   REQUIRE(octree.insert({31, 31, 31}, 1) == Status::kOk);
   const HeapBytes sound = compact_of(octree);
-  const OwnedMap whole(sound, most_brick_map_bytes(5));
+  const OwnedMap whole(open_or_throw(sound), most_brick_map_bytes(5));
   REQUIRE(whole.status == Status::kOk);
   constexpr std::size_t kBounds = 28;  // low, then high: 2 bytes an axis
   std::mt19937_64 random(20260813);
@@ -302,7 +282,7 @@ TEST_CASE("tree limits: a map of a tree whose bounds are too small -> within the
           static_cast<std::uint8_t>(high[axis]);
     }
     repair_checksum(damaged.span());
-    const OwnedMap made(damaged, most_brick_map_bytes(5));
+    const OwnedMap made(open_or_throw(damaged), most_brick_map_bytes(5));
     REQUIRE(made.status == Status::kOk);
     REQUIRE(made.map.box() ==
             VoxelBox{{low.x / 4, low.y / 4, low.z / 4}, {high.x / 4, high.y / 4, high.z / 4}});
@@ -337,7 +317,7 @@ std::string shared_fault(const HeapBytes& bytes) {
 }
 
 HeapBytes some_shared(int level, int materials, std::uint64_t seed) {
-  OwnedOctree owned(level);
+  OwnedPool owned(level);
   std::mt19937_64 random(seed);
   for (int i = 0; i < 60; ++i) {
     const int side = (1 << level) - 1;
@@ -403,7 +383,7 @@ TEST_CASE("tree limits: a shared tree's root with more children than it has link
   int zero_follows = 0;
   for (int number = 0; number < 24; ++number) {
     // All in the first octant; how many decides where the nodes end.
-    OwnedOctree owned(4);
+    OwnedPool owned(4);
     for (std::int32_t i = 0; i <= number / 2; ++i) {
       REQUIRE(owned.octree.insert({i * 3 % 7, i * 5 % 8, i % 8},
                                   static_cast<std::uint8_t>(i * (number % 2))) == Status::kOk);
@@ -434,28 +414,8 @@ TEST_CASE("tree limits: a shared tree's root with more children than it has link
   CHECK(zero_follows > 4);
 }
 
-TEST_CASE("tree limits: any workspace of a shared tree -> not a byte behind it is written") {
-  OwnedOctree owned(3);
-  REQUIRE(owned.octree.insert({1, 2, 3}, 1) == Status::kOk);
-  const HeapBytes compact = compact_of(owned.octree);
-  const CompactTree tree = open_or_throw(compact);
-  std::vector<std::uint32_t> words(400);
-  auto* const bytes = reinterpret_cast<std::uint8_t*>(words.data());
-  std::vector<std::uint8_t> out(400);
-  int made = 0;
-  for (std::size_t size = 0; size < 4 * words.size() - 16; ++size) {
-    std::memset(bytes, 0xA5, 4 * words.size());
-    const Status status = SharedTree::make(tree, {out.data(), out.size()}, {bytes, size}, nullptr);
-    made += status == Status::kOk ? 1 : 0;
-    REQUIRE((status == Status::kOk || status == Status::kOutOfMemory));
-    REQUIRE(
-        std::all_of(bytes + size, bytes + 4 * words.size(), [](std::uint8_t byte) { return byte == 0xA5; }));
-  }
-  CHECK(made > 100);
-}
-
 TEST_CASE("tree limits: a shared tree's workspace at any address -> the same bytes") {
-  OwnedOctree owned(4);
+  OwnedPool owned(4);
   for (std::int32_t i = 0; i < 50; ++i) {
     REQUIRE(owned.octree.insert({i * 7 % 16, i * 3 % 16, i % 16}, static_cast<std::uint8_t>(i % 2)) ==
             Status::kOk);
@@ -476,8 +436,8 @@ TEST_CASE("tree limits: a shared tree's workspace at any address -> the same byt
 TEST_CASE("tree limits: bytes with materials where links grow by a byte -> those of two materials") {
   int grown = 0;
   for (int points = 1; points < 120; ++points) {
-    OwnedOctree one(5);
-    OwnedOctree two(5);
+    OwnedPool one(5);
+    OwnedPool two(5);
     std::mt19937_64 random(static_cast<std::uint64_t>(points));
     for (int i = 0; i < points; ++i) {
       // At even places, so that no block of eight is full.
@@ -506,7 +466,7 @@ TEST_CASE("tree limits: bytes with materials where links grow by a byte -> those
 TEST_CASE(
     "tree limits: a block opened with exactly the room it takes -> done; with one less -> nothing done") {
   for (int level = 2; level <= 5; ++level) {
-    OwnedOctree owned(level);
+    OwnedPool owned(level);
     REQUIRE(owned.octree.insert_block({0, 0, 0}, level, 4) == Status::kOk);
     const HeapBytes compact = compact_of(owned.octree);
     const CompactTree tree = open_or_throw(compact);
@@ -547,7 +507,7 @@ TEST_CASE(
 // whichever voxel of the brick is the last.
 TEST_CASE(
     "tree limits: solid bricks of as many materials as there may be, and one more -> refused, unchanged") {
-  OwnedOctree owned(4);
+  OwnedPool owned(4);
   const HeapBytes none = compact_of(owned.octree);
   const EditRoom room{4000, 6000, 60};
   HeapBytes bytes(edited_world_bytes(4, room));
@@ -583,7 +543,7 @@ TEST_CASE(
 
 TEST_CASE("tree limits: room in any number of bytes -> as much as fits, 65,000 bricks at most, level 8 too") {
   for (const int level : {2, 5, 8}) {
-    OwnedOctree owned(level);
+    OwnedPool owned(level);
     REQUIRE(owned.octree.insert({1, 1, 1}, 4) == Status::kOk);
     const HeapBytes compact = compact_of(owned.octree);
     const CompactTree tree = open_or_throw(compact);
@@ -605,7 +565,7 @@ TEST_CASE("tree limits: room in any number of bytes -> as much as fits, 65,000 b
     CHECK(last > 50);
     CHECK(EditedWorld::room_in(tree, std::size_t{1} << 28).bricks == 65000);
   }
-  OwnedOctree large(9);
+  OwnedPool large(9);
   REQUIRE(large.octree.insert({1, 1, 1}, 4) == Status::kOk);
   const HeapBytes compact = compact_of(large.octree);
   CHECK(EditedWorld::room_in(open_or_throw(compact), std::size_t{1} << 30).nodes == 0);
@@ -625,7 +585,7 @@ TEST_CASE(
     HeapBytes bytes(size);
     CompactTree tree;
     REQUIRE(CompactTree::make(span, 8, 3, bytes.span(), &tree) == Status::kOk);
-    const OwnedMap made(bytes, most_brick_map_bytes(8));
+    const OwnedMap made(open_or_throw(bytes), most_brick_map_bytes(8));
     CHECK(made.status == (bricks <= 65280 ? Status::kOk : Status::kOutOfRange));
     const EditRoom room = EditedWorld::room_in(tree, std::size_t{1} << 26);
     CHECK(room.bricks == (bricks <= 65000 ? bricks : 0));
@@ -636,10 +596,10 @@ TEST_CASE(
 TEST_CASE(
     "tree limits: a map's bytes behind its directory -> looked at when it is validated, not when it is "
     "opened") {
-  OwnedOctree owned(2);
+  OwnedPool owned(2);
   REQUIRE(owned.octree.insert({1, 2, 3}, 4) == Status::kOk);
   const HeapBytes compact = compact_of(owned.octree);
-  OwnedMap made(compact, most_brick_map_bytes(2));
+  OwnedMap made(open_or_throw(compact), most_brick_map_bytes(2));
   REQUIRE(made.status == Status::kOk);
   // One cell: two bytes, and six to the next multiple of eight.
   for (std::size_t i = 2; i < 8; ++i) {
