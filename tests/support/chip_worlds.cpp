@@ -64,7 +64,7 @@ void fill(std::mt19937_64& random, ChipWorld world, int level, Octree* pool) {
 }
 
 template <class Fill>
-ChipScene scene_of(int level, const Fill& fill_pool) {
+ChipScene filled_scene(int level, const Fill& fill_pool) {
   std::vector<std::uint8_t> pool_bytes(Octree::octree_bytes(100000));
   Octree pool;
   REQUIRE(Octree::make(level, {pool_bytes.data(), pool_bytes.size()}, &pool) == Status::kOk);
@@ -107,11 +107,11 @@ void insert_blocks(std::mt19937_64& random, int level, int blocks, int voxels,
 }
 
 ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level) {
-  return scene_of(level, [&](Octree* pool) { fill(random, world, level, pool); });
+  return filled_scene(level, [&](Octree* pool) { fill(random, world, level, pool); });
 }
 
 ChipScene make_chip_scene(int level, const std::vector<Vec3i>& voxels) {
-  return scene_of(level, [&](Octree* pool) {
+  return filled_scene(level, [&](Octree* pool) {
     for (const Vec3i& voxel : voxels) {
       REQUIRE(pool->insert(voxel, 1) == Status::kOk);
     }
