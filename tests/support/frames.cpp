@@ -396,7 +396,7 @@ Tallies check_frames(const Trial& trial) {
     }
   }
   CHECK(tallies.wrong() == 0);
-  CHECK(hits > pixels / 40);
+  CHECK(hits > pixels / 400);
   return tallies;
 }
 
