@@ -14,7 +14,7 @@
 ///   - No function allocates or keeps anything. A handle (`thimble_scene_t`, ...) is plain bytes of a fixed
 ///     size that you put where you like, on the stack too; it needs no clean-up. All bytes 0, it holds
 ///     nothing. What it was made of (flash, a pool) stays where it is for as long as the handle is used.
-///     Copies are made by assignment, and share those bytes: of an octree, a frame or particles go on with
+///     Copies are made by assignment, and share those bytes: of an octree, a frame or particles use
 ///     one of them only.
 ///   - Reentrant: two calls may run at a time, on an interrupt or a second core, as long as neither writes
 ///     what the other uses.

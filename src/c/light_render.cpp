@@ -9,7 +9,7 @@ namespace thimble::c_face {
 namespace {
 
 #ifdef THIMBLE_C_EFFECTS
-// These decide how rays are followed, and are compiled in or not. The others are asked for at each ray.
+// These decide how rays are followed, and are compiled in or not. The others are tested at each ray.
 constexpr EffectSet kTraced = Effect::kShadows | Effect::kAmbientOcclusion | Effect::kMirror |
                               Effect::kGlass | Effect::kMedia | Effect::kWater;
 constexpr EffectSet kSet = THIMBLE_C_EFFECTS;

@@ -5,7 +5,7 @@
 //
 // which is the gradient of what is solid, blurred by (R^2 - d^2)^2: smooth in the point too, so that no
 // voxel shows. Before that, the surface is followed from column to column along the normal's largest axis;
-// where it leaves its course by kEdgeStep at once, it is taken to go on as before. So a cube stays a cube.
+// where it leaves its course by kEdgeStep at once, it is continued as before. So a cube stays a cube.
 #include "thimble/light/host/slope.h"
 
 #include "../base/bits.h"
@@ -168,7 +168,7 @@ struct Columns {
       window->put(at, above <= height);
     }
   }
-  // As high as the column would be, did the surface go on as it came towards it from the point.
+  // As high as the column would be, if the surface continued as it came towards it from the point.
   int expected(int u, int v) {
     const int step_u = u > 0 ? 1 : -1;
     const int step_v = v > 0 ? 1 : -1;

@@ -16,7 +16,7 @@ namespace thimble::lit {
   meeting->beyond = {Medium::kSolid, meeting->hit.material};
 }
 
-/// What leaving a medium, or going on in the air, comes to.
+/// The hit behind a medium that is left, or in the air.
 [[gnu::always_inline]] inline void take_exit(Frame& frame, LitRayKind kind, const MediumExit& exit,
                                              Meeting* meeting) {
   count_result(frame, kind,

@@ -183,7 +183,7 @@ struct WaterWalk {
     return true;
   }
 
-  // Whether the ray, in this column from `since` on, is at `since` at a height where it goes on in the water.
+  // Whether the ray, in this column from `since` on, is at `since` at a height where it is in the water.
   bool in_water() const {
     if (height <= 0) {
       return false;

@@ -21,7 +21,7 @@ Status check_band(const Camera& camera, int level, const Band& band, size_t* str
 Status check_width(const Camera& camera, int level, Width width);
 
 /// Draws the rows of a band that `check_band` accepts and adds to `counts` (may be null). Pixels whose rays
-/// certainly miss `bounds` are background; each other one is asked for: `pixel(ray, &hit, &color)`, whose
+/// certainly miss `bounds` are background; each other one calls `pixel(ray, &hit, &color)`, whose
 /// only error is kBadArgument.
 template <class Pixel>
 static Status draw_rows(const Camera& camera, const VoxelBox& bounds, const Band& band, size_t stride,

@@ -136,7 +136,7 @@ void ParticleWorld::wake_all() {
 
 // After a step: puts ball `id` to sleep where it may. Under gravity the caller has counted how long it has
 // kept to its place, and found it long enough. What is thrown to and fro in a hollow of a few cells may sleep
-// as well, after longer. Without gravity, only what stands perfectly still may, since everything else goes on
+// as well, after longer. Without gravity, only what stands perfectly still may, since everything else moves
 // for ever.
 void ParticleWorld::rest(uint32_t id) {
   Ball& ball = balls_[id];

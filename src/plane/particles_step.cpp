@@ -127,7 +127,7 @@ void ParticleWorld::advance_all(bool last) {
   const bool large = field_.used_bytes() > kFarFieldBytes;
   for (uint32_t id = next_awake(0); id != kNoBall;) {
     if (large && id + kLookAhead < id_limit_) {
-      // Balls lie in memory by number, but their cells anywhere: those of one soon to come are asked for now.
+      // Balls lie in memory by number, but their cells anywhere: those of one soon to come are prefetched.
       const Ball& ahead = balls_[id + kLookAhead];
       const Word* const cells = words_ + (ahead.x >> 21) * config_.height + (ahead.y >> 16);
       __builtin_prefetch(cells - ahead.diameter / 2);

@@ -294,7 +294,7 @@ class Crossings {
     return true;
   }
 
-  // The cell in which the ray goes on from t = num / den (times 256), in a world of 2^level that it is in
+  // The cell in which the ray continues from t = num / den (times 256), in a world of 2^level that it is in
   // then.
   Vec3i cell_at(int32_t num, int32_t den, int level) const {
     Vec3i cell;

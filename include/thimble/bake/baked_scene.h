@@ -94,7 +94,7 @@ class BakedScene {
 
   /// Looks at the header, the list of sections and what each must hold; does not read the tree's nodes, so
   /// its cost does not grow with the scene. A scene that opens is safe to trace, whatever its bytes say.
-  /// `bytes` may go on behind the scene.
+  /// `bytes` may be longer than the scene.
   /// Errors, which leave `*scene` as it was: kDamaged (not a baked scene, another version, a section that
   /// this version does not know and that is not optional, sections that do not lie within the bytes, overlap
   /// or are missing, a tree that does not open, a camera that no view could be made of).

@@ -107,7 +107,7 @@ class AnytimeFrame {
   uint64_t given_visits() const { return spent_ + left_; }
   uint64_t spent_visits() const { return spent_; }
   uint32_t reserve_visits() const { return reserve_; }
-  /// Rays traced, hits, and nodes that were read. `step_limited` counts rays that went on for longer than a
+  /// Rays traced, hits, and nodes that were read. `step_limited` counts rays with more steps than a
   /// sound tree lets them: the tree is damaged. Their pixels look like misses.
   const RenderCounts& counts() const { return counts_; }
 

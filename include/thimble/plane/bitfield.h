@@ -342,7 +342,7 @@ class BitField {
   /// ray.
   ///
   /// Measured, RMS degrees off: slanted walls 1.1, slanted lines of one cell 1.4 (at most 5); single discs of
-  /// diameter 2: 26, 3: 14, 4: 16, 6: 7, 8: 6, 10: 5, 12: 4.4, most of it because a hit is told to a cell
+  /// diameter 2: 26, 3: 14, 4: 16, 6: 7, 8: 6, 10: 5, 12: 4.4, most of it because a hit is known to a cell
   /// only (two discs that meet know their centres, and should use them).
   ///
   /// Cost: 30 words, and a few hundred operations on them.

@@ -1,5 +1,5 @@
 /// @file secondary_ray.h
-/// Rays that go on from a hit: shadows, mirrors, glass. Exact, and without an epsilon.
+/// Secondary rays, which start at a hit: shadows, mirrors, glass. Exact, and without an epsilon.
 ///
 /// A secondary ray starts on the face that was crossed, with that coordinate exact: on the lower plane of the
 /// block for a face that looks to smaller coordinates, on the upper one for the other. Its two other
@@ -29,7 +29,7 @@
 
 namespace thimble {
 
-/// Where a ray goes on from `hit` (a kHit of `ray`). For axis -1 the origin itself: the ray starts inside.
+/// Where a secondary ray starts at `hit` (a kHit of `ray`). For axis -1 the origin itself: the ray starts inside.
 /// Two 32-bit divisions for a voxel or a block of up to 8 voxels a side; by shifting for larger ones.
 Vec3Q8 start_on_face(const Ray& ray, const Hit& hit);
 
@@ -93,7 +93,7 @@ struct MediumExit {
 /// Crossings at the same t are taken together. Blocks that are solid through are crossed whole, so visits are
 /// nodes of the tree, below 3 * 2^level of them. Given the ray that hit the medium and that hit's point, this
 /// follows the same ray on, with nothing rounded: so a medium that bends nothing is seen through without a
-/// trace (`closest_hit_from` then goes on from the exit's point).
+/// trace (`closest_hit_from` then continues at the exit's point).
 ///
 /// `kOk`; or as `closest_hit`, with `exit` untouched.
 Status leave_medium(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,

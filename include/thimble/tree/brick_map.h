@@ -3,7 +3,7 @@
 ///
 /// The tree is cut into bricks of 4 x 4 x 4 voxels. A directory over the bricks of the occupied box names the 64 bits
 /// of each, or brick 0, which is empty. So a ray goes from voxel to voxel and never down the
-/// tree; the tree is asked only for the material of what was hit, and only in bricks that show more than one material.
+/// tree; the tree is read only for the material of a hit, and only in bricks that show more than one material.
 ///
 /// Like the tree, a map is bytes: position-independent, little-endian, baked into flash or built at start in
 /// RAM. It belongs to one tree, whose checksum it carries. src/FORMAT.md has the layout,

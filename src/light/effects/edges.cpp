@@ -10,7 +10,7 @@ namespace {
 
 // Faces that look one way are two where one lies so many pixels' sizes behind the other.
 constexpr uint32_t kPixelsBehind = 4;
-// Two faces that meet are wide enough to tell apart where each goes on for so many pixels' sizes: else steps, leaves
+// Two faces that meet are wide enough to tell apart where each extends for so many pixels' sizes: else steps, leaves
 // and gravel would be black.
 constexpr uint32_t kPixelsWide = 2;
 // Greys that are closer than this look the same.
@@ -38,7 +38,7 @@ uint32_t pixel_q8(const Camera& camera, const Vec3i& step, const Hit& hit) {
       distance_q8({static_cast<int32_t>(most), 0, 0}, hit.t_numerator, hit.t_denominator));
 }
 
-// Whether the face goes on for so many voxels, to either side along an axis.
+// Whether the face extends for so many voxels, to either side along an axis.
 bool goes_on(const CompactTree& tree, const Spot& spot, int axis, int32_t voxels) {
   Vec3i behind{spot.at.x.floor(), spot.at.y.floor(), spot.at.z.floor()};
   behind[spot.face.axis] -= spot.face.negative ? 0 : 1;

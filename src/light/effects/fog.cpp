@@ -5,7 +5,7 @@
 namespace thimble::lit {
 namespace {
 
-// A ray that leaves the world goes on through the air above it: as far as to the height of one world, at most
+// A ray that leaves the world passes the air above it: as far as to the height of one world, at most
 // so many worlds.
 constexpr uint32_t kWorldsOfAir = 4;
 

@@ -7,7 +7,7 @@
 //
 //   rest_a = P_a - (cell_a + 1) * den       P_a = o_a * d_c + s_c * d_a, the position times den = 256 * d_c
 //
-// A rest is negative while the ray is still in its cell at that plane; adding 256 * d_a goes on to the next plane of c.
+// A rest is negative while the ray is still in its cell at that plane; adding 256 * d_a steps to the next plane of c.
 // When rest_a is positive the ray crosses a plane of a before that plane of c; when it is 0 it crosses both together.
 // When both rests are positive, comparing rest_a * d_b with rest_b * d_a says which plane comes first, since rest / d
 // is the time that is left.
@@ -28,7 +28,7 @@ constexpr int32_t kMissed = -1;
 constexpr int32_t kAsk = -2;  // only closest_hit of the tree can tell
 // No answer yet.
 constexpr int32_t kGoOn = 0;
-// There is a hit, and no ink was asked for.
+// There is a hit, and the aim is not kInk.
 constexpr int32_t kShadowed = 1;
 // In place of an axis: two planes were crossed together.
 constexpr int kEdge = 3;
@@ -88,7 +88,7 @@ constexpr bool is_positive(uint32_t value) {
 constexpr unsigned kAnySigns = 8;
 
 // A ray of direction (d_a, d_b, d_c), mirrored on the axes of kMirrored. Everything is inlined into `trace_one`, where
-// the members become registers. The course says what the ray is asked for (sight.h, shadow.h and near.h have others).
+// the members become registers. The course names the ray's aim (sight.h, shadow.h and near.h have others).
 template <int kC, unsigned kMirrored, class OneCourse = Course>
 class BrickRay {
  public:
@@ -413,7 +413,7 @@ class BrickRay {
     return true;
   }
 
-  // Answers what was asked about the voxel that is hit, where that is no ink.
+  // The result for every Aim but kInk.
   [[gnu::always_inline]] int32_t answer() {
     if constexpr (OneCourse::kAim == Aim::kShadow) {
       return kShadowed;

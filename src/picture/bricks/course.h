@@ -15,7 +15,7 @@ namespace {
 
 struct Inks;
 
-// What a ray is asked for: the ink of what it hits, the hit, whether there is a hit; or, for rays from a face, the hit
+// What a ray returns: the ink of what it hits, the hit, whether there is a hit; or, for rays from a face, the hit
 // if it is near, or the hit that a mirror shows.
 enum class Aim : uint8_t { kInk, kSight, kShadow, kNear, kMirror };
 

@@ -188,13 +188,13 @@ class NearPoint {
   OneRay ray_;
 };
 
-// A point on a face that may be a metal's, from which rays go to what it mirrors, too; or any other place from which rays
-// go on.
+// A point on a face that may be a metal's, from which rays go to what it mirrors, too; or any other place where rays
+// start.
 template <bool kFar>
 class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
  public:
   // Traces a ray of any direction that leaves the face: kMissed; kAsk, where only the tree knows what is hit, since the
-  // ray enters that through an edge, or begins in it; else goes on to the point that it hits, of `voxel` (as Landing's).
+  // ray enters that through an edge, or begins in it; else moves to the point that it hits, of `voxel` (as Landing's).
   template <bool kPlaced = false>
   int32_t go_on(const Vec3i& direction, uint32_t* voxel, FacePoint* point) {
     if constexpr (!kPlaced) {

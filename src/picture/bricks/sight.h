@@ -1,4 +1,4 @@
-// Traces the camera's rays for their hits, not for inks; from these hits other rays go on towards lights. Internal to
+// Traces the camera's rays for their hits, not for inks; at these hits other rays start towards lights. Internal to
 // src/.
 //
 // BrickRay walks with signs that it looks up, so that there are three copies of it and not 24. What a ray hits through

@@ -287,7 +287,7 @@ struct CellFace {
   Pixels possible;
 };
 
-// Leaves the pixels that may have met a plane, or not have met it. Return whether there are any.
+// keep_met drops pixels that certainly have not crossed the plane, keep_not_met those that have. Whether any are left.
 [[gnu::always_inline]] inline bool keep_met(Pixels& pixels, const HalfPlane& plane) {
   const Pixels kept = words_of(plane.possible);
   uint32_t any = 0;
@@ -483,7 +483,7 @@ class TileSweep : private Paint {
   bool set_reach(const int32_t (&least)[3], const int32_t (&greatest)[3], int32_t slab) {
     const int32_t plane = slab * Q8::kOne - sweep_.origin[2];
     // Some rays may hardly advance along c: their directions have few bits. Both axes or none: a shadow that is not
-    // narrowed goes on from slab to slab.
+    // narrowed grows from slab to slab.
     if (least[2] < 1 || greatest[0] > 2 * least[2] || greatest[1] > 2 * least[2]) {
       return false;
     }
@@ -625,7 +625,7 @@ class TileSweep : private Paint {
     }
   }
 
-  // Draws faces of one voxel. A half-plane is asked for only while pixels are left to the face.
+  // Draws faces of one voxel. A half-plane is made only while pixels are left to the face.
   [[gnu::always_inline]] void draw_cell(int32_t place, const int32_t (&cell)[3], uint32_t on_a, uint32_t on_b,
                                         uint32_t on_c) {
     const int32_t a = cell[0];

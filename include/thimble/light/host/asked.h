@@ -53,7 +53,7 @@ inline constexpr int kQuestions = 6;
 /// What a ray of kOn is in that is in no material.
 inline constexpr uint16_t kInNothing = 256;
 
-/// Questions of one kind, in the order in which they were asked. All rays pass `check_ray`.
+/// Questions of one kind, in their order of submission. All rays pass `check_ray`.
 struct Asked {
   Ray* rays = nullptr;
   RayPoint* before = nullptr;  ///< kBefore and kOn alone; else null
