@@ -49,7 +49,7 @@ if [ -n "${SHOT:-}" ]; then
   (run "$@") <"$folder/keys" >"$folder/log" 2>"$folder/noise" &
   machine=$!
   exec 3>"$folder/keys"
-  # What is sent before the UART is on is lost, so that it is asked until the picture begins to come: ten minutes at most.
+  # What is sent before the UART is on is lost, so the request is repeated until the picture begins to come: ten minutes at most.
   try=0
   until build/release/thimble uart-picture "$folder/log" -o "$SHOT" 2>"$folder/why"; do
     try=$((try + 1))

@@ -104,7 +104,7 @@ constexpr int32_t band_buffers() {
 }
 #endif
 
-/// A second core (BOARD_CORES) that draws bands beside this one (apps/band_crew.h). It does nothing until it is asked to:
+/// A second core (BOARD_CORES) that draws bands beside this one (apps/band_crew.h). It idles until it is started:
 /// `start_core` paints a stack for it, in bytes that stay its own, starts it, and says whether it is there; then
 /// `begin_share` has it call `share(argument)`, and `await_share` waits until that has returned. Between the two both
 /// cores run; what both touch, `begin_flush` and `await_flush` too, is touched between `lock` and `unlock`. The

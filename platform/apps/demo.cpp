@@ -87,7 +87,7 @@ struct Demo : Placed {
   [[no_unique_address]] Crew crew;
 
   // Holding a rate of frames.
-  HeldFrame* held = nullptr;  ///< once it was asked for
+  HeldFrame* held = nullptr;  ///< once it is allocated
   bool holds = false;
   bool changed = true;  ///< something that is seen, since the last frame
   uint32_t fps = kHoldFps;
@@ -550,7 +550,7 @@ bool lights_next(const Demo& demo) {
   return kCanLight && demo.lights && !demo.builds && (!demo.changed || (demo.light.is_fast && !demo.holds));
 }
 
-/// Whether to go on.
+/// Whether to continue.
 [[gnu::noinline]] bool obey(Demo* demo) {
   const uint32_t buttons = port::buttons();
   demo->changed = demo->changed || buttons != 0;

@@ -184,7 +184,7 @@ inline Status place_camera(const Orbit& orbit, int32_t yaw, int32_t pitch, int32
   return set_camera(moved, width_px, height_px, level, camera);
 }
 
-/// The camera of frame `frame`. `tree` (CompactTree or Octree) is asked whether the eye is in something
+/// The camera of frame `frame`. `tree` (CompactTree or Octree) says whether the eye is in something
 /// solid, by the ray in the picture's middle: a ray or two. Errors: those of Camera::set, when 24 places that
 /// were tried had one; `*camera` is then the last that had none, or as it was.
 template <class Tree>

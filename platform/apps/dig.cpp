@@ -168,7 +168,7 @@ void obey_buttons(Dig* dig) {
   dig->is_touched = dig->is_touched || buttons != 0;
 }
 
-/// Whether to go on.
+/// Whether to continue.
 [[gnu::noinline]] bool obey(Dig* dig) {
   obey_buttons(dig);
   for (int i = 0; i < kKeysAFrame; ++i) {

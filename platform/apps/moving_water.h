@@ -28,7 +28,7 @@ struct MovingWater {
 };
 
 /// Whether a column is solid from the floor of the water to its surface at rest: it then holds none, and
-/// reflects. What floats is not: the water goes on below it.
+/// reflects. What floats is not: water is below it.
 inline bool is_filled(const CompactTree& tree, const WaterSurface& rest, int32_t x, int32_t y) {
   const int32_t top = (rest.highest_q8 + Q8::kOne - 1) >> Q8::kBits;
   for (int32_t z = 0; z < top; ++z) {

@@ -114,7 +114,7 @@ void steer(Game* game) {
   return begin_particles(game->bytes, game->config, &game->world) == Status::kOk;
 }
 
-/// Whether to go on.
+/// Whether to continue.
 [[gnu::noinline]] bool obey(Game* game) {
   steer(game);
   for (int i = 0; i < kKeysAFrame; ++i) {

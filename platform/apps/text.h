@@ -75,7 +75,7 @@ inline void put_hex(uint32_t number) {
   port::write({digits, 8});
 }
 
-/// Says why an application cannot go on; its exit status.
+/// Says why an application cannot run; its exit status.
 inline int refuse(const char* why) {
   put("error: ");
   put(why);

@@ -319,7 +319,7 @@ void zoom(Pool* pool, int32_t by) {
   return calm_water(tree_of(*pool), pool->rest, &pool->arena, &pool->water) == Status::kOk;
 }
 
-/// Whether to go on.
+/// Whether to continue.
 [[gnu::noinline]] bool obey(Pool* pool) {
   const port::Display& screen = display();
   const uint32_t buttons = port::buttons();

@@ -37,7 +37,7 @@ void await_flush();
 /// Starts what port::instructions() and port::microseconds() count by.
 void start_clock();
 
-/// How often a wait for a flag of the hardware looks at it before it goes on without.
+/// How often a wait for a flag of the hardware polls it before it gives up.
 inline constexpr uint32_t kPatience = 1000000;
 
 }  // namespace thimble::board

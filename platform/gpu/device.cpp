@@ -46,7 +46,7 @@ VkInstance make_instance() {
   if (made == VK_ERROR_INCOMPATIBLE_DRIVER) {
     throw DeviceError("there is no Vulkan driver");
   }
-  require(made, "be asked for its devices");
+  require(made, "list its devices");
   volkLoadInstanceOnly(instance);
   return instance;
 }

@@ -1,6 +1,6 @@
 /// @file renderer.h
 /// The core's picture by a GPU: every pixel is a thread that traces its ray exactly, in integers of 32 bits, so it is
-/// the same picture, byte for byte, and the same hits. Vulkan 1.1; no 64-bit integers and no floats are asked of the
+/// the same picture, byte for byte, and the same hits. Vulkan 1.1; it needs no 64-bit integers and no floats of the
 /// device.
 ///
 /// What it draws: depth, normal, colour and mono of both cameras, one ray a pixel, and lists of rays. Not light.

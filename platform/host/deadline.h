@@ -14,7 +14,7 @@ namespace thimble::host {
 /// Visits between two looks at the time: some 50 microseconds of a desktop.
 inline constexpr std::uint32_t kSliceVisits = 4096;
 
-/// Refines `frame`, begun for `structure`, until it is done or `is_over()` says so, which is asked before
+/// Refines `frame`, begun for `structure`, until it is done or `is_over()` says so, which is called before
 /// each slice. Errors: those of AnytimeFrame::refine.
 template <class Structure, class IsOver>
 Status refine_until(AnytimeFrame* frame, const Structure& structure, IsOver&& is_over,

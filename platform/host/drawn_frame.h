@@ -3,9 +3,9 @@
 /// bands that the application asks for.
 ///
 /// Nothing is carried over from frame to frame: with another camera, shading or format, and when the rows do
-/// not go on downwards, it is drawn anew.
+/// not follow one another downwards, it is drawn anew.
 ///
-/// A frame that is asked for from deeper on the stack than any before, the first one among them, is drawn by
+/// A frame that is requested from deeper on the stack than any before, the first one among them, is drawn by
 /// the core too, so that the application's stack is what it is when the core draws everything; of what is
 /// flushed the two are compared.
 #ifndef THIMBLE_PLATFORM_HOST_DRAWN_FRAME_H
@@ -59,7 +59,7 @@ class DrawnFrame {
   std::array<std::uint8_t, sizeof(Shading)> shading_bytes_{};
   std::vector<std::uint8_t> pixels_;
   bool is_drawn_ = false;
-  std::int32_t next_row_ = -1;  ///< below those that were asked for; -1: there is no frame
+  std::int32_t next_row_ = -1;  ///< below those that were requested; -1: there is no frame
   bool is_left_ = false;        ///< to the core too
   std::uintptr_t deepest_ = UINTPTR_MAX;
   // The rows that were left last.

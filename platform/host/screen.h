@@ -90,7 +90,7 @@ struct Event {
   bool repeated = false;
   char32_t character = 0;
   /// Pixel of the picture under the pointer, (0, 0) the one at the top left; beyond the picture the numbers
-  /// go on, also below 0.
+  /// continue, also below 0.
   std::int32_t x_px = 0;
   std::int32_t y_px = 0;
   std::uint8_t button = 0;   ///< 1 left, 2 middle, 3 right

@@ -56,14 +56,14 @@ class FramePainter {
 
 struct SimulationOptions {
   const platform::BoardFacts* board = nullptr;
-  /// What the application is told about the display (port::Display::connected).
+  /// What the application sees of the display (port::Display::connected).
   bool connected = true;
   /// The baked scene in flash; copied.
   ConstBytes scene;
   int (*application)() = nullptr;
   /// port::Facts::hold_fps.
   std::uint32_t hold_fps = 0;
-  /// May be null: the core draws everything. It lives as long as the simulation is asked anything.
+  /// May be null: the core draws everything. It lives as long as the simulation is used.
   FramePainter* painter = nullptr;
 };
 
@@ -95,7 +95,7 @@ class Simulation {
 
   /// Waits at most `timeout_ms`, and at once returns kAsks or kEnded while that is so.
   Moment wait(int timeout_ms);
-  /// Answers a running(); the application goes on. Only after kAsks.
+  /// Answers a running(); the application resumes. Only after kAsks.
   void answer(bool go_on);
 
   // While it asks or has ended:

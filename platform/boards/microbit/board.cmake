@@ -19,6 +19,6 @@ set(BOARD_CLOCK_MHZ 16)
 set(BOARD_ICOUNT_SHIFT 6)
 set(BOARD_VISITS_A_SECOND 17000)
 set(BOARD_FRAME_INSTRUCTIONS 5215265)
-# No protection unit, so a write to flash goes unnoticed. A stack that overflows is told about under QEMU; the chip itself cannot
+# No protection unit, so a write to flash goes unnoticed. A stack that overflows is reported under QEMU; the chip itself cannot
 # push the exception then, locks up and resets.
 set(BOARD_CATCHES stack ram nonsense scene)

@@ -48,7 +48,7 @@ constexpr uint32_t kInstructionFactor = 125;
 constexpr uint32_t kInstructionShift = 1 + board::kIcountShift;
 static_assert(board::kClockMhz == 16);
 
-// What was counted until `counted_ticks`; the timer turns over after 268 s, so it is to be asked once in that
+// What was counted until `counted_ticks`; the timer turns over after 268 s, so it is to be read once in that
 // time.
 uint32_t counted_ticks = 0;
 uint32_t counted_instructions = 0;

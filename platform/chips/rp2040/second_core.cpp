@@ -66,7 +66,7 @@ bool port::start_core(const Bytes& stack) {
   const auto entry = static_cast<uint32_t>(reinterpret_cast<uintptr_t>(&thimble_second_core));
   const uint32_t words[] = {0, 0, 1, word_of(thimble_image_vectors), top, entry};
   constexpr size_t kWords = sizeof words / sizeof words[0];
-  // From the beginning where it repeats another one: it was asked by somebody else before.
+  // From the beginning where it repeats another one: a protocol was begun before.
   size_t repeated = 0;
   for (int tries = 0; tries < 64 && repeated < kWords; ++tries) {
     repeated = is_repeated(words[repeated]) ? repeated + 1 : 0;

@@ -141,7 +141,7 @@ class PixelReader {
       lit::store(queue_.frame_, queue_.band_, line_of(at.row), at.x, queue_.band_.first_row + at.row, color);
     }
   }
-  /// A pixel's three bytes, from which its row's go on; null in other formats. What `store_rgb` puts there is
+  /// A pixel's three bytes, where its row's begin; null in other formats. What `store_rgb` puts there is
   /// not above kWhite.
   uint8_t* rgb_of(const PixelSlot& at) const {
     return queue_.band_.format == PixelFormat::kRgb888 ? line_of(at.row) + 3 * at.x : nullptr;

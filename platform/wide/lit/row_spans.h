@@ -1,5 +1,5 @@
 /// @file row_spans.h
-/// Which part of each row of a picture can show a box: all other rays are told without being made.
+/// Which part of each row of a picture can show a box: all others are known to miss without their rays.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_ROW_SPANS_H
 #define THIMBLE_PLATFORM_WIDE_LIT_ROW_SPANS_H
 

@@ -176,7 +176,7 @@ struct Columns {
     const unsigned is_thin = (~word & shell) != 0 ? 1U : 0U;
     return word | (down & (0U - ((word << 1 >> place) & is_thin & 1U)));
   }
-  // Follows the surface; with kCuts, a surface that leaves its course is taken to go on as before. Returns whether the
+  // Follows the surface; with kCuts, a surface that leaves its course is continued as before. Returns whether the
   // column beside the middle, in direction `out`, was cut off.
   template <bool kCuts>
   bool follow(const Vec3i& out) {

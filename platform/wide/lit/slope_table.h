@@ -4,7 +4,7 @@
 ///
 /// Only the gradient depends on the point. The voxel, its face and the body alone decide the window, made solid where
 /// it is a shell, and the window with the surface's edges cut off, for the way in which it was followed last. Each
-/// face has one place in the table, which it shares with other faces; the place holds the face that was asked about
+/// face has one place in the table, which it shares with other faces; the place holds the face that was looked up
 /// last.
 #ifndef THIMBLE_PLATFORM_WIDE_LIT_SLOPE_TABLE_H
 #define THIMBLE_PLATFORM_WIDE_LIT_SLOPE_TABLE_H
@@ -54,7 +54,7 @@ class SlopeTable {
       : frame_(&frame), places_(places), windows_(windows), count_(count) {}
 
   /// Does as lit::surface_normal. A known slope adds the visits that it once took, so that counts do not depend on what
-  /// was asked before, nor on which thread was asked.
+  /// was looked up before, nor on the thread.
   Vec3i normal(const Vec3Q8& at, const Face& face, uint16_t index_q12, uint32_t* visits);
 
  private:

@@ -333,7 +333,7 @@ void Stream::draw(PixelQueue* queue) {
         parts_.waiting[left++] = number;
       }
     }
-    // Light goes on past glass stretch by stretch: many faces at once keep the last stretches' vectors full.
+    // Light passes glass stretch by stretch: many faces at once keep the last stretches' vectors full.
     if (left == 0 || 4 * done >= 3 * shape_.slots ||
         std::max(face_count_, beyond_count_) + left > shape_.of_faces.faces) {
       light_up();

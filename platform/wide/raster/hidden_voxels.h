@@ -10,7 +10,7 @@
 /// and listed; or none is, and the three beside H are listed.)
 ///
 /// A touch is a tie: of the cross products that decide whether a ray hits a box (exact.h) one equals its bound, and
-/// none is larger. Floats always leave a tie to integers, and wherever integers find one, the core is asked for that
+/// none is larger. Floats always leave a tie to integers, and wherever integers find one, the core traces that
 /// pixel. T is tested at that pixel, since its bounds hold for closed boxes (frame.h). Where T is not tested because
 /// the pixel is covered, what covers the pixel is hit before H: in the order of the octree, what a ray hits behind H
 /// comes after T.

@@ -64,7 +64,7 @@ class WorkSharing {
     }
     return taker;
   }
-  /// Lets the taker go on. Afterwards the caller must not touch it.
+  /// Resumes the taker. Afterwards the caller must not touch it.
   static void give(Taker* taker) { taker->given.store(true, std::memory_order_release); }
 
   /// How many parts were given. Call it when all threads have returned.
