@@ -28,7 +28,7 @@ deps-format:
 deps-coverage:
 	@.ci/deps coverage
 
-# Only a fresh folder is configured without the tests: CMake removes the objects of what it is told to leave out.
+# Only a fresh folder is configured without the tests: CMake removes the objects of what is switched off.
 LEAN = $(if $(wildcard build/release/build.ninja),,-DTHIMBLE_TESTS=OFF -DTHIMBLE_GOLDEN=OFF)
 all: deps-build ## Build the library and the thimble command (build/release)
 	@$(CONFIGURE) -B build/release $(LEAN) >/dev/null

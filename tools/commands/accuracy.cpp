@@ -22,7 +22,7 @@
 namespace thimble::tools {
 namespace {
 
-// Of each operation, however few rays are asked for.
+// Of each operation, however few --rays there are.
 constexpr std::uint64_t kLeastCases = 1000;
 
 struct AccuracyCommand {

@@ -61,7 +61,7 @@ void offer_scenes(const std::string& before, Answer* answer) {
 void offer_values(CLI::Option* option, const std::string& before, const std::string& word, Answer* answer) {
   const std::string type = option->get_type_name();
   const Words words = words_offered(option);
-  // A list goes on behind its last comma.
+  // A list is completed behind its last comma.
   std::string start = before;
   if (type.find("LIST") != std::string::npos) {
     const std::size_t comma = word.find_last_of(',');

@@ -275,7 +275,7 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
                   "\"release BUTTON X,Y\" "
                   "(left, middle, right), \"wheel STEPS X,Y\" and \"end\". A tick is the time of one step, "
                   "the first is 0; "
-                  "events come before the step of their tick; while paused ticks go on without steps; # "
+                  "events come before the step of their tick; while paused ticks count without steps; # "
                   "begins a comment line");
   add_path_option(
       sub, "--record-input", "FILE", &command->input_recording_path,

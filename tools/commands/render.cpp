@@ -84,7 +84,7 @@ void check_usage(const RenderCommand& command) {
   }
 }
 
-// An explicit --shade is drawn as such, unless effects are asked for beside it.
+// An explicit --shade is drawn as such, unless --effects stands beside it.
 EffectChoice effect_choice(const RenderCommand& command) {
   constexpr EffectChoice kNone{false, Effect::kNone};
   if (command.shade_name.empty() || command.effects.named()) {
@@ -174,7 +174,7 @@ Subject subject_of(const RenderCommand& command, const SceneSource& source, Buil
                    PixelFormat format) {
   Subject subject{command, *built, format, {}, {}, {}};
   // What it is seen from must not depend on what traces it: other structures are framed by a compact tree of
-  // the same voxels, which goes again, beside the budget.
+  // the same voxels, a temporary, outside the budget.
   std::optional<BuiltScene> compact;
   if (built->structure() != StructureKind::kCompact && command.view.side != NamedView::kPaper &&
       !command.view.eye) {

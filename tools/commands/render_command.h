@@ -1,5 +1,5 @@
 /// @file render_command.h
-/// What `thimble render` was told, and the ways to draw it.
+/// The options of `thimble render`, and the ways to draw it.
 #ifndef THIMBLE_TOOLS_COMMANDS_RENDER_COMMAND_H
 #define THIMBLE_TOOLS_COMMANDS_RENDER_COMMAND_H
 

@@ -119,7 +119,7 @@ class LookStudio {
 
   Camera fine_camera() {
     if (wishes_.across != 0) {
-      (void)finer(command_.view, look_.across);  // too large a picture is told in its words
+      (void)finer(command_.view, look_.across);  // its error names too large a picture
     }
     Camera camera;
     const auto set = [&] {
@@ -241,7 +241,7 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
   end(command, stats, studio.framing().note, outputs);
 }
 
-// A film's frames, each when it is asked for.
+// A film's frames, each drawn on demand.
 class Filming {
  public:
   Filming(LookStudio& studio, std::vector<Framing> framings, bool quiet)

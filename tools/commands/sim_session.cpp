@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr Milliseconds kStatusTime{100};   // between two looks at the memory
-constexpr Milliseconds kEndingTime{2000};  // that an application may take to end when it is told to
+constexpr Milliseconds kEndingTime{2000};  // that an application may take to end after the request
 constexpr Milliseconds kWatchedTime{40};   // the same where somebody watches, who wants to be gone
 constexpr int kEventsMs = 5;               // between two looks at keys and window while it draws
 constexpr int kStatusLines = 4;
@@ -163,7 +163,7 @@ SimSession::SimSession(const SessionOptions& options)
     input_is_open_ = false;  // it is the screen that reads there
   }
   if (!watched() && options_.frames == 0 && options_.application->is_to_watch) {
-    options_.frames = 1;  // or it would go on for ever, unseen
+    options_.frames = 1;  // or it would run for ever, unseen
   }
   if (options_.recording != nullptr) {
     const platform::BoardFacts& board = *options_.board;
@@ -365,7 +365,7 @@ SessionResult SimSession::run() {
     result.use = use_;
   } else {
     result.status = port::kFaultStatus;
-    result.fault = "it did not end within two seconds of being told to";
+    result.fault = "it did not end within two seconds of the request";
   }
   // Frames that came between two questions cannot be told apart.
   result.mean_frame_seconds = frames_ == 0 || frames_ != pictures_ ? 0 : seconds_ / frames_;

@@ -27,7 +27,7 @@ struct SessionOptions {
   std::int32_t scale = 0;
   std::uint32_t frames = 0;    ///< 0: as long as it lasts
   int frames_a_second = 30;    ///< of the screen and of the recording
-  std::uint32_t hold_fps = 0;  ///< what the application is told to hold (port::Facts)
+  std::uint32_t hold_fps = 0;  ///< the rate that the application holds (port::Facts)
   host::KeyScript keys;
   OutputFile* recording = nullptr;
   host::FramePainter* painter = nullptr;  ///< what draws in the core's place; may be null

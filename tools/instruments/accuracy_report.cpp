@@ -184,7 +184,7 @@ std::string answer(const std::string& question, const AccuracyRow& row) {
          " of 255, PSNR " + decibels(row.psnr_db) + (std::isfinite(row.psnr_db) ? " dB\n" : "\n");
 }
 
-// Rendering draws a scene's light unless it is told what to shade.
+// Rendering draws a scene's light unless --shade is given.
 std::string unlit_advice(const AccuracyStudy& study) {
   return study.effects == Effect::kNone
              ? ""

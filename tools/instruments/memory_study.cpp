@@ -239,7 +239,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
     study.depths.push_back(row);
   }
 
-  // From the largest budget down: merging is nested, so each goes on where the one before ended.
+  // From the largest budget down: merging is nested, so each begins where the one before ended.
   study.budgets = budgets_of(options, study.depths);
   for (std::size_t i = study.budgets.size(); i-- > 0;) {
     BudgetRow& row = study.budgets[i];

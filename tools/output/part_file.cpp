@@ -181,7 +181,7 @@ PartFile PartFile::open(const std::string& path) {
   const std::uint64_t expected =
       kHeaderBytes + std::uint64_t{part.header_.unit_bytes()} * part.header_.count + kCrcBytes;
   if (reader.size() != expected) {
-    reader.fail((reader.size() < expected ? "is cut off: it has " : "goes on behind its end: it has ") +
+    reader.fail((reader.size() < expected ? "is cut off: it has " : "is too long: it has ") +
                 grouped(reader.size()) + " bytes of " + grouped(expected));
   }
   std::uint32_t crc = crc_from(0, head);

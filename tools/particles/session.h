@@ -28,7 +28,7 @@ struct PlayOptions {
   OutputFile* input_recording = nullptr;  ///< events, with an end
 };
 
-/// Steps where nobody watches and nobody said how many; a script that goes on longer is played to its end.
+/// Steps where nobody watches and nobody said how many; a longer script is played to its end.
 inline constexpr std::uint64_t kUnseenSteps = 2000;
 
 struct PlayResult {

@@ -25,7 +25,7 @@ namespace thimble::tools {
 /// The height at a point; NaN where there is none. Rows count from the farthest.
 using HeightAt = std::function<double(std::uint64_t column, std::uint64_t row)>;
 
-/// The landscape. `height` is asked twice for some points and not kept. Memory: 2 bytes a column of voxels.
+/// The landscape. `height` is called twice for some points, and not kept. Memory: 2 bytes a column of voxels.
 /// @throws InputError  fewer than 2 x 2 points, no height at all
 Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightAt& height);
 

@@ -56,7 +56,7 @@ class Descriptor {
     return S_ISREG(status.st_mode) && status.st_size > 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
   }
 
-  /// Reads until `count` bytes are there or the file ends: a pipe hands out less than was asked for.
+  /// Reads until `count` bytes are there or the file ends: a pipe may hand out fewer.
   std::size_t read(std::uint8_t* to, std::size_t count) const {
     std::size_t done = 0;
     while (done < count) {

@@ -16,7 +16,7 @@
 
 namespace thimble::tools {
 
-/// What a reader is told beside the bytes.
+/// What a reader needs beside the bytes.
 struct ReadOptions {
   std::string path;                    ///< of the file, for the other files that it names; may be empty
   std::optional<std::uint32_t> frame;  ///< of an animation; the first where none is asked for
@@ -59,7 +59,7 @@ std::string reader_endings();
 void check_beginning(std::string_view path, std::span<const std::uint8_t> first);
 
 /// Reads `file`, the contents of `options.path` already decompressed.
-/// @throws InputError  no reader knows the file, a frame is asked of a format that has none, or the reader's
+/// @throws InputError  no reader knows the file, `frame` of a format that has none, or the reader's
 ///   own errors
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress = {});
 /// The same, without options but for the path.

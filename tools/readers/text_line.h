@@ -28,7 +28,7 @@ class TextLine {
  public:
   TextLine(std::string_view text, std::uint32_t number) : text_(text), number_(number) {}
 
-  /// Where reading goes on.
+  /// Where reading continues.
   TextPlace place() const;
   /// The next word, empty at the end of the line or before a comment.
   Word word();

@@ -4,7 +4,7 @@
 /// What is read: all models (SIZE, XYZI), the palette (RGBA, or MagicaVoxel's default one), materials (MATT,
 /// MATL), layers (LAYR) and the scene graph (nTRN, nGRP, nSHP) with translations, rotations and mirrors,
 /// shared and nested groups, hidden nodes and hidden layers. Of an animation one frame is taken, the first
-/// where none is asked for. With a scene graph a node is as its key with the greatest `_f` up to the frame
+/// by default. With a scene graph a node is as its key with the greatest `_f` up to the frame
 /// says, and holds still until the next one; in a file without one, several models only ever are frames. What
 /// is placed stays where it is from frame to frame: the lowest corner is that of all frames together. IMAP
 /// orders the colours of the editor's palette window and nothing else, so colours do not depend on it; it is

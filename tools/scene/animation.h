@@ -34,7 +34,7 @@ class Film {
   using Frame = std::function<Image(std::size_t number)>;
 
   /// Writes what stands in front of `frames` frames. The palette of a .gif comes from a few of them all over the
-  /// film, which are asked for here already.
+  /// film, which are drawn here already.
   Film(OutputFile* file, std::string_view path, PartKind kind, std::size_t frames, const Frame& frame);
   ~Film();
   void add(const Image& image);

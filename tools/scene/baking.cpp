@@ -237,7 +237,7 @@ std::vector<std::uint8_t> coarsened_tree(const CompactTree& exact, std::uint64_t
   Coarsener pool(exact);
   std::uint64_t high = pool.octree().nodes_used();  // so many nodes are too many
   std::size_t best_bytes = 0;
-  // Whether the pool's tree fits. If so it goes back to the last that did not, else on from here.
+  // Whether the pool's tree fits. If so it goes back to the last that did not, else continues from here.
   int trials = 0;
   const auto fits = [&] {
     if (progress) {

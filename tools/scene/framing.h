@@ -63,7 +63,7 @@ struct ViewWishes {
   std::optional<Real3> target;      ///< else the middle of the scene
   std::optional<Real3> up;          ///< else `default_up` of the direction of view
   Real3 forward = kDefaultForward;  ///< the direction of view where there is no eye; any length above 0
-  /// Instead of `forward`, for `frame_shape`: the side, and by how much to go on from there.
+  /// Instead of `forward`, for `frame_shape`: the side, and the angles to turn from there.
   NamedView side = NamedView::kPaper;
   ViewAngles onward;
   double fov_degrees = 60;     ///< vertical, 1 .. 120; perspective

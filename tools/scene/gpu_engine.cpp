@@ -10,7 +10,7 @@
 namespace thimble::tools {
 namespace {
 
-// What the device cannot do is told as what an input cannot be used for.
+// Turns a fault of the device into an InputError.
 template <class Work>
 auto told(Work&& work) {
   try {

@@ -51,7 +51,7 @@ void use_large_pages(Bytes bytes) {
     return;
   }
 #ifdef MADV_HUGEPAGE
-  // Advice: a system without large pages goes on with small ones.
+  // Advice: a system without large pages uses small ones.
   (void)::madvise(bytes.data + skipped, (bytes.size - skipped) / kLargePage * kLargePage, MADV_HUGEPAGE);
 #endif
 }

@@ -114,7 +114,7 @@ struct EffectWishes {
   bool given = false;  ///< --effects
   std::optional<std::uint8_t> bounces;
 
-  /// Whether effects were asked for by name.
+  /// Whether effects are named.
   bool named() const {
     return (!choice.automatic && choice.effects != Effect::kNone) || choice.smooth == true;
   }
@@ -130,7 +130,7 @@ std::string effects_text(EffectSet effects);
 /// All names, for help and errors.
 std::string effect_names();
 
-/// The set that is drawn: what the scene calls for, or what was asked for. Asked-for shadows bring direct
+/// The set that is drawn: what the scene calls for, or what was named. Shadows that are named bring direct
 /// light along, emitter light these and emission.
 EffectSet chosen_effects(const LitDescription& lit, const UsedMaterials& used, const EffectChoice& choice);
 

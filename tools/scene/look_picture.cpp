@@ -151,7 +151,7 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
                       shares.data() + first);
     return Status::kOk;
   });
-  // Where light behind is seen, what the rays meet is nothing: only who counts asks for it all the same.
+  // Where light behind is seen these rays hit nothing: they are traced only to be counted.
   std::vector<SamplePlace> wanted;
   std::vector<std::size_t> before(static_cast<std::size_t>(tasks));  // colours of the tasks before
   for (std::size_t i = 0; i < places.size; ++i) {

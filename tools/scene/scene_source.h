@@ -20,7 +20,7 @@
 
 namespace thimble::tools {
 
-/// Streams the same voxels as often as it is asked to.
+/// Streams the same voxels on every call.
 class SceneSource {
  public:
   virtual ~SceneSource() = default;

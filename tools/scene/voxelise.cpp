@@ -42,7 +42,7 @@ std::int32_t last_block(std::int32_t high, int level) {
   return high >> (kUnitBits + level);
 }
 
-/// Voxels first..last, row by row; what a plane decides is asked once for each row, column or cell.
+/// Voxels first..last, row by row; what a plane decides is tested once for each row, column or cell.
 void emit_voxels(const TriangleBoxTest& test, const UnitPoint& first, const UnitPoint& last,
                  std::uint8_t material, const VoxelSink& sink) {
   constexpr std::int32_t kHalf = kUnitsPerVoxel / 2;

@@ -124,7 +124,7 @@ class Cell {
   }
 
  private:
-  /// Which of the voxels `missing` of a cube the triangle meets. A few are asked one by one.
+  /// Which of the voxels `missing` of a cube the triangle meets. A few are tested one by one.
   static std::uint64_t missing_met(const SteppingTest& test, const NearBlock& cube, std::uint64_t missing) {
     constexpr std::uint64_t kSome = 8;
     std::uint64_t left = missing;

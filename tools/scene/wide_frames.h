@@ -30,7 +30,7 @@ class WideFrames final : public host::FramePainter {
   bool draw(const CompactTree& tree, const Camera& camera, const Shading& shading, PixelFormat format,
             Bytes pixels) override;
 
-  /// Frames that it drew, and frames that it was asked for and left to the core.
+  /// Frames that it drew, and frames that it left to the core.
   std::uint32_t drawn() const { return drawn_; }
   std::uint32_t left() const { return left_; }
 

@@ -1,5 +1,5 @@
 /// @file controls.h
-/// From keys and mouse to wishes: how the camera is to move, and what else is asked for. It knows neither
+/// From keys and mouse to wishes: how the camera is to move, and what else is wished. It knows neither
 /// screen nor scene, so that tests can play every gesture.
 ///
 /// `s` has two meanings, since W, A, S and D fly: tapped it saves, held (or beside another key that flies) it

@@ -121,7 +121,7 @@ class FinishedLook {
   LitStreams* streams_for(EffectSet effects, const LitScene& scene, int threads) const;
   mutable std::mutex streams_mutex_;  // of the next four
   mutable HostMemory streams_memory_;
-  mutable std::size_t streams_bytes_ = 0;  // that were asked for
+  mutable std::size_t streams_bytes_ = 0;  // requested
   mutable EffectSet streams_effects_ = Effect::kNone;
   mutable std::unique_ptr<LitStreams> streams_;
 };
@@ -147,7 +147,7 @@ class FinishedPicture {
   }
 
   /// Draws into `rgb`, which gets the size that it takes: `step` 0 the finished picture, else every `step`-th
-  /// pixel with one sample and all of the light. `goes_on` is told now and then how many rows from the top
+  /// pixel with one sample and all of the light. `goes_on` gets now and then how many rows from the top
   /// are there, and ends it by false; then so does this. Throws InputError where the scene's lights are beyond
   /// the core's limits.
   using GoesOn = std::function<bool(std::int32_t rows)>;

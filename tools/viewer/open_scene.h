@@ -1,5 +1,5 @@
 /// @file open_scene.h
-/// A scene as the viewer has it, and the thread that reads one while the screen goes on.
+/// A scene as the viewer has it, and the thread that reads one while the screen stays alive.
 #ifndef THIMBLE_TOOLS_VIEWER_OPEN_SCENE_H
 #define THIMBLE_TOOLS_VIEWER_OPEN_SCENE_H
 

@@ -261,7 +261,7 @@ void Viewer::adopt(std::shared_ptr<const OpenScene> scene, const ViewWishes& vie
   changed_ = true;
 }
 
-// A refinement that is to be saved goes on; others end when their threads notice.
+// A refinement that is to be saved continues; others end when their threads notice.
 void Viewer::stop_refining() {
   is_refined_ = false;
   if (refinement_ == nullptr) {

@@ -24,7 +24,7 @@ struct ViewerOptions {
   host::ScreenKind display = host::ScreenKind::kAuto;
 };
 
-/// Opens a screen and stays until the user ends it. What `s` saved is told on standard output, a command a
+/// Opens a screen and stays until the user ends it. What `s` saved is printed on standard output, a command a
 /// line. Ends the process itself where its threads are still in the middle of something slow. Throws
 /// InputError for a scene that cannot be read at first, OutputError where there is no screen.
 void run_viewer(const ViewerOptions& options);

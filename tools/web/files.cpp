@@ -22,7 +22,7 @@ std::map<std::string, std::span<const std::uint8_t>>& files() {
   return all;
 }
 
-std::string own_file;  // the first that was asked for
+std::string own_file;  // the first that is loaded
 std::string model;     // the last one beside it
 
 }  // namespace

@@ -16,7 +16,7 @@
 
 // ---- exceptions
 //
-// Debian's C++ library for WebAssembly knows none, and clang is told to leave out what would catch one
+// Debian's C++ library for WebAssembly knows none, and clang leaves out what would catch one
 // (-fignore-exceptions). So whatever is thrown ends the instance: its sentence goes to the page.
 
 extern "C" {
