@@ -199,7 +199,7 @@ TEST_CASE("versions: a brick map of another version -> drawn from the tree, the 
   CHECK(frame_crc32(folder, folder.write("map.oct", text), {"--shade", "color"}) == "d201e40f");
 }
 
-TEST_CASE("versions: trees and brick maps by themselves -> another version is told from other bytes") {
+TEST_CASE("versions: trees and brick maps by themselves -> another version and other bytes are two errors") {
   const std::string good = read_text(kept("version1-plain.oct"));
   BakedScene scene;
   REQUIRE(BakedScene::open(bytes_of(good), &scene) == Status::kOk);

@@ -15,7 +15,7 @@ fail() {
   say "FAILED: $1"
   failed=1
 }
-# With light that is slow the demonstration stands still, so that the picture does not depend on when it is asked for.
+# With light that is slow the demonstration stands still, so that the picture does not depend on when it is requested.
 EFFECTS=depth-cue sh platform/build.sh $board demo demo >"$work/build.log" 2>&1 || {
   tail -n 5 "$work/build.log" >&2
   exit 1

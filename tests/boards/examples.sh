@@ -11,7 +11,7 @@ thimble=${THIMBLE:-build/release/thimble}
 library=${LIBTHIMBLE:-build/release/libthimble.a}
 core='-std=c++20 -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections -fdata-sections
   -Iinclude -Wall -Wextra -Wpedantic -Werror'
-# Of C programs more is asked: the header's own words go through their compiler.
+# C programs have more flags: the header's own words go through their compiler.
 c99='-std=c99 -ffreestanding -ffunction-sections -fdata-sections -Iinclude -Wall -Wextra -Wpedantic -Wconversion
   -Wsign-conversion -Wshadow -Wundef -Wcast-align -Wstrict-prototypes -Wmissing-prototypes -Werror'
 fail() {

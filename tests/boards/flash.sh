@@ -84,5 +84,5 @@ new_drive
 flash
 { [ $status = 0 ] && [ "$(ls "$work/drive")" = kernel.img ]; } || fail "an empty drive: exit status $status, $(ls "$work/drive")"
 board=microbit
-[ $failed = 1 ] || printf '%-18s %-10s %s\n' raspi0 flash "FAIL.TXT of a drive is told; a kernel.img that was there is kept"
+[ $failed = 1 ] || printf '%-18s %-10s %s\n' raspi0 flash "FAIL.TXT of a drive is an error; a kernel.img that was there is kept"
 exit $failed

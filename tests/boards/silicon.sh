@@ -46,13 +46,13 @@ runs() {
 }
 runs particles "" '^stack: '
 ! grep -aq '^fault: ' "$work/silicon.log" || fail "particles ends with a fault: $(grep -a '^fault: ' "$work/silicon.log" | head -n 1)"
-# d: the scene that is not there. A fault is told once.
+# d: the scene that is not there. A fault is printed once.
 for fault in ram scene; do
   case " $(fact CATCHES) " in *" $fault "*) ;; *) continue ;; esac
   case $fault in ram) key=r ;; scene) key=d ;; esac
   runs faults $key '^fault: '
   told=$(grep -ac '^fault: ' "$work/silicon.log" || true)
-  [ "$told" = 1 ] || fail "$fault: $told faults are told"
+  [ "$told" = 1 ] || fail "$fault: $told faults are printed"
 done
 
 # The image for emulators is that one but for a word.

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The completions in the shells that are there: bash completes as at a terminal, fish is asked what it would offer, zsh
+# The completions in the shells that are there: bash completes as at a terminal, fish lists what it would offer, zsh
 # reads its script.     completions.sh ROOT THIMBLE WORK_DIR
 set -eu
 root=$1

@@ -1,6 +1,6 @@
 #!/bin/sh
 # The model of the Pico's display refuses what a real one could not take, and notices who writes into a band that is being
-# sent: as it is, and with that look taken out, which must be told.      panel_model.sh ROOT WORK
+# sent: as it is, and with that look taken out, which must be seen.      panel_model.sh ROOT WORK
 set -eu
 cd "$1"
 command -v node >/dev/null 2>&1 || {

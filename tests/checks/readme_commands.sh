@@ -26,7 +26,7 @@ cd "$work/tree"
 export PATH="$work/tree/build/release:$PATH"
 unset DISPLAY WAYLAND_DISPLAY
 
-# A line each; a line that ends in \ goes on in the next.
+# A line each; a line that ends in \ continues in the next.
 commands=$work/commands
 awk '
   /^```/ { inside = !inside && /^```(sh|bash|console)?[ \t]*$/; next }

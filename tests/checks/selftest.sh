@@ -311,6 +311,20 @@ add include/thimble/thimble_c.h 'int32_t thimble_sum_make(int count);'
 passes words
 add include/thimble/thimble_c.h 'int32_t thimble_sum_begin(int count);'
 catches words 'in C a handle is filled by'
+# Phrases, taken apart here since no file may hold one: in a comment, in a page, in a message.
+for fault in 'is ~told the rest' 'was ~asked for' 'ray goes ~on' 'rays that go ~on' 'What a box ha~s of itself' 'Asked ~were two'; do
+  text=$(echo "$fault" | tr -d '~')
+  for file in src/base/sum.cpp tools/tool.cpp; do
+    add $file "// It $text"
+    catches words "field's noun"
+  done
+  add src/base/README.md "$text"
+  catches words "field's noun"
+  add src/base/LOG.md "$text"
+  add src/base/sum.cpp '// Two are told apart, which was not asked.'
+  passes words
+  fresh
+done
 for fault in 'return int64_t{a} * b;' 'return b * static_cast<uint64_t>(f(a));' 'return x * affine.step_x[axis];'; do
   add src/base/sum.cpp "// $fault"
   mkdir -p "$tree/src/trace" "$tree/src/plane"

@@ -1,9 +1,11 @@
 #!/bin/sh
-# Words of the core, outside comments. words.sh ROOT
+# Words of the core, outside comments; and phrases that stand nowhere. words.sh ROOT
 #   It uses no floating point, no heap, no exceptions, no virtual functions and no C++ library: none of their words
 #   stands in include/ or src/.
 #   One rule for verbs: what is static and returns a Status is called open (it looks at bytes) or make (it builds in
 #   memory that is given); so end, in C, the functions that fill a handle from nothing.
+#   Phrases that hide who does what stand in no page, comment or message. Pages that log what was tried (LOG.md) are free,
+#   and so is what a reader tells apart.
 #   On the tracing path (trace, picture) a product of 64 bits has a name, of src/base/wide_arithmetic.h: no cast to 64
 #   bits stands beside a `*`, nor does a camera's step, which has 64 bits.
 set -eu
@@ -32,4 +34,8 @@ step='(affine|course)\.step_[xy](\[[a-z]+\]|\.[xyz])'
 complain "a product of 64 bits has a name of src/base/wide_arithmetic.h" \
   "$(echo "$code" | grep -E '^(src|include/thimble)/(trace|picture)/' |
     grep -E "($wide|$step) *\*|\* *($wide|$step)" || true)"
+hiding='(is|are|was|were|be|been|being) (told|asked)|(goes|go|went|going) on|What .* (has|have) of|[Oo]nly who asks|Asked (was|were)'
+complain "write the field's noun, a subject and a verb (CONTRIBUTING, Names and English)" \
+  "$(find . \( -path ./build -o -path ./out -o -path ./.git -o -name node_modules \) -prune -o -type f ! -name LOG.md \
+    -exec grep -nIEwH "$hiding" {} + | sed 's/told apart//g' | grep -Ew "$hiding" || true)"
 exit $failed

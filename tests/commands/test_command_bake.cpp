@@ -164,7 +164,7 @@ TEST_CASE(
     check_done({"bake", oct, "-o", folder.path("again.oct"), "--quiet"});
     CHECK(render(folder, folder.path("again.oct"), small) == own);
   }
-  // What was asked for is what is drawn; so is what suits a display.
+  // What is named is what is drawn; so is what suits a display.
   const auto looks = [&](const Words& options) {
     check_done(Words{"bake", scenes[0], "-o", oct, "--quiet"} + options);
     return open_text(read_text(oct)).section(SectionKind::kLook).size;
@@ -291,7 +291,7 @@ TEST_CASE(
     check_done({"info", oct, "--structure", structure, "--stats", folder.path("b.json")});
     CHECK(json_of(folder.path("b.json"))["solid_added"] == added);
   }
-  // In less memory than its tree takes, --coarsen goes on merging.
+  // In less memory than its tree takes, --coarsen merges more.
   const auto bytes = json_of(folder.path("b.json"))["tree_bytes"];
   check_done({"info", oct, "--memory", "20000", "--coarsen", "--stats", folder.path("b.json")});
   CHECK(json_of(folder.path("b.json"))["solid_added"] == added);

@@ -219,7 +219,7 @@ TEST_CASE("join: every truncation and every flipped bit of a part -> refused, th
     CAPTURE(bit);
     CHECK(fault_of(damaged, flipped).starts_with(damaged + ": is "));
   }
-  CHECK(fault_of(damaged, bytes + "x").find("goes on") != std::string::npos);
+  CHECK(fault_of(damaged, bytes + "x").find("too long") != std::string::npos);
   // Headers that no writer makes, with checksums that fit.
   const std::vector<void (*)(PartHeader*)> wrongs{
       [](PartHeader* h) { h->count = 0; },
@@ -250,7 +250,7 @@ TEST_CASE("join: every truncation and every flipped bit of a part -> refused, th
       part.end();
       file.commit();
     }
-    // The head that was asked for, and the body of a sound part.
+    // The head of the command's options, and the body of a sound part.
     CHECK(fault_of(damaged, read_text(folder.path("wrong.part")).substr(0, 48) + whole.substr(48))
               .starts_with(damaged + ": is damaged"));
   }

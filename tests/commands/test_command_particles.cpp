@@ -260,7 +260,7 @@ TEST_CASE(
   CHECK(read_text(folder.path("one.txt")).find("\n314: end\n") != std::string::npos);
 }
 
-TEST_CASE("particles: pause, single step, reset -> time stands, goes on by one, begins again") {
+TEST_CASE("particles: pause, single step, reset -> time stands, advances by one, begins again") {
   const TemporaryFolder folder;
   const Words world{"--size", "200x150", "--count", "60"};
   const auto with = [&](const std::string& script, Words more) {
@@ -342,7 +342,8 @@ TEST_CASE("particles: pictures and a recording -> a pixel a cell, a frame for so
   CHECK(out.out == ppm);
 }
 
-TEST_CASE("particles: --bodies -> places, speeds, areas and colours of the file; what cannot be is told") {
+TEST_CASE(
+    "particles: --bodies -> places, speeds, areas and colours of the file; what cannot be is an error") {
   const TemporaryFolder folder;
   const std::string bodies =
       folder.write("bodies.txt",

@@ -193,7 +193,7 @@ TEST_CASE("view: dragged, moved, nearer, named views, resized -> what s saves is
   REQUIRE(viewing.prints("-o spheres-depth-5-3.png"));
   check_same_picture(folder, line_with(viewing.out(), "-o spheres-depth-5-3.png"));
 
-  REQUIRE(display.xdotool("key 5 key s"));  // from above: up has to be told
+  REQUIRE(display.xdotool("key 5 key s"));  // from above: up has to be named
   REQUIRE(viewing.prints("-o spheres-depth-5-4.png"));
   const std::string above = line_with(viewing.out(), "-o spheres-depth-5-4.png");
   CHECK(above.find("--up") != std::string::npos);

@@ -187,7 +187,7 @@ TEST_CASE("edges: a face that lies behind another one -> an edge from four pixel
     REQUIRE(world.camera.set(view, world.tree.level()) == Status::kOk);
     LitCounts counts;
     world.draw(kLit | Effect::kEdges, &counts);
-    // A row has one edge, seen to the right: of all other pixels the one below is asked about, too.
+    // A row has one edge, seen to the right: all other pixels look at the one below, too.
     CHECK(counts.rays[0] == (behind >= 2 ? 3U * 32 * 24 - 24 : 3U * 32 * 24));
     return draw_both(world).dark;
   };
@@ -242,7 +242,7 @@ TEST_CASE("edges: greys a tenth of white apart -> none, nearer ones -> an edge; 
 }
 
 TEST_CASE(
-    "edges: a face that goes on to one side alone -> an edge; a pixel of no size -> none; glass -> none") {
+    "edges: a face that extends to one side alone -> an edge; a pixel of no size -> none; glass -> none") {
   // A corner in the middle of a face 3 voxels wide, whose other side is empty.
   LitWorld narrow;
   narrow.box({8, 8, 0}, {11, 24, 24}, 1);

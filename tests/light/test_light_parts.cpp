@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kWaterRay = static_cast<int>(LitRayKind::kWaterRay);
 
-// A world of which little is asked, and its frame.
+// A small world, and its frame.
 struct Parts : LitWorld {
   Parts() {
     box({0, 0, 0}, {32, 32, 1}, 1);

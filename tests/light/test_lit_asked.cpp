@@ -1,4 +1,4 @@
-// Lit pictures whose rays somebody else traces: the core asks, and goes on from what it is told. Every byte is that of the
+// Lit pictures whose rays somebody else traces: the core defers its queries. Every byte is that of the
 // picture for which it traced its rays itself.
 #include <doctest/doctest.h>
 
@@ -26,7 +26,7 @@ struct OneAsked {
     asked.once = &frame;
   }
   void begin(std::uint32_t known) { asked.begin(&answer, 0, known, &ray, &light); }
-  // Answers as the core does; returns the kind that was asked.
+  // Answers as the core does; returns the query's kind.
   lit::Question trace() {
     int kind = 0;
     while (kind + 1 < lit::kQuestions && questions[kind].count == 0) {
@@ -145,7 +145,7 @@ TEST_CASE("lit asked: a ray through glass before its answer -> the frame is open
   CHECK(count == 2);
 }
 
-TEST_CASE("lit asked: a slope that is told -> its visits are those of the ray that met it") {
+TEST_CASE("lit asked: a slope from outside -> its visits are those of the ray that met it") {
   const Panes world(false);
   OneAsked one(world, Effect::kSmoothNormals);
   one.begin(0);

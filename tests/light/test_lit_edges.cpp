@@ -427,7 +427,7 @@ TEST_CASE("lit edges: a floor under dark water -> each lamp is dimmed by its own
 // eta^2 (a^2 + b^2) is below 2^24 (a^2 + b^2 + c^2) by so little that a quarter of a unit is left along the
 // axis.
 TEST_CASE(
-    "lit edges: light a hair short of total reflection -> it goes on along the face, and still through it") {
+    "lit edges: light a hair short of total reflection -> it leaves along the face, and still through it") {
   struct Row {
     std::uint32_t eta;
     Vec3i unit;

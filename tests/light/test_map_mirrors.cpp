@@ -137,7 +137,7 @@ TEST_CASE("mirrors by the map: more suns than go through the map -> the tree's p
   }
 }
 
-TEST_CASE("mirrors by the map: all light mirrored -> nothing is asked of the metal's own") {
+TEST_CASE("mirrors by the map: all light mirrored -> the metal's own light is skipped") {
   MirrorWorld world;
   world.surfaces[kMetal].mirror = 255;
   world.box({0, 0, 0}, {32, 32, 2}, kMetal);
@@ -165,7 +165,7 @@ TEST_CASE("mirrors by the map: no surface, no bounce, no share -> none, and the 
   CHECK(compare(world).rays[kMirrorRay] == 0);
 }
 
-// The middle pixel's ray meets a mirror in the middle of a face, or on a half or a quarter of it, and goes on along a
+// The middle pixel's ray meets a mirror in the middle of a face, or on a half or a quarter of it, and leaves along a
 // lattice direction: through edges and corners, past voxels that touch its way or stand in it.
 TEST_CASE("mirrors by the map: reflected rays through edges and corners -> the tree's picture") {
   std::mt19937_64 random(20261127);
@@ -237,7 +237,7 @@ TEST_CASE("mirrors by the map: reflected rays through edges and corners -> the t
   CHECK(passed > 500);
 }
 
-// A ray that goes on towards the wall from within 1/256 voxel of it begins in it; its fastest axis runs across the crease
+// A ray that leaves towards the wall from within 1/256 voxel of it begins in it; its fastest axis runs across the crease
 // or along it.
 TEST_CASE("mirrors by the map: the crease of a mirror and a wall, closely seen -> the tree's picture") {
   int in_crease = 0;

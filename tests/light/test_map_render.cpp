@@ -224,7 +224,7 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
   std::uint64_t by_lamps = 0;
   std::uint64_t occluded = 0;
   std::uint64_t mirrored = 0;
-  // Few pictures may be all of one kind: it goes on until each kind had its share.
+  // Few pictures may be all of one kind: it draws until each kind had its share.
   const auto is_enough = [&] {
     return pixels >= wanted_pixels && fast > wanted_pixels / 12 && by_lamps > wanted_pixels / 20 &&
            occluded > wanted_pixels / 20 && mirrored > wanted_pixels / 40 && shadows > wanted_pixels / 20 &&

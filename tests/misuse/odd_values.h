@@ -6,7 +6,7 @@
 /// of a
 /// call that is refused.
 ///
-/// Deterministic: the seed of a test is in it. A run takes seconds; THIMBLE_MISUSE_SECONDS=3600 goes on
+/// Deterministic: the seed of a test is in it. A run takes seconds; THIMBLE_MISUSE_SECONDS=3600 runs
 /// with other
 /// seeds for that long in each test.
 #ifndef THIMBLE_TESTS_MISUSE_ODD_VALUES_H
@@ -110,7 +110,7 @@ class ExactBytes {
   std::size_t size_ = 0;
 };
 
-/// A size at, about or below what is needed, never above a mebibyte: what is asked for may be terabytes.
+/// A size at, about or below what is needed, never above a mebibyte: a need may be terabytes.
 inline std::size_t odd_size(OddValues& odd, std::size_t needed) {
   constexpr std::size_t kMost = std::size_t{1} << 20;
   const std::size_t beside = needed + static_cast<std::size_t>(odd.between(0, 4)) - 2;

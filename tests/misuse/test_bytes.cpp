@@ -99,7 +99,7 @@ TEST_CASE(
   });
 }
 
-TEST_CASE("bytes: a pool at any address -> as many nodes as its bytes were asked for") {
+TEST_CASE("bytes: a pool at any address -> as many nodes as its bytes were meant for") {
   misuse(62, 400, [](OddValues& odd) {
     const auto nodes = static_cast<std::size_t>(odd.between(0, 1000));
     const auto off = static_cast<std::size_t>(odd.between(0, 3));

@@ -19,7 +19,7 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-// What every view of nodes may be asked, whatever its bytes hold.
+// Calls everything that views of nodes have, whatever its bytes hold.
 template <class Tree>
 void ask(const Tree& tree) {
   (void)tree.level();
@@ -61,7 +61,7 @@ void ask_nodes(OddValues& odd, const SharedTree& tree) {
   }
 }
 
-// What a map may be asked, whatever its bytes hold.
+// Calls everything that a map has, whatever its bytes hold.
 void ask_map(OddValues& odd, const BrickMap& map, const CompactTree& tree) {
   (void)map.belongs_to(tree);
   (void)map.box();

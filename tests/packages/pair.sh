@@ -35,7 +35,7 @@ for compiler in arm-linux-gnueabihf-g++ i686-linux-gnu-g++ 'clang++ --target=arm
   }
   logged $compiler -std=c++17 -ffreestanding -fsyntax-only $warnings -I"$WORK" "$WORK/thimble/thimble.cpp"
 done
-# An Uno's owner is told what is the matter before anything else.
+# An Uno's owner reads what is the matter before anything else.
 if command -v clang++ >/dev/null 2>&1; then
   for header in thimble.h thimble_c.h; do
     echo "#include \"thimble/$header\"" | clang++ --target=avr -mmcu=atmega328p -std=c++17 -ffreestanding -fsyntax-only \

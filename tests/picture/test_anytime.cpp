@@ -291,7 +291,7 @@ TEST_CASE("anytime: every golden frame in every structure, in one call and in tw
 TEST_CASE(
     "anytime: every golden frame, work doubled -> the measured error falls, never grows, and ends at 0") {
   int steps = 0;
-  int falls = 0;  // strict ones that were asked for
+  int falls = 0;  // strict ones that are required
   for_golden(golden::Structure::kCompact, [&](const golden::Frame&, const auto& drawn) {
     Drawing whole(drawn);
     whole.refine(UINT32_MAX);
@@ -489,7 +489,7 @@ TEST_CASE("anytime: what can be seen -> the range of greys") {
   CHECK(range(PixelFormat::kGray8) == 255);
   shading.background = {100, 100, 100};
   CHECK(range(PixelFormat::kGray8) == 215);
-  // One material on an equal background under full light cannot be told from it.
+  // One material on an equal background under full light looks like it.
   const Rgb8 palette[] = {{100, 100, 100}, {100, 100, 100}};
   shading.mode = ShadeMode::kColor;
   shading.palette = Span<const Rgb8>(palette);

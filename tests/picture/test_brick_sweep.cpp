@@ -66,7 +66,7 @@ Vec3Q8 eye_at(int x, int y, int z) {
 }
 
 // Narrowed to the pixels that are left, a tile's slope on one axis may come to 2, where that of all of them did not.
-TEST_CASE("brick sweep: a tile that cannot be narrowed along its second axis -> goes on as it was") {
+TEST_CASE("brick sweep: a tile that cannot be narrowed along its second axis -> stays as it was") {
   const ChipScene scene = make_chip_scene(3, {{5, 6, 3}, {6, 0, 4}});
   const Vec3Q8 eye{Q8::from_raw(2304), Q8::from_raw(1017), Q8::from_raw(1519)};
   Camera camera;

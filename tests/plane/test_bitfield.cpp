@@ -284,7 +284,7 @@ TEST_CASE("init: sides beyond the limits and odd addresses -> refused") {
   CHECK(field.width() == 0);
 }
 
-TEST_CASE("a field without cells: everything is asked and done -> nothing is there, nothing breaks") {
+TEST_CASE("a field without cells: everything is called -> nothing is there, nothing breaks") {
   for (const auto& [width, height] : {std::pair{0, 0}, {0, 5}, {5, 0}}) {
     BitField field;
     REQUIRE(BitField::make(width, height, {}, &field) == Status::kOk);

@@ -58,7 +58,7 @@ TEST_CASE("particles: spawn into a full place -> a status, and nothing has chang
   run(cells, 20);
 }
 
-TEST_CASE("particles: held for long under gravity, let go without -> goes on for ever") {
+TEST_CASE("particles: held for long under gravity, let go without -> moves for ever") {
   ParticleConfig config = box(400, 60, 1);
   config.restitution_q16 = 65536;
   config.gravity_q16 = {0, 32768};
@@ -247,7 +247,7 @@ TEST_CASE("particles: spawn, draw and erase with the pointer -> balls and walls 
   CHECK(shadow.world.awake() == 0);
 }
 
-TEST_CASE("particles: a wall drawn over balls -> leaves out their cells, and they go on") {
+TEST_CASE("particles: a wall drawn over balls -> leaves out their cells, and they move") {
   ShadowedWorld shadow(box(100, 60, 20));
   shadow.fill(20, q16(2));
   shadow.draw_box({{0, 0}, {100, 60}});

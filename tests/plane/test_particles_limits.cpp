@@ -202,7 +202,7 @@ TEST_CASE(
   }
 }
 
-// Above half a cell a step a step, what slides goes on at half a cell at most; at it, only friction slows it.
+// Above half a cell a step a step, what slides moves at half a cell at most; at it, only friction slows it.
 TEST_CASE("particles limits: what slides under gravity about half a cell a step -> slowed, or held back") {
   for (const std::int32_t pull : {20000, 32767, 32768, 32769, 40000}) {
     for (const std::int32_t sign : {1, -1}) {

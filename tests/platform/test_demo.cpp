@@ -497,7 +497,7 @@ TEST_CASE(
   CHECK(run.out.find("building in a pool of ") != std::string::npos);
   const std::size_t full = run.out.find("pool full: voxels ");
   REQUIRE(full != std::string::npos);
-  // It went on adding solid afterwards.
+  // It added solid afterwards.
   unsigned voxels_full = 0;
   REQUIRE(std::sscanf(run.out.c_str() + full, "pool full: voxels %u", &voxels_full) == 1);
   unsigned frame = 0;
@@ -632,7 +632,7 @@ TEST_CASE(
   CHECK(held.last.bytes == exact.last.bytes);
 }
 
-TEST_CASE("demo: a board that holds no rate, or has no room for a frame -> it says so and goes on") {
+TEST_CASE("demo: a board that holds no rate, or has no room for a frame -> it says so and runs") {
   const ConstBytes scene = bytes_of(demo_scene().bytes);
   const Run none = run_demo(*platform::find_board("stm32vldiscovery"), scene, 2, {{0, "h"}});
   CHECK(none.status == 0);

@@ -136,7 +136,7 @@ TEST_CASE("dig: keys and buttons -> each press one bite, down and select a ball,
   CHECK(run_dig(flagship(), 5, {{{1, "q"}}, {}}).status == 0);
 }
 
-TEST_CASE("dig: without room -> it says so and goes on; boards that cannot hold the scene say why") {
+TEST_CASE("dig: without room -> it says so and runs; boards that cannot hold the scene say why") {
   const std::string many = "uuuuuuuduuuuuuud";
   Hand hand;
   for (std::uint32_t frame = 1; frame < 60; ++frame) {

@@ -248,7 +248,7 @@ TEST_CASE("window: the simulator in one -> its picture is the one without a wind
   const auto shown = sim({"--fps", "1000", "--theme", "lcd", "--check", shot});
   CAPTURE(shown.describe());
   CHECK(shown.status == 0);
-  // Escape ends a run that would go on for an hour.
+  // Escape ends a run that would last an hour.
   const int running = std::system((std::string(THIMBLE_COMMAND_PATH) +
                                    " sim spheres,depth=4 --quiet --frames 100000 >/dev/null & sim=$!; "
                                    "xdotool search --sync --name 'thimble sim' >/dev/null; "

@@ -164,7 +164,7 @@ void edits(Check& check, int index) {
   THIMBLE_EQUAL(world.clear({0, -1, 0}), Status::kOutOfRange);
 }
 
-// --- Tables as bytes: what is written is read back, and any byte that changes is told.
+// --- Tables as bytes: what is written is read back, and any byte that changes is seen.
 
 // Every byte of `bytes` in turn, changed: how many of the changes `fault` tells.
 template <class Fault>
@@ -320,10 +320,10 @@ constexpr Case kCases[] = {
     {"voxels put and dug anywhere -> the world built anew", kCommonArenaBytes, edits, 0},
     {"voxels put together -> blocks become solid, as built anew", kCommonArenaBytes, edits, 1},
     {"a solid block dug out and filled -> as built anew", kCommonArenaBytes, edits, 2},
-    {"a map of bricks -> the same bytes; a byte changed is told", kMapArena, brick_map},
-    {"a tree whose equal parts are stored once -> the same bytes and materials; a byte changed is told",
+    {"a map of bricks -> the same bytes; a byte changed is seen", kMapArena, brick_map},
+    {"a tree whose equal parts are stored once -> the same bytes and materials; a byte changed is seen",
      kCommonArenaBytes, shared_tree},
-    {"what light does, as bytes -> read back; a byte changed is told or allowed everywhere", kLightingArena,
+    {"what light does, as bytes -> read back; a byte changed is seen or allowed everywhere", kLightingArena,
      lighting},
 };
 

@@ -115,7 +115,7 @@ Ray core_ray(const reference::Ray& from) {
   return ray;
 }
 
-// What goes on from a hit: a start on its face, a mirrored ray, the same ray behind it, light.
+// What starts at a hit: a start on its face, a mirrored ray, the same ray behind it, light.
 void go_on(const MeasuredWorld& world, const Ray& ray, const Hit& hit) {
   Ray next = ray;
   next.origin = start_on_face(ray, hit);

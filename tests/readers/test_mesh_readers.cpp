@@ -166,7 +166,7 @@ TEST_CASE("obj: every truncated length -> read or refused, never more than the w
   }
 }
 
-TEST_CASE("obj: progress is told, and what it throws arrives") {
+TEST_CASE("obj: progress is reported, and what it throws arrives") {
   const std::string text = repeated(kObjSquare, 20000) + "f 1 2 3\n";
   int calls = 0;
   read_obj(SharedBytes::own(text), [&](double) { ++calls; });

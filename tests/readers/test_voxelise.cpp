@@ -551,7 +551,7 @@ TEST_CASE("voxelise: repeated triangles -> voxelised once, the last material as 
   }
 }
 
-TEST_CASE("voxelise: few large triangles -> progress is told between them") {
+TEST_CASE("voxelise: few large triangles -> progress is reported between them") {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.1}};
   mesh.triangles = {{0, 1, 2}, {1, 2, 3}, {0, 2, 3}};

@@ -1,4 +1,4 @@
-// Rays that go on from a hit, the plain way.
+// Secondary rays, the plain way.
 #include "reference/secondary.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// @file secondary.h
-/// The exact reference for rays that go on from a hit: where they start, and the first voxel from a point of
+/// The exact reference for secondary rays: where they start, and the first voxel from a point of
 /// a ray on that is of some kind. Worked out the plain way, a voxel at a time, in exact fractions.
 ///
 /// Definitions, besides those of reference.h:

@@ -42,7 +42,7 @@ class Pty {
   void read_some(int timeout_ms);
 
   int master_ = -1;
-  int slave_ = -1;  // held open, so that the modes can be asked for when the program has ended
+  int slave_ = -1;  // held open, so that the modes can be read when the program has ended
   pid_t child_ = -1;
   bool ended_ = false;
   int status_ = 0;

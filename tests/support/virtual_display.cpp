@@ -76,7 +76,7 @@ class Dragging {
     XSendEvent(display_, target_, False, NoEventMask, &event);
     XFlush(display_);
   }
-  // Hands the list over when it is asked for, until the message comes; its second number.
+  // Hands the list over when it is requested, until the message comes; its second number.
   long wait_for(const char* what) {
     for (int rounds = 0; rounds < 1000; ++rounds) {
       if (XPending(display_) == 0) {

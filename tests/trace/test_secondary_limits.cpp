@@ -1,4 +1,4 @@
-// Rays that go on from a point: each limit of the narrow path from both sides, and points out of the world.
+// Rays from a point on: each limit of the narrow path from both sides, and points out of the world.
 #include <doctest/doctest.h>
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Rays that go on from a hit, held to the exact reference: where they start, how they leave a medium, what
+// Secondary rays, held to the exact reference: where they start, how they leave a medium, what
 // they hit from a point on.
 //
 // THIMBLE_RAYS sets the number of rays, THIMBLE_SEED the seed of all of them.

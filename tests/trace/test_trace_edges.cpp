@@ -43,7 +43,7 @@ TEST_CASE("trace edges: the 32-bit path with rays it does not take -> a status, 
   CHECK(hit.kind == HitKind::kStepLimit);
 }
 
-// Three voxels in a row of octants; what follows the cut in the chain is not there, and rays go on past it.
+// Three voxels in a row of octants; what follows the cut in the chain is not there, and rays pass it.
 TEST_CASE("trace edges: a pool whose chain breaks off -> what is left is hit, the rest is space") {
   for (int kept = 1; kept <= 3; ++kept) {
     OwnedPool pool(3);

@@ -593,8 +593,7 @@ TEST_CASE("octree: coarsening to every size -> what the slow greedy search makes
   }
 }
 
-TEST_CASE(
-    "octree: edits between coarsenings -> only what was asked for changes, and the tree stays canonical") {
+TEST_CASE("octree: edits between coarsenings -> only the edit changes, and the tree stays canonical") {
   for (std::uint64_t seed = 1; seed <= 20U * static_cast<unsigned>(kEffort); ++seed) {
     CAPTURE(seed);
     Random random(seed);

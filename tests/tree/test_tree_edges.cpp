@@ -389,7 +389,7 @@ TEST_CASE("tree edges: a node that is the last byte of a tree with merged blocks
   }
 }
 
-TEST_CASE("tree edges: a shared tree's header against itself -> what is wrong is told") {
+TEST_CASE("tree edges: a shared tree's header against itself -> the status says what is wrong") {
   SharedByHand tree = two_nodes();
   // Bounds: not below one another, beyond the world, or of nothing at all.
   for (int axis = 0; axis < 3; ++axis) {

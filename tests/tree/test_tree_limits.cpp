@@ -533,7 +533,7 @@ TEST_CASE(
     CHECK(world.set(voxel_of(kBrick, last), 200) == Status::kOutOfMemory);
     CHECK(world.tree().node_count() == nodes);
     CHECK_FALSE(map_has(world.map(), voxel_of(kBrick, last)));
-    // Of a material that bricks have it may be, and elsewhere it goes on.
+    // Of a material that bricks have it may be, and elsewhere another may come.
     REQUIRE(world.set(voxel_of(kBrick, last), 1) == Status::kOk);
     CHECK(map_has(world.map(), voxel_of(kBrick, last)));
     REQUIRE(world.clear(voxel_of(kBrick, (last + 1) % 64)) == Status::kOk);

@@ -102,7 +102,7 @@ async function crews(modules, bake, scene, files) {
     }
     crew.end();
   });
-  await test('a worker that fails is told once, and the page draws on its own', async () => {
+  await test('a worker that fails is reported once, and the page draws on its own', async () => {
     let faults = 0;
     const workers = [hire(), hire()];
     await new Promise((done) => {

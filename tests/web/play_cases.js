@@ -53,7 +53,7 @@ async function judgePlays(browser, thimble, {work, began, fromAfar, finish}) {
     is('the picture of the link', await browser.canvasCrc(), wanted);
     is('its frame', await frame(), shown);
   });
-  await test('a picture that is saved while frames play is finished first; then they go on', async () => {
+  await test('a picture that is saved while frames play is finished first; then they play', async () => {
     await browser.click('[data-key=" "]');
     await goesOn();
     await browser.key('s');
@@ -96,7 +96,7 @@ async function judgePlays(browser, thimble, {work, began, fromAfar, finish}) {
     is('the button is pressed', await pressed(), 'true');
     await browser.key('s');
     await browser.until(`document.getElementById('said').textContent.startsWith('It is saved; ')`, 60);
-    await browser.changes('what goes on', () => {});
+    await browser.changes('what plays', () => {});
     await browser.key(' ');
     await finish();
     const fast = `(viewer.look.fast(4), crc32(viewer.look.rows(0, 480)))`;

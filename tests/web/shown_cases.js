@@ -119,7 +119,7 @@ async function judgeFiles(browser, {work, began, sim}) {
     await began();
   });
 }
-// Wheels of every kind. `browser.wheel` is a mouse's, in pixels; others are told to the canvas as a browser tells them.
+// Wheels of every kind. `browser.wheel` is a mouse's, in pixels; others are events as a browser sends them.
 async function judgeWheels(browser, {began}) {
   const tell = (deltaY, deltaMode, count = 1) => browser.eval(`(() => { let left = 0; for (let i = 0; i < ${count}; ++i) {
     const event = new WheelEvent('wheel', {deltaY: ${deltaY}, deltaMode: ${deltaMode}, bubbles: true, cancelable: true});

@@ -138,7 +138,7 @@ async function main() {
     baked[100] ^= 1;
     const machine = run(modules.scene, {board, app: 'demo', scene: baked});
     is('status', machine.status, 1);
-    holds('an error is told', /error: the scene is/.test(machine.output));
+    holds('an error is printed', /error: the scene is/.test(machine.output));
   });
   await test('the arena ends where the memory ends, and its front is guarded', () => {
     for (const board of boards) {
@@ -603,7 +603,7 @@ async function mistakes() {
       holds(`${name} has ${size} bytes; README says ${figure}`, Math.abs(size - said) < size / 200);
     }
   });
-  await test('a model that was not dropped is asked for', () => {
+  await test('a model that was not dropped is requested', () => {
     let said = '';
     try {
       const house = filesOf('tools/gallery/scenes/house.scene');

@@ -92,7 +92,7 @@ async function desktop() {
     const before = await canvasCrc();
     await pause(300);
     is('the canvas', await canvasCrc(), before);
-    await changes('going on', () => browser.click('#pause'));
+    await changes('playing', () => browser.click('#pause'));
   });
   await test('another board has its own display, RAM and picture', async () => {
     await choose('mps2-an500');
@@ -424,7 +424,7 @@ async function links() {
     const other = browser;
     browser = await Chromium.open(link);
     await browser.until(`document.documentElement.dataset.ready === '1'`, 30);
-    is('it is asked for', await text('said'),
+    is('it is requested', await text('said'),
       'This link shows fox.vox.gz, which stayed where it was made: drop that file here.');
     await browser.drop([file]);
     await finish();
@@ -506,7 +506,7 @@ async function drops() {
     shown = await browser.eval('generation');
     fs.rmSync(file);
   });
-  await test('what cannot be read is said in a sentence, and the page goes on', async () => {
+  await test('what cannot be read is said in a sentence, and the page works', async () => {
     const file = path.join(work, 'cut.vox');
     fs.writeFileSync(file, fs.readFileSync('tools/gallery/scenes/castle.vox').subarray(0, 3000));
     await browser.drop([file]);
@@ -745,7 +745,7 @@ async function served() {
       is('workers', await browser.eval('viewer.crew?.workers.length'), 2);
       pictures.push(await canvasCrc());
       is('the picture', pictures.at(-1), pictures[0]);
-      is('what was asked of the server', asked.join(), '/');
+      is('what the server was sent', asked.join(), '/');
       await browser.close();
       server.close();
       server.closeAllConnections?.();

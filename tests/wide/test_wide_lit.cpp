@@ -15,7 +15,7 @@
 namespace thimble::tests {
 namespace {
 
-// Nothing that a ray goes on from: what most pictures are.
+// Nothing with secondary rays: what most pictures are.
 LitCase random_opaque_light(std::mt19937_64& random, int level) {
   LitCase lit = random_light(random, level);
   lit.effects = static_cast<EffectSet>(pick(random, 0, Effect::kAll)) &

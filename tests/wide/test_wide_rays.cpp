@@ -116,7 +116,7 @@ void add_ray(std::mt19937_64& random, const CompactTree& tree, const Ray& ray, R
   batch->change.push_back(change);
 }
 
-// Hard rays, and those that go on from what they hit.
+// Hard rays, and secondary ones.
 RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_t count) {
   const int side = 1 << tree.level();
   const auto within = [&](int low, int high) { return static_cast<int>(pick(random, low, high - 1)); };

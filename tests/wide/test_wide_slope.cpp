@@ -1,4 +1,4 @@
-// Slopes that a host keeps: every number is the core's, and so are the visits, whatever was asked before.
+// Slopes that a host keeps: every number is the core's, and so are the visits, whatever was looked up before.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -125,7 +125,7 @@ TEST_CASE("wide: slopes that are kept -> the core's normals and visits, any tabl
   CHECK(bent > asked / 20);
 }
 
-TEST_CASE("wide: a face that is asked again -> the visits of the first time, added") {
+TEST_CASE("wide: a face that is looked up again -> the visits of the first time, added") {
   std::mt19937_64 random(3);
   LitWorld world(5, 200000);
   fill(random, 5, &world);
