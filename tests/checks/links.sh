@@ -1,5 +1,6 @@
 #!/bin/sh
-# Every link of every page that leads into the repository leads to something that is there. links.sh ROOT
+# Every link of every page that leads into the repository leads to something that is there, a page's heading among it.
+# links.sh ROOT
 set -eu
 cd "$1"
 broken=$(find . \( -path ./build -o -path ./out -o -path ./.git \) -prune -o -name '*.md' -print | sort |
@@ -16,14 +17,18 @@ broken=$(find . \( -path ./build -o -path ./out -o -path ./.git \) -prune -o -na
         sub(/^\]\(|^(src|href)="|^\[[^\]]*\]: */, "", link)
         sub(/[")]$/, "", link)
         sub(/[ \t].*$/, "", link)
+        heading = link ~ /#/ ? substr(link, index(link, "#") + 1) : ""
         sub(/#.*$/, "", link)
-        if (link == "" || link ~ /^[a-z]+:/) continue
+        if (link heading == "" || link ~ /^[a-z]+:/) continue
         folder = FILENAME
         sub(/[^\/]*$/, "", folder)
-        print FILENAME ":" FNR, link ~ /^\// ? "." link : folder link
+        print FILENAME ":" FNR, link == "" ? FILENAME : link ~ /^\// ? "." link : folder link, heading
       }
-    }' | while read -r place path; do
+    }' | while read -r place path heading; do
     [ -e "$path" ] || echo "$place leads to $path"
+    case $path in *.md) ;; *) continue ;; esac
+    [ ! -e "$path" ] || [ -z "$heading" ] || sed -n 's/^##* //p' "$path" | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9_\n-' |
+      grep -qxe "$heading" || echo "$place leads to $path#$heading"
   done)
 if [ -n "$broken" ]; then
   echo "$broken"

@@ -270,6 +270,11 @@ long_function 97
 catches sizes 'longer than 100 lines'
 add README.md '[There](src/gone.cpp#here)'
 catches links 'src/gone.cpp'
+printf '# One: two parts\n\n[Here](#one-two-parts)\n' >"$tree/src/page.md"
+add README.md '[There](src/page.md#one-two-parts)'
+passes links
+printf '# One: two parts\n\n[Here](#two)\n' >"$tree/src/page.md"
+catches links 'src/page.md#two'
 add platform/examples/sum.cpp '// more'
 catches readme_program 'is not the text of'
 sed -i 's/none/many/' "$tree/README.md"
