@@ -1,6 +1,6 @@
 #!/bin/sh
 # Renders the pictures of the READMEs into this folder. make.sh THIMBLE DATA_DIR
-# DATA_DIR holds the files named below; stars.xyz is made from the star catalogue as tools/README.md shows. The scenes of
+# DATA_DIR holds the files named below; stars.xyz is made from the star catalogue as README.md shows. The scenes of
 # this folder are in the repository; castle.py and the other scripts make scenes/ again.
 set -eu
 thimble=$1
