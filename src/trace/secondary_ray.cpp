@@ -1,6 +1,6 @@
 // Secondary rays, which start at a hit. The walk through a medium is that of trace.cpp turned round: there the octants
 // that hold something are visited, here all of them, and what ends the walk is the first cell that is not of
-// the medium. Both share the one loop.
+// the medium. Both starts at a point of a ray share the one loop.
 #include "thimble/trace/secondary_ray.h"
 
 #include "../base/bits.h"
