@@ -80,7 +80,7 @@ check: deps-test ## Build what is optimised and run its quick tests: one line a 
 	@.ci/build "optimised build" build/release thimble_tests thimble_golden_tests_O2
 	@sh tests/check.sh build/release
 # Every test once, optimised; what takes minutes (label `whole`) and more cases of a kind are left to test-all.
-test: deps-test ## Build and run every test once, optimised, and the quick checks: 8 minutes of two cores
+test: deps-test ## Build and run every test once, optimised, and the quick checks
 	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
 	@.ci/build "[1/2] optimised build" build/release src/all platform/all tools/all thimble_tests thimble_golden_tests_O2
 	@echo "[2/2] the tests; those that take longest begin"
