@@ -184,7 +184,8 @@ void add_effects(CLI::App& app) {
       .default_str("5");
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->files.csv,
-      "a line an effect, all eleven: effect, called_for (1 or 0), why (in words), K_rays for K of primary, "
+      "a line an effect, each that there is: effect, called_for (1 or 0), why (in words), K_rays for K of "
+      "primary, "
       "shadow, occlusion, mirror, glass, media, water (rays of that kind in a frame with the effect less "
       "those in one without, so below 0 where the effect saves some), rays (of all kinds), node_visits (the "
       "same of nodes), ms (median over the frames of the time with less the time without), q25_ms, q75_ms "
