@@ -326,7 +326,7 @@ for fault in 'is ~told the rest' 'was ~asked for' 'ray goes ~on' 'rays that go ~
   add src/base/README.md "$text"
   catches words "field's noun"
   add src/base/LOG.md "$text"
-  add src/base/sum.cpp '// Two are told apart, which was not asked.'
+  add src/base/sum.cpp '// Two are told apart, or told from a third.'
   passes words
   fresh
 done

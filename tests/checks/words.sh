@@ -5,7 +5,7 @@
 #   One rule for verbs: what is static and returns a Status is called open (it looks at bytes) or make (it builds in
 #   memory that is given); so end, in C, the functions that fill a handle from nothing.
 #   Phrases that hide who does what stand in no page, comment or message. Pages that log what was tried (LOG.md) are free,
-#   and so is what a reader tells apart.
+#   and so is what a reader tells apart, or from something.
 #   On the tracing path (trace, picture) a product of 64 bits has a name, of src/base/wide_arithmetic.h: no cast to 64
 #   bits stands beside a `*`, nor does a camera's step, which has 64 bits.
 set -eu
@@ -37,5 +37,5 @@ complain "a product of 64 bits has a name of src/base/wide_arithmetic.h" \
 hiding='(is|are|was|were|be|been|being) (told|asked)|(goes|go|went|going) on|What .* (has|have) of|[Oo]nly who asks|Asked (was|were)'
 complain "write the field's noun, a subject and a verb (CONTRIBUTING, Names and English)" \
   "$(find . \( -path ./build -o -path ./out -o -path ./.git -o -name node_modules \) -prune -o -type f ! -name LOG.md \
-    -exec grep -nIEwH "$hiding" {} + | sed 's/told apart//g' | grep -Ew "$hiding" || true)"
+    -exec grep -nIEwH "$hiding" {} + | sed -E 's/told (apart|from)//g' | grep -Ew "$hiding" || true)"
 exit $failed
