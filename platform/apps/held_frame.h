@@ -141,7 +141,8 @@ inline Rgb8 thin_color(const uint8_t* row, int32_t x, PixelFormat format) {
 
 /// Each pixel of kBytes, aligned to kAlignment, `step` times, until the row has `width`.
 template <size_t kBytes, size_t kAlignment>
-[[gnu::noinline, gnu::hot]] void widen_pixels(const uint8_t* thin, int32_t step, int32_t width, uint8_t* row) {
+[[gnu::noinline, gnu::hot]] void widen_pixels(const uint8_t* thin, int32_t step, int32_t width,
+                                              uint8_t* row) {
   for (int32_t x = 0; x < width; thin += kBytes) {
     uint8_t pixel[kBytes];
     __builtin_memcpy(pixel, __builtin_assume_aligned(thin, kAlignment), kBytes);

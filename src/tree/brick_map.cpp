@@ -456,7 +456,8 @@ bool BrickMap::belongs_to(const CompactTree& tree) const {
          bits::load32(tree.bytes() + compact_header::kChecksumOffset) == tree_checksum_;
 }
 
-[[THIMBLE_HOT]] uint8_t BrickMap::mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const {
+[[THIMBLE_HOT]] uint8_t BrickMap::mixed_material(const CompactTree& tree, uint32_t number,
+                                                 unsigned bit) const {
   const uint8_t* origin = origins_ + kOriginBytes * (number - 1);
   if constexpr (kDeepWorlds) {
     if (DeepMap::is_deep(level_)) {

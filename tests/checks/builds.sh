@@ -33,6 +33,6 @@ file(WRITE ${CMAKE_BINARY_DIR}/main.cpp "#include <thimble/thimble.h>\nint main(
 add_library(theirs ${CMAKE_BINARY_DIR}/main.cpp)
 target_link_libraries(theirs PRIVATE thimble::thimble)
 EOF
-build 'in a strict project of shared libraries' "$work/parent" Ninja -DBUILD_SHARED_LIBS=ON \
+build 'in a strict project of shared libraries' "$work/parent" Ninja -DCMAKE_BUILD_TYPE=Debug -DBUILD_SHARED_LIBS=ON \
   "-DCMAKE_CXX_FLAGS=-Wmissing-declarations -Werror"
 echo "builds: by both generators, in a folder with spaces, with position independent code, in a strict project"

@@ -190,7 +190,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "stl: what is binary is told by its bytes, not by its name for itself; the count and the bytes may "
+    "stl: bytes say what is binary, not the first word; the count and the bytes may "
     "differ") {
   std::string binary = "solid exported by a program" + std::string(53, ' ') + std::string("\x01\0\0\0", 4);
   std::string triangle = numbers<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) + std::string(2, '\0');

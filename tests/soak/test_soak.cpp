@@ -2,7 +2,7 @@
 // inside: each pixel of each is the core's, and the core's hits are the judge's.
 //
 // A run takes four million pixels.
-// THIMBLE_SOAK_MINUTES=60 goes on for that long, with a seed of its own for each frame and a summary at the end (`make
+// THIMBLE_SOAK_MINUTES=60 runs for that long, with a seed of its own for each frame and a summary at the end (`make
 // soak MINUTES=60 SEED=2`); with THIMBLE_DATA the scene files of that folder are among its worlds.
 #include <doctest/doctest.h>
 

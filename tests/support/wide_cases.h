@@ -18,7 +18,7 @@
 
 namespace thimble::tests {
 
-// A tree and its lists, in exactly the bytes that are asked for.
+// A tree and its lists, in exactly the bytes that it needs.
 class WideScene {
  public:
   // Made when they are first asked for, which takes long for worlds of high levels.

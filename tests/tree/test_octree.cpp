@@ -686,7 +686,8 @@ TEST_CASE(
   CHECK(last_voxels == volume(level));
 }
 
-TEST_CASE("octree: make_room and coarsen_to -> at least what is asked for, or out of memory and unchanged") {
+TEST_CASE(
+    "octree: make_room and coarsen_to -> at least the requested number, or out of memory and unchanged") {
   Random random(41);
   const int level = 4;
   const Model model = random_model(random, level, 2, 120);

@@ -118,7 +118,7 @@ struct EngineOptions {
   /// Refuses a budget of memory for what does not keep to it.
   void check_budget(bool has_budget) const;
   /// The wide renderer for pictures of that size, where it is to draw and there is room for it within the
-  /// scene's budget; else null. Throws InputError when it was asked for by name and cannot be had.
+  /// scene's budget; else null. Throws InputError when it was chosen by name and cannot be had.
   std::unique_ptr<WideRenderer> wide_renderer(BuiltScene* built, std::int32_t width_px,
                                               std::int32_t height_px) const;
   /// Streams of rays for lit pictures, where they are to draw and there is room for them within the scene's budget;

@@ -19,7 +19,7 @@ namespace thimble::tools {
 /// What a reader needs beside the bytes.
 struct ReadOptions {
   std::string path;                    ///< of the file, for the other files that it names; may be empty
-  std::optional<std::uint32_t> frame;  ///< of an animation; the first where none is asked for
+  std::optional<std::uint32_t> frame;  ///< of an animation; the first by default
   ArrayAs as = ArrayAs::kByShape;      ///< of an array of numbers
 };
 

@@ -57,7 +57,7 @@ using Notes = std::vector<std::string>;
 /// Voxels with whole-number positions: `.vox`.
 class VoxelModel {
  public:
-  Notes notes;
+  Notes notes{};
   virtual ~VoxelModel() = default;
   using Visit = std::function<void(std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material)>;
   /// Calls `visit` for each voxel, in the file's order; a position may repeat (the last one wins). The
@@ -74,7 +74,7 @@ class VoxelModel {
 /// Voxels with whole-number positions and a colour of their own each: `.binvox`, `.qb`, `.schematic` ...
 class VoxelGrid {
  public:
-  Notes notes;
+  Notes notes{};
   virtual ~VoxelGrid() = default;
   using Visit = std::function<void(std::int32_t x, std::int32_t y, std::int32_t z, Rgb color)>;
   /// Calls `visit` for each solid voxel, in an order of the format's own; where a position repeats, the last
@@ -101,7 +101,7 @@ struct CloudPoint {
 /// Points with real coordinates: `.xyz`, `.csv`, `.ply` without faces, `.pcd`, `.las`, Gadget-1 snapshots.
 class PointCloud {
  public:
-  Notes notes;
+  Notes notes{};
   virtual ~PointCloud() = default;
   using Visit = std::function<void(const CloudPoint&)>;
   virtual void for_each(const Visit& visit) const = 0;
@@ -116,9 +116,9 @@ struct TriangleMesh {
   std::vector<std::array<double, 3>> positions;         ///< all finite
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`, in range
   std::vector<Rgb> colors;                              ///< one a position, or empty
-  std::vector<Rgb> face_colors;                         ///< one a triangle, or empty; counts before `colors`
+  std::vector<Rgb> face_colors{};                       ///< one a triangle, or empty; counts before `colors`
   bool is_z_up = false;                                 ///< the format says so; else y is taken to be up
-  Notes notes;
+  Notes notes{};
 };
 
 /// A scene baked by `thimble bake`, checked to its last byte: `.oct`.

@@ -161,7 +161,7 @@ struct TriangleBlock {
   std::uint8_t inside = 0;
 };
 
-/// `block.inside` where nothing but the triangle's plane is to be asked.
+/// `block.inside` where only the triangle's plane is left to test.
 inline constexpr std::uint8_t kAllInside = 0xF;
 
 /// Whether the triangle meets `block`; asks nothing that is known for the block it is part of, and adds to

@@ -41,7 +41,7 @@ class Orbit {
   Real3 forward() const;
   Real3 right() const;
   Real3 up() const;
-  /// Whether `up` has to be told, since it does not follow from the direction.
+  /// Whether `up` has to be written, since it does not follow from the direction.
   bool is_vertical() const;
   double distance() const { return distance_; }
 

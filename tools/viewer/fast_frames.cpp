@@ -153,7 +153,7 @@ void Pace::take(double seconds) {
   ++frames_;
   if (engine_ == FastEngine::kRays && may_be_wide_ && wide_seconds_ > 0 && frames_ == 1 &&
       step_ == kTrialStep && seconds >= wide_seconds_) {
-    engine_ = FastEngine::kWide;  // no faster: what there was goes on
+    engine_ = FastEngine::kWide;  // no faster: what there was stays
     wide_seconds_ = 0;
     frames_ = 0;
     return;

@@ -74,7 +74,7 @@ void FaceLightsParts::lay_out(const FaceLightsShape& shape, ArrayArena* arena) {
   exits = arena->take<MediumExit>(of_ways);
 }
 
-// Rays were checked when they were asked, so none is refused.
+// Rays were checked when they were queued, so none is refused.
 void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits, MediumExit* exits,
                  lit::Answer* answers) {
   const auto put_hits = [&](lit::Asked* asked) {

@@ -65,7 +65,7 @@ struct Counts {
   uint64_t hits = 0;        ///< tests that were hits
   uint64_t nodes = 0;       ///< blocks looked at
   uint64_t crossing = 0;    ///< boxes in the eye's plane, tested pixel by pixel
-  uint64_t asked = 0;       ///< pixels that the core was asked for (hidden_voxels.h)
+  uint64_t asked = 0;       ///< pixels that the core decided (hidden_voxels.h)
 
   void add(const Counts& other) {
     boxes += other.boxes;

@@ -18,7 +18,7 @@ constexpr size_t kCopyBoxes = 150000;
 bool is_sparse(const VoxelLists& lists, const Camera& camera, const Band& band, bool by_blocks, int threads,
                const TilePainter& painter) {
   const size_t words = strips_of(camera.width_px()) * static_cast<size_t>(band.rows);
-  // Not with surfaces: the pixels that the core is asked for (hidden_voxels.h) are written without clearing their pieces.
+  // Not with surfaces: the pixels that the core decides (hidden_voxels.h) are written without clearing their pieces.
   return threads == 1 && !by_blocks && !lists.is_surface() && painter.takes_sparse() &&
          words >= Workspace::kLeastSparseWords && lists.entries().size < words / kPieceWords;
 }

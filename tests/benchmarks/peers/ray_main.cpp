@@ -7,7 +7,7 @@
 // `thimble render` frames it; from every second hit a shadow ray to one light; from every fourth hit four rays
 // anywhere in the half space above the face (occlusion), once without an end and once within a reach of 8 voxels.
 // All by turns on one thread, processor time, the least of so many turns. `wrong`: rays whose answer is not the
-// core's (in kind, voxel, axis, t and material where what is hit is asked for; a peer's in t, to 1e-4, or in
+// core's (in kind, voxel, axis, t and material where the ray wants the voxel; a peer's in t, to 1e-4, or in
 // whether anything is hit). NanoVDB traces ray by ray, Embree in packets of 16: boxes, and a mesh's own triangles.
 #include <CLI/CLI.hpp>
 #include <cmath>

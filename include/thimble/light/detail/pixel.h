@@ -1,7 +1,7 @@
 /// @file pixel.h
 /// The parts of render.h: one function an effect, and the loop over the rays of a pixel that calls those
 /// which the set names. Not for callers; it is here because the loop is compiled with the caller's set. A
-/// frame traces the tree; or it is asked.h's, which defers its queries; or one with balls (light/render.h).
+/// frame traces the tree; or, in asked.h, defers its queries; or has balls (light/render.h).
 ///
 /// Colours are integers of kLevel to a step of 8 bits, up to four times white: a ray's sum stays below 2^32
 /// since the weights of a pixel's rays never add up to more than 1.

@@ -24,7 +24,7 @@
 ///     store(frame, band, line, x, y, sum)
 ///
 /// Between two calls the driver answers `questions` and `slopes`, and sets their counts to 0. Light through
-/// clear solids goes on from each answer to the next question, of which `shine` keeps one at a time for each
+/// clear solids continues from each answer to the next question, of which `shine` keeps one at a time for each
 /// light. Rare queries are not deferred: single voxels, water.
 #ifndef THIMBLE_LIGHT_HOST_ASKED_H
 #define THIMBLE_LIGHT_HOST_ASKED_H
