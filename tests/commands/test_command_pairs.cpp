@@ -18,7 +18,9 @@ using Words = std::vector<std::string>;
 
 // A value, or several, for each option that takes one; "" for those that take none. Files go into the test's folder.
 const std::multimap<std::string, std::string>& values() {
-  static const std::multimap<std::string, std::string> table{{"--as-voxels", ""},
+  static const std::multimap<std::string, std::string> table{{"--as-heights", ""},
+                                                             {"--as-points", ""},
+                                                             {"--as-voxels", ""},
                                                              {"--against", "visits"},
                                                              {"--app", "dig"},
                                                              {"--bench", "2"},
@@ -117,10 +119,10 @@ const std::multimap<std::string, std::string>& values() {
 
 // What only a look at the scene, the rays or the budget tells: status 1.
 bool depends_on_input(const std::string& text) {
-  for (const char* phrase :
-       {"is for point files", "is for .vox files", "parallel to the direction of view", "no room for",
-        "does not take this ray", "more than", "budget", "--memory", "there is no terminal",
-        "the terminal cannot show", "pixels differ", "does not take the rays"}) {
+  for (const char* phrase : {"is for point files", "are for .npy and .npz", "is for .vox files",
+                             "parallel to the direction of view", "no room for", "does not take this ray",
+                             "more than", "budget", "--memory", "there is no terminal",
+                             "the terminal cannot show", "pixels differ", "does not take the rays"}) {
     if (text.find(phrase) != std::string::npos) {
       return true;
     }

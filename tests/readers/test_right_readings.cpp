@@ -268,9 +268,9 @@ TEST_CASE("obj: polygons that are not convex -> ears, whose triangles cover the 
 TEST_CASE("obj: materials beside it -> colours of faces; what is missing or not drawn is noted") {
   const TemporaryFolder folder;
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-  folder.write(
-      "a b.mtl",
-      "newmtl my red\nKd 1 0 0\nd 1\nnewmtl air\nKd 0 1 0\nd 0\nnewmtl photo\nmap_Kd p.jpg\nKd 0 0 1\n");
+  folder.write("a b.mtl",
+               "newmtl my red\nKd 1 0 0\nd 1\nnewmtl air\nKd 0 1 0\nd 0\nnewmtl photo\nmap_Kd p.jpg\nKd 0 0 "
+               "1\nTr 1\n");
   const auto read = [&](const std::string& text) {
     return read_scene_file({folder.write("x.obj", text), std::nullopt, ArrayAs::kByShape});
   };

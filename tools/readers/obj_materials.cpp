@@ -49,8 +49,8 @@ void read_library(std::string_view text, MaterialTable& table) {
       if (is_color) {
         material->color = {unit_to_byte(color[0]), unit_to_byte(color[1]), unit_to_byte(color[2])};
       }
-    } else if ((word == "d" || word == "Tr") && parse_number(take_word(line), value) == NumberKind::kFinite) {
-      material->opacity = word == "d" ? value : 1 - value;
+    } else if (word == "d" && parse_number(take_word(line), value) == NumberKind::kFinite) {
+      material->opacity = value;  // not Tr: of what is opaque some programs say 0 there, some 1
     }
   }
 }
