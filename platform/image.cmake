@@ -24,7 +24,7 @@ function(thimble_write_linker_script place)
     set(IMAGE_STACK FAST)
     set(IMAGE_FAST_MEMORY "  FAST (rwx) : ORIGIN = ${BOARD_FAST_RAM_ORIGIN}, LENGTH = ${BOARD_FAST_RAM_BYTES}\n")
     # Frames with light by the map have the same loops once more, for which there is no room beside.
-    set(functions "    *(EXCLUDE_FILE(*flat.cpp.o*) .text.hot .text.hot.*)\n")
+    set(functions "    *(EXCLUDE_FILE(*flat.cpp.o*) .text.hot EXCLUDE_FILE(*flat.cpp.o*) .text.hot.*)\n")
     foreach(source IN LISTS BOARD_FAST_SOURCES)
       get_filename_component(name ${source} NAME)
       string(APPEND functions "    *${name}.o*(.rodata._Z*E)\n")

@@ -21,7 +21,7 @@ inline constexpr ProgramFlash kProgramFlash[] = {
     {"gba", 106, 151, 125},
     {"lm3s6965evb", 98, 126, 100},
     {"microbit", 116, 149, 120},
-    {"mps2-an500", 108, 158, 105},
+    {"mps2-an500", 108, 149, 105},
     {"netduinoplus2", 98, 126, 105},
     {"pico", 130, 176, 120},
     {"pico-lcd-2", 130, 176, 120},

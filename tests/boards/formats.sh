@@ -33,8 +33,8 @@ for board in ${*:-lm3s6965evb microbit}; do
     bench $none "$board"
   fi
   said=
-  # With formats, the map's frames ask a thousand times and more which it is; that a few are saved would not do.
-  for least in tree:1 brick_map:500; do
+  # With formats, the map's frames ask hundreds of times which it is; that a few are saved would not do.
+  for least in tree:1 brick_map:400; do
     engine=${least%:*}
     with=$(value $all $engine.instructions_median)
     without=$(value "$none" $engine.instructions_median)

@@ -123,6 +123,26 @@ class Graph {
     }
   }
 
+  // An instantiation of a template has its file before its id, though other files call it by the id alone.
+  void join_instantiations() {
+    std::map<std::string, std::string> places;
+    std::set<std::string> called;
+    for (const auto& [id, function] : functions_) {
+      called.insert(function.callees.begin(), function.callees.end());
+      if (function.defined && id.find(':') != std::string::npos) {
+        std::string& place = places[symbol_of(id)];
+        place = place.empty() || functions_[place].frame_bytes < function.frame_bytes ? id : place;
+      }
+    }
+    for (const std::string& id : called) {
+      const auto found = places.find(id);
+      if (found != places.end() && !functions_[id].defined) {
+        joined_.insert(found->second);
+        functions_[id] = functions_[found->second];
+      }
+    }
+  }
+
   // Prints every fault; the number of them.
   int judge(const std::string& target, const std::vector<Limit>& limits) {
     std::set<std::string> called;
@@ -321,6 +341,7 @@ bool read_graphs(char** first, char** last, Graph& graph) {
       return false;
     }
   }
+  graph.join_instantiations();
   graph.join_constructors();
   if (graph.empty()) {
     std::fprintf(stderr, "stack: no function in any call graph\n");

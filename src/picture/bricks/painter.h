@@ -226,7 +226,7 @@ class BrickPainter : public TilePainter<OneCourse, BrickPainter<OneCourse>> {
 
   // Turns the answers that are no inks into inks: asks the tree where only it can tell, and takes the background where
   // nothing is hit.
-  [[gnu::noinline, THIMBLE_HOT]] void answer(const Tile& quad, int32_t* inks) {
+  [[gnu::noinline]] void answer(const Tile& quad, int32_t* inks) {
     for (int32_t y = quad.y0; y < quad.y1; ++y) {
       for (int32_t x = quad.x0; x < quad.x1; ++x, ++inks) {
         if (*inks == kAsk) {  // NOLINT: all of a quad are set
