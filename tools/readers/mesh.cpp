@@ -136,8 +136,8 @@ void Polygons::cut_ears() {
           break;
         }
       }
-      mesh_.triangles[at] = {polygon.corners[(ear + count - 1) % count], polygon.corners[ear],
-                             polygon.corners[(ear + 1) % count]};
+      mesh_.triangles[at] = {polygon.corners[ear == 0 ? count - 1 : ear - 1], polygon.corners[ear],
+                             polygon.corners[ear + 1 == count ? 0 : ear + 1]};
       polygon.remove(ear);
     }
   }
