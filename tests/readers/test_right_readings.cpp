@@ -187,6 +187,10 @@ TEST_CASE(
           "end_header\n0 0 0 1.7725 -1.7725 0 9\n1 0 0 0 0 0 -9\n2 0 0 -9 -9 9 0\n");
   CHECK(colors_of(splats) == Colors{{255, 0, 128}, kBlue});
   CHECK(notes_hold(splats, "1 of 3 are nearly clear"));
+  const std::string face =
+      "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  CHECK(notes_of(source_of(read_ply, head + face)).empty());
+  CHECK(notes_hold(source_of(read_ply, head + "comment TextureFile a b.jpg\n" + face), "TextureFile"));
 }
 
 TEST_CASE(
@@ -218,6 +222,27 @@ TEST_CASE("pcd: names in capitals, and colours in three fields of bytes or float
       "FIELDS x y z r g b\nSIZE 4 4 4 1 1 1\nTYPE F F F U U U\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary\n";
   CHECK(colors_of(source_of(read_pcd, binary + std::string(12, '\0') + std::string("\0\xFF\0", 3))) ==
         Colors{kGreen});
+}
+
+TEST_CASE(
+    "las: colours of 8, 12 and 16 bits -> bytes by the greatest of the file; what is guessed is noted") {
+  // Version 1.2, point format 2, one point of 26 bytes behind a header of 227.
+  const auto file = [](std::uint16_t red, std::uint16_t green) {
+    std::string header = "LASF" + std::string(20, '\0') + "\x01\x02" + std::string(68, '\0') +
+                         little(227, 2) + little(227, 4) + std::string(4, '\0') + "\x02" + little(26, 2) +
+                         little(1, 4) + std::string(20, '\0');
+    for (const double scale : {1.0, 1.0, 1.0, 0.0, 0.0, 0.0}) {
+      header += little(scale);
+    }
+    header.resize(227);
+    return header + std::string(20, '\0') + little(red, 2) + little(green, 2) + little(0, 2);
+  };
+  CHECK(colors_of(source_of(read_las, file(255, 128))) == Colors{{255, 128, 0}});
+  CHECK(colors_of(source_of(read_las, file(4080, 2040))) == Colors{{255, 128, 0}});
+  CHECK(colors_of(source_of(read_las, file(4095, 0))) == Colors{kRed});
+  CHECK(colors_of(source_of(read_las, file(65535, 4080))) == Colors{{255, 16, 0}});
+  CHECK(notes_hold(source_of(read_las, file(4080, 2040)), "12 bits"));
+  CHECK(notes_of(source_of(read_las, file(65535, 0))).empty());
 }
 
 TEST_CASE("obj: polygons that are not convex -> ears, whose triangles cover the polygon and nothing else") {
@@ -286,6 +311,13 @@ TEST_CASE("obj: materials beside it -> colours of faces; what is missing or not 
   CHECK(notes_hold(read("mtllib a b.mtl\nusemtl blue\n" + square + "f 1 2 3\n"),
                    "1 material has no description"));
   CHECK(notes_of(read(square + "f 1 2 3\n")).empty());
+  std::string many = "mtllib a b.mtl\n" + square;
+  for (int i = 0; i < 65535; ++i) {
+    many += "usemtl " + std::to_string(i) + "\n";
+  }
+  const Source more = read(many + "usemtl my red\nf 1 2 3\nusemtl 7\nf 1 3 4\n");
+  CHECK(notes_hold(more, "behind the first 65535"));
+  CHECK(std::get<TriangleMesh>(more).face_colors.empty());
 }
 
 TEST_CASE("vox: models packed by zlib, a palette of sixteen entries -> read") {

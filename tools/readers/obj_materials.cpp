@@ -12,12 +12,15 @@
 namespace thimble::tools {
 namespace {
 
+/// With none. More names than a file's faces can tell apart would take many times its bytes.
+constexpr std::uint32_t kMostMaterials = 65536;
+
 struct ObjMaterial {
+  bool is_described = false;
   std::optional<Rgb> color;
   double opacity = 1;
   bool has_picture = false;
 };
-using MaterialTable = std::unordered_map<std::string, ObjMaterial>;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && is_space(text.front())) {
@@ -29,15 +32,19 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-void read_library(std::string_view text, MaterialTable& table) {
+/// Reads what `text` says of the materials that have a number.
+void read_library(std::string_view text, const std::unordered_map<std::string, std::uint32_t>& numbers,
+                  std::vector<ObjMaterial>& materials) {
   LineReader lines(text);
-  ObjMaterial none;  // of statements before the first material
-  ObjMaterial* material = &none;
+  ObjMaterial unused;  // what stands before the first material, or is of one that no face has
+  ObjMaterial* material = &unused;
   for (std::string_view line; lines.next(line);) {
     const std::string_view word = take_word(line);
     double value = 0;
     if (word == "newmtl") {
-      material = &table[std::string(trimmed(line))];
+      const auto found = numbers.find(std::string(trimmed(line)));
+      material = found == numbers.end() || found->second == 0 ? &unused : &materials[found->second];
+      material->is_described = true;
     } else if (word == "map_Kd") {
       material->has_picture = true;
     } else if (word == "Kd") {
@@ -67,15 +74,18 @@ void ObjMaterials::add_library(std::string_view name) {
 }
 
 void ObjMaterials::use(std::string_view name) {
-  const auto [found, is_new] = numbers_.try_emplace(std::string(trimmed(name)), names_.size());
-  if (is_new) {
-    names_.push_back(found->first);
+  const auto number = static_cast<std::uint32_t>(numbers_.size());
+  if (number == kMostMaterials) {
+    const auto found = numbers_.find(std::string(trimmed(name)));
+    in_use_ = found == numbers_.end() ? 0 : found->second;
+    has_more_ = has_more_ || found == numbers_.end();
+    return;
   }
-  in_use_ = found->second;
+  in_use_ = numbers_.try_emplace(std::string(trimmed(name)), number).first->second;
 }
 
 void ObjMaterials::take_triangles(std::size_t first, std::size_t end) {
-  if (names_.size() > 1) {
+  if (numbers_.size() > 1) {
     of_triangle_.resize(first);
     of_triangle_.resize(end, in_use_);
   }
@@ -85,14 +95,16 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
   if (of_triangle_.empty()) {
     return;
   }
-  MaterialTable table;
+  std::vector<ObjMaterial> used(numbers_.size());
+  bool is_read = false;
   for (const std::string& name : path.empty() ? std::vector<std::string>() : libraries_) {
     std::string slashed = name;
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
     try {
       const FileBytes file =
           load_file(slashed.starts_with('/') ? slashed : path.substr(0, path.rfind('/') + 1) + slashed);
-      read_library(file.text(), table);
+      read_library(file.text(), numbers_, used);
+      is_read = true;
     } catch (const ShortageError&) {
       throw;
     } catch (const InputError& error) {
@@ -100,24 +112,25 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
                            error.what());
     }
   }
-  std::vector<ObjMaterial> used;
   std::size_t missing = 0;
   std::size_t pictures = 0;
   bool has_color = false;
-  for (const std::string& name : names_) {
-    const auto found = table.find(name);
-    missing += found == table.end() && !name.empty() ? 1U : 0U;
-    used.push_back(found == table.end() ? ObjMaterial{} : found->second);
-    pictures += used.back().has_picture ? 1U : 0U;
-    has_color = has_color || used.back().color;
+  for (std::size_t i = 1; i < used.size(); ++i) {
+    missing += used[i].is_described ? 0U : 1U;
+    pictures += used[i].has_picture ? 1U : 0U;
+    has_color = has_color || used[i].color;
   }
   const auto count = [](std::size_t number, const char* one, const char* more) {
     return std::to_string(number) + (number == 1 ? one : more);
   };
-  if (missing != 0 && !table.empty()) {
+  if (missing != 0 && is_read) {
     mesh.notes.push_back(count(missing, " material has", " materials have") + " no description and no color");
   } else if (missing != 0 && libraries_.empty()) {
     mesh.notes.push_back("its materials are not drawn: no file is named that describes them (mtllib)");
+  }
+  if (has_more_) {
+    mesh.notes.push_back("materials behind the first " + std::to_string(kMostMaterials - 1) +
+                         " are not drawn");
   }
   if (pictures != 0) {
     mesh.notes.push_back(

@@ -30,8 +30,8 @@ class ObjMaterials {
 
  private:
   std::vector<std::string> libraries_;
-  std::vector<std::string> names_{""};  ///< of the materials used; the first is none
-  std::unordered_map<std::string, std::uint32_t> numbers_{{"", 0}};
+  std::unordered_map<std::string, std::uint32_t> numbers_{{"", 0}};  ///< of the materials used; 0 is none
+  bool has_more_ = false;
   std::uint32_t in_use_ = 0;
   std::vector<std::uint32_t> of_triangle_;  ///< empty as long as no material is used
 };

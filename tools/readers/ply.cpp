@@ -50,6 +50,7 @@ struct PlyHeader {
   std::vector<Element> elements;
   std::size_t body_offset = 0;
   std::uint64_t body_line = 0;  ///< line number of the body's first byte
+  bool has_picture = false;     ///< a comment names one
 };
 
 constexpr std::size_t size_bytes(Scalar type) {
@@ -184,6 +185,8 @@ class PlyHeaderParser {
         element(line);
       } else if (word == "property") {
         property(line);
+      } else if (word == "comment") {
+        header_.has_picture = header_.has_picture || take_word(line) == "TextureFile";
       }
     }
     if (!has_format_) {
@@ -723,6 +726,9 @@ Source read_body(const SharedBytes& file, const PlyHeader& header, const Progres
   Body body(file, header);
   if (has_polygons) {
     TriangleMesh mesh = read_mesh(body, header, *vertices, meter);
+    if (header.has_picture) {
+      mesh.notes.push_back("its picture (TextureFile) is not drawn");
+    }
     meter.done();
     return mesh;
   }
