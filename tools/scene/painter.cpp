@@ -33,16 +33,15 @@ class LitPainter {
         shading_(shading),
         picture_(picture),
         width_px_(camera.width_px() / picture.across),
-        row_bytes_(std::max<std::size_t>(1, row_bytes(format, width_px_))),
+        row_bytes_(row_bytes(format, width_px_)),
         fine_bytes_(samples_bytes(width_px_, picture.across)) {}
 
   int threads() const { return picture_.streams != nullptr ? picture_.streams->threads() : picture_.threads; }
   std::int32_t most_rows() const {
-    if (picture_.across != 1) {
-      return static_cast<std::int32_t>(built_.band().size / (row_bytes_ + fine_bytes_));
-    }
-    if (!is_straight()) {
-      return static_cast<std::int32_t>(built_.band().size / row_bytes_);
+    if (picture_.across != 1 || !is_straight()) {
+      const std::size_t bytes =
+          std::max<std::size_t>(1, row_bytes_ + (picture_.across != 1 ? fine_bytes_ : 0));
+      return static_cast<std::int32_t>(built_.band().size / bytes);
     }
     const std::int32_t rows = std::max(1, kMostPixelsAtOnce / width_px_);
     return rows < kSquarePx ? rows : rows / kSquarePx * kSquarePx;
