@@ -26,7 +26,8 @@ fi
 # runs APP KEY TEXT: the image that is flashed, as without a debugger, until it has said TEXT and a second longer. The log is
 # $work/silicon.log.
 runs() {
-  rm -f "$work/silicon.keys"
+  # The log goes, too: the machine empties it only after it is there, so what the last one said would be found.
+  rm -f "$work/silicon.keys" "$work/silicon.log"
   mkfifo "$work/silicon.keys"
   FLASHED=yes sh platform/emulate.sh "$board" "$1" <"$work/silicon.keys" >"$work/silicon.log" 2>"$work/silicon.noise" &
   machine=$!
