@@ -100,7 +100,7 @@ async function main() {
     const [width, height] = [16, 9];
     const rgba = new Uint8Array(4 * width * height);
     const header = fs.readFileSync('include/thimble/picture/pixel.h', 'utf8');
-    const bits = [...header.matchAll(/case PixelFormat::k\w+:\s+return (?:has_format\([\w:]+\) \? )?(\d+)/g)].map((found) => Number(found[1]));
+    const bits = header.match(/kFormatBits\[kPixelFormats\] = \{([\d, ]+)\}/)[1].split(',').map(Number);
     const shows = (format, rows_together) => {
       const display = new Display({name: 'a board', format, width, height, row_bytes: width * (bits[format] ?? 24) / 8, rows_together});
       display.bytes.set(display.bytes.map((_, i) => 37 * i));
@@ -513,8 +513,8 @@ function write(name, text) {
 async function mistakes() {
   write('empty.vox', '');
   write('words.obj', 'v 0 0 zero\n');
-  write('nan.xyz', '0 0 0\nnan 1 2\n');
-  write('huge.xyz', '0 0 0\n1e999 1 2\n');
+  write('nan.xyz', 'nan 1 2\n');
+  write('huge.xyz', '1e999 1 2\n');
   write('lonely.scene', 'model nowhere.vox at 0,0,0\n');
   const vox = fs.readFileSync('tools/gallery/scenes/castle.vox');
   fs.writeFileSync(path.join(work, 'cut.vox'), vox.subarray(0, 3000));

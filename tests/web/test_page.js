@@ -533,7 +533,7 @@ async function drops() {
     const folder = path.join(work, 'folder.vox');
     fs.mkdirSync(folder, {recursive: true});
     await says([folder], 'folder.vox: cannot be read here: it is a folder, or it has changed or gone; drop files');
-    fs.writeFileSync(path.join(work, 'nan.xyz'), '0 0 0\nnan 1 2\n');
+    fs.writeFileSync(path.join(work, 'nan.xyz'), 'nan 1 2\n');
     fs.writeFileSync(path.join(work, 'empty.vox'), '');
     fs.writeFileSync(path.join(work, 'castle.ply'), fs.readFileSync('tools/gallery/scenes/castle.vox').subarray(4));
     for (const name of ['nan.xyz', 'empty.vox', 'castle.ply']) {
