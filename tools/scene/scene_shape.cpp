@@ -116,7 +116,7 @@ class Columns {
   std::vector<Ends> ends_;
 };
 
-std::vector<Vec3i> corners_of(const VoxelBox& box) {
+std::vector<Vec3i> box_corners(const VoxelBox& box) {
   std::vector<Vec3i> corners;
   for (unsigned corner = 0; corner < 8 && !box.empty(); ++corner) {
     corners.push_back({(corner & 1U) != 0 ? box.high.x : box.low.x,
@@ -150,7 +150,7 @@ SceneShape shape_of(const BuiltScene& built) {
   SceneShape shape;
   shape.level = built.level();
   shape.bounds = built.bounds();
-  shape.corners = corners_of(shape.bounds);
+  shape.corners = box_corners(shape.bounds);
   return shape;
 }
 
