@@ -518,3 +518,33 @@ TEST_CASE("particles: what does not fit, cannot be read or written -> status 1, 
   }
   CHECK(folder.names() == Words{"script.txt"});
 }
+
+TEST_CASE("particles: no loss and gravity too strong for the step -> a note names the substeps") {
+  struct Row {
+    const char* gravity;
+    const char* parts;
+    const char* bounciness;
+    const char* note;  // "" where there is none
+  };
+  constexpr Row kRows[] = {
+      {"0,0.25", "1", "1", ""},
+      {"0,0.1", "1", "1", ""},
+      {"0,20", "1", "0.9", ""},
+      {"0,-0.3", "1", "1", "--substeps 2 keeps it"},
+      {"0.2,0.2", "1", "1", "--substeps 2 keeps it"},
+      {"0,1", "2", "1", "--substeps 4 keeps it"},
+      {"0,1", "4", "1", ""},
+      {"0,20", "1", "1", "no number of substeps keeps it"},
+      {"0,20", "16", "1", "no number of substeps keeps it"},
+  };
+  for (const Row& row : kRows) {
+    CAPTURE(row.gravity);
+    CAPTURE(row.parts);
+    const CommandResult result = particles({"--gravity", row.gravity, "--substeps", row.parts, "--bounciness",
+                                            row.bounciness, "--steps", "1", "--count", "3"});
+    CHECK(result.status == 0);
+    const std::size_t note = result.err.find("note: ");
+    CHECK((note == std::string::npos) == (row.note[0] == '\0'));
+    CHECK(result.err.find(row.note) != std::string::npos);
+  }
+}

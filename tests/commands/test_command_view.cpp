@@ -414,7 +414,7 @@ TEST_CASE("view: water -> still; space lets it rain, space again lays it to rest
   // One place takes more colours than water at rest has by the viewer's sizes of pixels. Of all places each 101st:
   // keeping the colours of every one takes longer than the frames do.
   std::map<std::size_t, std::set<std::string>> colors;
-  CHECK(wait_until(20, [&] {
+  CHECK(wait_until(60, [&] {
     const std::string now = shown(display);
     bool many = false;
     for (std::size_t at = 0; at + 3 <= now.size(); at += std::size_t{3} * 101) {

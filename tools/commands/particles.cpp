@@ -50,6 +50,25 @@ void tell_placing(const ParticlesCommand& command, const Placing& placing) {
   std::fprintf(stderr, "%s\n", text.c_str());
 }
 
+// Balls that lose nothing keep their energy within 1 per cent where gravity adds at most a quarter of a cell a step
+// in each part of a step (measured, src/plane/PARTICLES.md).
+void note_coarse_steps(const WorldOptions& world) {
+  const double gravity = std::hypot(world.gravity_q16.x, world.gravity_q16.y) / 65536.0;
+  const auto is_coarse = [&](int log2) { return gravity / (1 << log2) > 0.25; };
+  if (world.bounciness < 1 || !is_coarse(world.substeps_log2)) {
+    return;
+  }
+  int log2 = world.substeps_log2;
+  while (log2 < 4 && is_coarse(log2)) {
+    ++log2;
+  }
+  const std::string mend = is_coarse(log2) ? "no number of substeps keeps it"
+                                           : "--substeps " + std::to_string(1 << log2) + " keeps it";
+  std::fprintf(stderr,
+               "note: gravity is strong for the step: energy may change by more than 1 per cent; %s\n",
+               mend.c_str());
+}
+
 // What is written, in the order of the names.
 enum Output : std::size_t { kInputRecording, kState, kField, kFrame, kRecording, kCounts };
 
@@ -125,6 +144,9 @@ void run(const ParticlesCommand& given) {
                              : std::make_unique<PopulatedWorld>(world_options, bodies);
   if (bodies && !command.play.quiet) {
     tell_placing(command, populated->placing());
+  }
+  if (!command.play.quiet) {
+    note_coarse_steps(world_options);
   }
   PlayResult result;
   try {

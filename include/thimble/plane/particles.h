@@ -57,8 +57,8 @@ struct ParticleConfig {
   int32_t least_diameter = 2;  ///< of a random ball, cells, 1 .. most_diameter
   int32_t most_diameter = 12;  ///< of any ball, cells, 1 .. kMaxBallDiameter
   /// 0 (no bounce) .. 65536 (no loss). At 65536 nothing falls asleep under gravity, and the energy of speed
-  /// and height together keeps within 0.3 per cent of the start at a gravity of 0.1 cells a step a step, 0.9
-  /// at 0.5 and 1.1 at 1 (measured, not proven; src/plane/PARTICLES.md). Below 65536 it does not grow but for
+  /// and height together keeps within 1 per cent of the start while gravity adds at most a quarter of a cell a
+  /// step in each part of a step (measured, not proven; src/plane/PARTICLES.md). Below 65536 it does not grow but for
   /// gains that are still to be paid back: in the tests less than 0.1 per cent of the start, 1 from 65000 on.
   uint32_t restitution_q16 = 52429;
   Vec2i gravity_q16{0, 6554};  ///< cells a step a step, each +-kMaxAccelerationQ16
