@@ -18,7 +18,7 @@ TEST_CASE("command: --help -> exit 0, on standard output, what machines read nam
   // That each option stands there is held by what reads the help: test_command_pairs.cpp, test_command_describe.cpp.
   const std::vector<std::pair<std::string, Words>> all{
       {"render", {"shadows", "depth-cue", "dense|pool|compact", "microbit", "points:N"}},
-      {"trace", {"ox,oy,oz,dx,dy,dz", "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz"}},
+      {"trace", {"ox,oy,oz,dx,dy,dz", "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz,material,distance"}},
       {"info", {"points:N", "dense|pool|compact"}},
       {"sim", {"BUTTON", "TEXT"}},
       {"particles", {"TICK", "asleep", "steps a second"}},

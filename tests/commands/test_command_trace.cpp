@@ -74,11 +74,11 @@ TEST_CASE(
     }
     return text;
   };
-  CHECK(without_nodes(lines[1]) == "1,3,1,2,1.5,0,*,0,384,640,2,0,0");
-  CHECK(without_nodes(lines[2]) == "0,,,,,,*,0,1280,1280,1,0,0");
-  CHECK(without_nodes(lines[3]) == "1,3,1,2,0,-1,*,896,384,640,0,0,-7");
+  CHECK(without_nodes(lines[1]) == "1,3,1,2,1.5,0,*,0,384,640,2,0,0,0,3");
+  CHECK(without_nodes(lines[2]) == "0,,,,,,*,0,1280,1280,1,0,0,,");
+  CHECK(without_nodes(lines[3]) == "1,3,1,2,0,-1,*,896,384,640,0,0,-7,0,0");
   // Through the edge x = 3, y = 1 at t = 4, two axes at once: the lower one.
-  CHECK(without_nodes(lines[4]) == "1,3,1,2,4,0,*,-256,-768,-512,1,1,1");
+  CHECK(without_nodes(lines[4]) == "1,3,1,2,4,0,*,-256,-768,-512,1,1,1,0,6.928203230275509");
 }
 
 TEST_CASE(

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
@@ -23,7 +24,7 @@ Number whole(const std::string& text) {
 
 HitRow parse_row(const std::string& line, bool with_pixels) {
   const std::vector<std::string> columns = split(line);
-  if (columns.size() != (with_pixels ? 15U : 13U)) {
+  if (columns.size() != (with_pixels ? 17U : 15U)) {
     throw std::runtime_error("columns");
   }
   HitRow row;
@@ -57,6 +58,12 @@ HitRow parse_row(const std::string& line, bool with_pixels) {
   for (std::int64_t& number : row.ray.direction) {
     number = whole<std::int64_t>(columns[at++]);
   }
+  if (row.hit) {
+    row.material = whole<int>(columns[at++]);
+    row.distance = std::stod(columns[at++]);
+  } else if (!columns[at].empty() || !columns[at + 1].empty()) {
+    throw std::runtime_error("a miss with a material or distance");
+  }
   return row;
 }
 
@@ -82,15 +89,20 @@ std::string judge(const reference::BitGrid& grid, const HitRow& row) {
   const reference::Hit expected = reference::walk(grid, row.ray);
   std::array<char, 40> t{};
   std::snprintf(t.data(), t.size(), "%.17g", expected.t());
+  const auto& way = row.ray.direction;
+  const auto along = [&](std::size_t axis) { return static_cast<double>(way[axis]); };
+  const double distance = expected.t() * std::hypot(along(0), along(1), along(2));
   const bool same =
       row.hit == expected.hit &&
-      (!row.hit || (row.voxel == expected.voxel && row.t == t.data() && row.axis == expected.axis));
+      (!row.hit || (row.voxel == expected.voxel && row.t == t.data() && row.axis == expected.axis &&
+                    std::abs(row.distance - distance) <= 1e-15 * distance));
   if (same) {
     return {};
   }
   return reference::describe(row.ray) + ": reference " + reference::describe(expected) + ", command " +
          (row.hit ? "voxel (" + std::to_string(row.voxel[0]) + ", " + std::to_string(row.voxel[1]) + ", " +
-                        std::to_string(row.voxel[2]) + ") t " + row.t + " axis " + std::to_string(row.axis)
+                        std::to_string(row.voxel[2]) + ") t " + row.t + " axis " + std::to_string(row.axis) +
+                        " distance " + std::to_string(row.distance)
                   : "miss");
 }
 

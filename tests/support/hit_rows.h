@@ -12,7 +12,8 @@
 
 namespace thimble::tests {
 
-inline constexpr const char* kHitHeader = "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz";
+inline constexpr const char* kHitHeader =
+    "hit,vx,vy,vz,t,axis,nodes,qox,qoy,qoz,qdx,qdy,qdz,material,distance";
 
 struct HitRow {
   int px = -1, py = -1;  ///< only with `--hits`
@@ -22,14 +23,16 @@ struct HitRow {
   int axis = -1;
   long nodes = 0;
   reference::Ray ray;
+  int material = -1;
+  double distance = -1;  ///< voxels
 };
 
 /// All rows after the header. Throws `std::runtime_error` naming the line when the header or a row is not as
 /// the contract says: columns, whole numbers without blanks or plus signs, empty ones in a miss.
 std::vector<HitRow> parse_hits(std::string_view csv, bool with_pixels);
 
-/// What is wrong with the row, judged by `grid`: voxel, axis, and t to the last of its 17 digits; empty when
-/// it is right.
+/// What is wrong with the row, judged by `grid`: voxel, axis, t to the last of its 17 digits, and the
+/// distance; empty when it is right.
 std::string judge(const reference::BitGrid& grid, const HitRow& row);
 
 /// `voxels` as a point file of voxel indices.

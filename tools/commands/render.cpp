@@ -572,11 +572,10 @@ void add_render(CLI::App& app) {
             "where anything is; given without --effects it draws none",
             &command->shade_name);
   add_look(*sub, command);
-  add_path_option(
-      *sub, "--hits", "FILE.csv", &command->hits_path,
-      std::string("what the ray of each pixel's centre hits, a line a pixel, row by row from the top left: "
-                  "px,py,") +
-          kHitColumns + ", as trace writes them");
+  add_path_option(*sub, "--hits", "FILE.csv", &command->hits_path,
+                  "what the ray of each pixel's centre hits, a line a pixel, row by row from the top left: "
+                  "px,py and the columns "
+                  "that trace writes");
   add_path_option(*sub, "--depth-image", "FILE.pfm", &command->depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
   add_effect_options(*sub, &command->effects,

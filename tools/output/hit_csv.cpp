@@ -2,14 +2,25 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <string_view>
 
 namespace thimble::tools {
 namespace {
 
-// A line is shorter: twelve whole numbers of up to 11 characters, one of up to 24, commas.
+// A line is shorter: thirteen whole numbers of up to 11 characters, two of up to 24, commas.
 constexpr std::size_t kMostCharacters = 256;
 constexpr int kDigits = 17;
+
+// The squares' sum is exact: below 2^42.
+double length(const Vec3i& direction) {
+  std::int64_t sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    sum += std::int64_t{direction[axis]} * direction[axis];
+  }
+  return std::sqrt(static_cast<double>(sum));
+}
 
 }  // namespace
 
@@ -43,6 +54,12 @@ void append_hit(std::string* text, const Ray& ray, const Hit& hit) {
   }
   for (int axis = 0; axis < 3; ++axis) {
     put_next(ray.direction[axis]);
+  }
+  if (hit.kind == HitKind::kHit) {
+    put_next(int{hit.material});
+    put_next(hit_t(hit) * length(ray.direction));
+  } else {
+    put_letters(",,");
   }
   put_letters("\n");
   text->resize(static_cast<std::size_t>(at - text->data()));

@@ -1,0 +1,72 @@
+// thimble export: the voxels of a scene for other programs.
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "commands/scene_options.h"
+#include "output/output_set.h"
+#include "output/progress.h"
+#include "output/units.h"
+#include "output/voxel_file.h"
+#include "scene/built_scene.h"
+#include "scene/scene_source.h"
+
+namespace thimble::tools {
+namespace {
+
+struct ExportCommand {
+  SceneOptions scene;
+  std::string output;
+  VoxelFormat format = VoxelFormat::kVox;
+};
+
+void run(const ExportCommand& command) {
+  OutputSet outputs({command.output}, {command.scene.arguments.scene});
+  const auto source = command.scene.open();
+  const BuiltScene built = command.scene.build(*source);
+  if (built.voxels() == 0) {
+    throw InputError("nothing in " + printable(command.scene.arguments.scene) + " is solid");
+  }
+  {
+    ProgressBar bar("writing", command.scene.quiet);
+    write_voxels(outputs[0], command.format, built.compact(), source->palette(), source->has_colors(),
+                 [&](double done) { bar.update(done); });
+  }
+  outputs.commit();
+  if (!command.scene.quiet) {
+    const VoxelBox box = built.bounds();
+    std::fprintf(stderr, "%s %s, from %d,%d,%d to %d,%d,%d\n", grouped(built.voxels()).c_str(),
+                 built.voxels() == 1 ? "voxel" : "voxels", box.low.x, box.low.y, box.low.z, box.high.x - 1,
+                 box.high.y - 1, box.high.z - 1);
+  }
+}
+
+}  // namespace
+
+void add_export(CLI::App& app) {
+  auto command = std::make_shared<ExportCommand>();
+  CLI::App* sub =
+      add_command(app, "export", "Write the voxels of a scene, with their colours, for other programs.");
+  command->scene.add_scene(*sub);
+  add_text_option(
+      *sub, "-o,--output", "FILE",
+      [command](const std::string& text) -> std::string {
+        const auto format = voxel_format(text);
+        command->output = text;
+        command->format = format.value_or(command->format);
+        return format ? "" : "does not end in .vox, .npy, .ply or .csv";
+      },
+      "every solid voxel at its place: .vox (MagicaVoxel), .npy (bytes, X x Y x Z x 4: red, green, blue and "
+      "255, or 0 "
+      "where nothing is; X x Y x Z without colours), .ply (points) or .csv (x,y,z,r,g,b), whose coordinates "
+      "are voxel "
+      "indices: --as-voxels reads those two as such. Lights, cameras and what is glass, metal or glows are "
+      "left out")
+      .required();
+  add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no summary on standard error");
+  when_chosen(*sub, [command] { run(*command); });
+}
+
+}  // namespace thimble::tools
