@@ -87,6 +87,7 @@ struct CrewRun {
   std::uint32_t number = 0;
   std::uint32_t crc = 0;
   std::atomic<int> bands[2] = {0, 0};  // of each core
+  bool awaits_other = false;
 
   std::uint8_t* place(std::uint8_t index) {
     return memory.data() + std::size_t{index} * kCrewWidthPx * kCrewBandRows;
@@ -98,6 +99,10 @@ struct CrewRun {
           ++bands[core];
           for (std::int32_t i = 0; i < rows * kCrewWidthPx; ++i) {
             place(index)[i] = crew_pixel(number, row + i / kCrewWidthPx, i % kCrewWidthPx);
+          }
+          // A machine with other work may start a thread when the other has drawn all: the first one waits for it.
+          for (int ms = 0; core == 0 && awaits_other && bands[1] == 0 && ms < 60000; ++ms) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
           }
           // Now one core is slower, now the other.
           std::this_thread::sleep_for(
@@ -117,6 +122,7 @@ struct CrewRun {
     frame.begin();
     crc = 0;
     std::thread other;
+    awaits_other = cores > 1 && height_px > kCrewBandRows;
     if (cores > 1) {
       other = std::thread([&] { share(1, display); });
     }

@@ -59,7 +59,8 @@ HitRow parse_row(const std::string& line, bool with_pixels) {
     number = whole<std::int64_t>(columns[at++]);
   }
   if (row.hit) {
-    row.material = whole<int>(columns[at++]);
+    row.material = columns[at].empty() ? -1 : whole<int>(columns[at]);
+    ++at;
     row.distance = std::stod(columns[at++]);
   } else if (!columns[at].empty() || !columns[at + 1].empty()) {
     throw std::runtime_error("a miss with a material or distance");

@@ -23,7 +23,7 @@ struct HitRow {
   int axis = -1;
   long nodes = 0;
   reference::Ray ray;
-  int material = -1;
+  int material = -1;     ///< -1: the structure keeps none
   double distance = -1;  ///< voxels
 };
 

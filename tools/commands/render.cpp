@@ -533,7 +533,7 @@ void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngi
       const Hit& hit = hits[static_cast<std::size_t>(x)];
       if (csv != nullptr) {
         text += std::to_string(x) + ',' + std::to_string(y) + ',';
-        append_hit(&text, ray, hit);
+        append_hit(&text, ray, hit, command.scene.structure != StructureKind::kDense);
       }
       if (pfm != nullptr) {
         const double length =

@@ -304,7 +304,7 @@ void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built
   tracing->seconds += seconds_since(start);
   lines->clear();
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    append_hit(lines, rays[i], hits[i]);
+    append_hit(lines, rays[i], hits[i], built.structure() != StructureKind::kDense);
     tracing->hit_count += hits[i].kind == HitKind::kHit ? 1U : 0U;
     tracing->visits += hits[i].visits;
   }
@@ -375,7 +375,8 @@ void add_trace(CLI::App& app) {
       .required();
   add_path_option(*sub, "-o,--output", "FILE.csv", &command->output,
                   std::string("a header line, then one line a ray: ") + kHitColumns +
-                      "; point = q-origin / 256 + t * q-direction, in voxels; - is standard output")
+                      "; point = q-origin / 256 + t * q-direction, in voxels; a dense grid keeps no "
+                      "material; - is standard output")
       .default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
   command->engine.add_ray_engines_to(*sub);

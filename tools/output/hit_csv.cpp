@@ -24,7 +24,7 @@ double length(const Vec3i& direction) {
 
 }  // namespace
 
-void append_hit(std::string* text, const Ray& ray, const Hit& hit) {
+void append_hit(std::string* text, const Ray& ray, const Hit& hit, bool has_material) {
   const std::size_t before = text->size();
   text->resize(before + kMostCharacters);
   char* at = text->data() + before;
@@ -56,7 +56,10 @@ void append_hit(std::string* text, const Ray& ray, const Hit& hit) {
     put_next(ray.direction[axis]);
   }
   if (hit.kind == HitKind::kHit) {
-    put_next(int{hit.material});
+    put_letters(",");
+    if (has_material) {
+      put(int{hit.material});
+    }
     put_next(hit_t(hit) * length(ray.direction));
   } else {
     put_letters(",,");
