@@ -556,7 +556,7 @@ TEST_CASE("view: a window too small for its rays says so, and no more once it ha
   CHECK_FALSE(has_message());
   REQUIRE(display.xdotool("search --name '^thimble: ' windowsize 900 1 sleep 0.5"));
   REQUIRE(display.xdotool("search --name '^thimble: ' windowsize 900 300 sleep 0.5"));
-  CHECK_FALSE(has_message());
+  CHECK(wait_until(60, [&] { return !has_message(); }));
   REQUIRE(display.xdotool("mousemove 890 290 key p"));
   CHECK(wait_until(60, has_message));  // where a message would have been
   REQUIRE(display.xdotool("key q"));
