@@ -53,6 +53,11 @@ class Writer {
  public:
   explicit Writer(OutputFile* file) : file_(file) {}
   void text(std::string_view words) {
+    if (words.size() >= kPieceBytes) {  // not copied: an array may be as large as the memory
+      end();
+      file_->write(words);
+      return;
+    }
     bytes_.append(words);
     if (bytes_.size() >= kPieceBytes) {
       end();
