@@ -86,7 +86,7 @@ test: deps-test ## Build and run every test once, optimised, and the quick check
 	@echo "[2/2] the tests; those that take longest begin"
 	@THIMBLE_FEW=all ctest --test-dir build/release --output-on-failure -j 2 -LE whole $(CTEST_ARGS)
 # One ctest over all builds, so that there is one summary. AFTER_TEST=yes, where `make test` has just passed: of the
-# optimised tests only those that take more cases here, and those that are left to this.
+# optimised tests only those that are left to this.
 test-all: deps-test ## Build and run everything: optimised, sanitized, clang, fuzzing, mutants, every check
 	@$(MAKE) --no-print-directory release STEP='[1/5] '
 	@$(MAKE) --no-print-directory sanitize STEP='[2/5] '
@@ -96,7 +96,7 @@ test-all: deps-test ## Build and run everything: optimised, sanitized, clang, fu
 	@echo "[5/5] the tests; those that take longest begin"
 	@status=0; \
 	if [ -n "$(AFTER_TEST)" ]; then \
-	  ctest --test-dir build/release --output-on-failure -j 2 -L 'counted|whole' $(CTEST_ARGS) || status=1; \
+	  ctest --test-dir build/release --output-on-failure -j 2 -L whole $(CTEST_ARGS) || status=1; \
 	fi; \
 	ctest --test-dir build --output-on-failure -j 2 $(CTEST_ARGS) || status=1; \
 	exit $$status

@@ -85,12 +85,11 @@ endif()
 if(BOARD_VISITS_A_SECOND EQUAL 0)
   target_compile_definitions(thimble_apps PRIVATE THIMBLE_NO_HOLD)
 endif()
-# Lit frames by the map whose points send rays of their own (occlusion, mirrors, water; lamps) take long to compile: where no
-# image draws them, they are left out.
-math(EXPR sends_rays "${THIMBLE_IMAGE_EFFECTS} & 0x94")
-if(sends_rays EQUAL 0 AND NOT THIMBLE_IMAGE_LAMPS AND NOT "map_light" IN_LIST THIMBLE_APP)
+# Lit frames by the map whose points send rays of their own (occlusion, mirrors, water; lamps) take long to compile: an image
+# has those of its scene's effects.
+if(NOT "map_light" IN_LIST THIMBLE_APP)
   set_property(SOURCE ${PROJECT_SOURCE_DIR}/src/light/flat/flat.cpp TARGET_DIRECTORY thimble APPEND PROPERTY
-    COMPILE_DEFINITIONS THIMBLE_FLAT_SUNS_ALONE)
+    COMPILE_DEFINITIONS "THIMBLE_FLAT_EFFECTS=${THIMBLE_IMAGE_EFFECTS};THIMBLE_FLAT_LAMPS=${THIMBLE_IMAGE_LAMPS}")
 endif()
 thimble_choose_frames()
 thimble_choose_formats()

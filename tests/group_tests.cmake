@@ -35,13 +35,9 @@ function(thimble_group_tests)
   endforeach()
 endfunction()
 
-# thimble_label(NAME SOURCE): rows that take more cases for test-all than for test are `counted`. A row that draws on a GPU does so under the validation layer, which must say nothing; it is
-# skipped where there is no device.
-function(thimble_label name source)
-  file(STRINGS ${source} counted REGEX "many_or_few|support/counts[.]h")
-  if(counted)
-    set_property(TEST ${name} APPEND PROPERTY LABELS counted)
-  endif()
+# thimble_label(NAME): a row that draws on a GPU does so under the validation layer, which must say nothing; it is skipped where
+# there is no device.
+function(thimble_label name)
   if(name MATCHES "gpu_(device|command)$")
     set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation)
     set_property(TEST ${name} APPEND PROPERTY FAIL_REGULAR_EXPRESSION "Validation Error" "VUID-")

@@ -46,7 +46,7 @@ done >>"$work/sizes"
 sort -rn "$work/sizes" | cut -d ' ' -f 2 >"$work/list"
 # The analyzer leaves alone what a unit includes, unless a flag says otherwise. It follows the paths of a function for so
 # many steps, not for its own 225,000: those would take five times as long, and no fault of ours was ever found there.
-deep='--extra-arg=-Xclang --extra-arg=-analyzer-config --extra-arg=-Xclang --extra-arg=max-nodes=15000'
+deep='--extra-arg=-Xclang --extra-arg=-analyzer-config --extra-arg=-Xclang --extra-arg=max-nodes=4000'
 included="--config-file=$root/.clang-tidy --extra-arg=-Xclang --extra-arg=-analyzer-opt-analyze-headers"
 # lint BUILD <FILES: prints those with complaints; what is said of them lies in $work.
 lint() {

@@ -25,8 +25,16 @@ bool draws_flat(const Frame& frame, const BrickMap& map) {
 
 #define THIMBLE_DRAW_FLAT(set) \
   template Status draw_flat<set>(Frame&, const BrickMap&, Span<const SunBricks>, const Band&, LitCounts*);
-#ifdef THIMBLE_FLAT_SUNS_ALONE  // the image sends no others, and compiles sooner
+#ifdef THIMBLE_FLAT_EFFECTS  // a firmware image draws by the set of its scene, and compiles sooner without the others
 THIMBLE_FLAT_SUNS(THIMBLE_DRAW_FLAT)
+#if (THIMBLE_FLAT_EFFECTS & 0x94) != 0 || THIMBLE_FLAT_LAMPS != 0
+constexpr EffectSet kMoving = THIMBLE_FLAT_EFFECTS & ~(Effect::kEdges | kLamps);
+constexpr EffectSet kLit =
+    kMoving | (THIMBLE_FLAT_LAMPS != 0 && takes_lamps(kMoving) ? kLamps : Effect::kNone);
+constexpr bool kSendsRays =
+    (kLit & (Effect::kAmbientOcclusion | Effect::kMirror | Effect::kWater | kLamps)) != 0;
+THIMBLE_DRAW_FLAT(is_flat(kLit) && kSendsRays ? flat_specialisation(kLit) : 0x013)
+#endif
 #else
 THIMBLE_FLAT_SETS(THIMBLE_DRAW_FLAT)
 #endif
