@@ -33,8 +33,6 @@ if(THIMBLE_SANITIZE_THREADS)
   set(THIMBLE_TESTED "(wide/test_|viewer/test_pictures|tree/test_key_sort|picture/test_panel|platform/test_band_crew)")
 endif()
 if(THIMBLE_FUZZ)
-  # The fuzzers read files; the core under them has the sanitized tests.
-  set(THIMBLE_CORE_OPTIONS -fno-sanitize=all)
   add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
     -fno-omit-frame-pointer -O1)
   add_link_options(-fsanitize=address,undefined)

@@ -46,7 +46,7 @@ done >>"$work/sizes"
 sort -rn "$work/sizes" | cut -d ' ' -f 2 >"$work/list"
 # The analyzer leaves alone what a unit includes, unless a flag says otherwise. It follows the paths of a function for so
 # many steps, not for its own 225,000: those would take ten times as long, and no fault of ours was ever found there. In the
-# tools and the ports it found none at all and took three quarters of the time: it looks at the core.
+# tools and the ports it takes three quarters of the time: it looks at the core.
 deep='--extra-arg=-Xclang --extra-arg=-analyzer-config --extra-arg=-Xclang --extra-arg=max-nodes=4000'
 included="--config-file=$root/.clang-tidy --extra-arg=-Xclang --extra-arg=-analyzer-opt-analyze-headers"
 # lint BUILD <FILES: prints those with complaints; what is said of them lies in $work.

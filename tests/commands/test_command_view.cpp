@@ -411,8 +411,8 @@ TEST_CASE("view: water -> still; space lets it rain, space again lays it to rest
   REQUIRE(rests());
   const std::string own = still;
   REQUIRE(display.xdotool("key space"));
-  // One place takes more colours than water at rest has by the viewer's sizes of pixels, of which there are six. Of all
-  // places each 101st: keeping the colours of every one takes longer than the frames do.
+  // One place takes more colours than water at rest has by the viewer's sizes of pixels; sanitized, where a frame takes
+  // seconds, fewer do. Of all places each 101st: keeping the colours of every one takes longer than the frames do.
   constexpr std::size_t kMany = kSanitized ? 9 : 24;
   std::map<std::size_t, std::set<std::string>> colors;
   CHECK(wait_until(kSanitized ? 150 : 60, [&] {
