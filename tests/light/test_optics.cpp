@@ -30,8 +30,7 @@ using Reals = std::array<Real, 3>;
 const int kSweep = thimble::tests::many_or_few(1000000, 100000);
 
 std::uint64_t seed() {
-  const char* text = std::getenv("THIMBLE_SEED");
-  return text != nullptr && *text != '\0' ? std::strtoull(text, nullptr, 10) : 5;
+  return tests::seed_or(5);
 }
 
 Reals reals(const Vec3i& v) {

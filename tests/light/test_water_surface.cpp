@@ -21,11 +21,6 @@ __extension__ typedef __int128 Wide;
 
 const std::int64_t kRays = thimble::tests::many_or_few<std::int64_t>(1000000, 60000);
 
-std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text != nullptr && *text != '\0' ? std::atoll(text) : otherwise;
-}
-
 // Exact; denominators are positive.
 struct Fraction {
   Wide top = 0;
@@ -352,8 +347,8 @@ class Cases {
 };
 
 TEST_CASE("water surface: random rays and columns, a third of them degenerate -> the exact answer") {
-  const auto seed = static_cast<std::uint64_t>(number_from_environment("THIMBLE_SEED", 20240611));
-  const std::int64_t rays = number_from_environment("THIMBLE_RAYS", kRays);
+  const std::uint64_t seed = tests::seed_or(20240611);
+  const std::int64_t rays = tests::number_from_environment("THIMBLE_RAYS", kRays);
   CAPTURE(seed);
   Cases cases(seed);
   Tally tally;

@@ -5,36 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "support/particle_shadow.h"
 #include "thimble/plane/particles.h"
 
-namespace thimble::tests::particles_edges {
+namespace thimble::tools {
 namespace {
 
-struct OwnedWorld {
-  explicit OwnedWorld(const ParticleConfig& config) : bytes(particles_bytes(config), 0xA5) {
-    REQUIRE(ParticleWorld::make(config, {bytes.data(), bytes.size()}, &world) == Status::kOk);
-  }
-  Particle ball(std::uint32_t id) const {
-    Particle one;
-    REQUIRE(world.particle(id, &one));
-    return one;
-  }
-  std::vector<std::uint8_t> bytes;
-  ParticleWorld world;
-};
-
-ParticleConfig weightless(std::int32_t width, std::int32_t height, std::uint32_t capacity) {
-  ParticleConfig config;
-  config.width = width;
-  config.height = height;
-  config.capacity = capacity;
-  config.least_diameter = 1;
-  config.gravity_q16 = {0, 0};
-  return config;
-}
-
 TEST_CASE("particles edges: numbers of no ball -> nothing there holds them, nothing is known of them") {
-  OwnedWorld owned(weightless(40, 30, 5));
+  OwnedParticles owned(weightless(40, 30, 5));
   ParticleWorld& world = owned.world;
   std::uint32_t id = 99;
   REQUIRE(world.spawn(10 << 16, 10 << 16, 0, 0, 4, &id) == Status::kOk);
@@ -61,14 +39,14 @@ TEST_CASE("particles edges: numbers of no ball -> nothing there holds them, noth
 
 TEST_CASE("particles edges: walls in worlds of no cells, or by a brush of none -> nothing is drawn") {
   for (const Vec2i size : {Vec2i{0, 20}, Vec2i{20, 0}, Vec2i{0, 0}}) {
-    OwnedWorld owned(weightless(size.x, size.y, 2));
+    OwnedParticles owned(weightless(size.x, size.y, 2));
     const std::uint32_t before = owned.world.state_crc32();
     owned.world.draw_wall({-3, -3}, {30, 30}, 5);
     owned.world.erase_wall({-3, -3}, {30, 30}, 5);
     CHECK(owned.world.state_crc32() == before);
     CHECK(owned.world.ball_at({0, 0}) == kNoBall);
   }
-  OwnedWorld owned(weightless(20, 20, 2));
+  OwnedParticles owned(weightless(20, 20, 2));
   const std::uint32_t before = owned.world.state_crc32();
   for (const std::int32_t diameter : {0, -1, INT32_MIN}) {
     owned.world.draw_wall({5, 5}, {9, 9}, diameter);
@@ -88,7 +66,7 @@ TEST_CASE(
   ParticleConfig config = weightless(1500, 64, 2);
   config.most_diameter = 16;
   config.restitution_q16 = 65535;
-  OwnedWorld owned(config);
+  OwnedParticles owned(config);
   std::uint32_t still = 99;
   REQUIRE(owned.world.spawn(600 << 16, 24 << 16, 0, 0, 16, &still) == Status::kOk);
   std::uint32_t fast = 99;
@@ -111,7 +89,7 @@ TEST_CASE("particles edges: the seed whose mixture is 0 -> the numbers that foll
   config.least_diameter = 3;
   config.most_diameter = 12;
   config.seed = kZeroSeed;
-  OwnedWorld owned(config);
+  OwnedParticles owned(config);
   std::uint32_t state = 1;
   const auto below = [&](std::uint32_t limit) {
     state ^= state << 13;
@@ -132,7 +110,7 @@ TEST_CASE("particles edges: the seed whose mixture is 0 -> the numbers that foll
 }
 
 TEST_CASE("particles edges: a ball that is taken away while it is dragged -> the next of its number is not") {
-  OwnedWorld owned(weightless(60, 40, 2));
+  OwnedParticles owned(weightless(60, 40, 2));
   ParticleWorld& world = owned.world;
   std::uint32_t id = 99;
   REQUIRE(world.spawn(10 << 16, 10 << 16, 0, 0, 6, &id) == Status::kOk);
@@ -166,7 +144,7 @@ TEST_CASE("particles edges: a ball on one that a pointer stirs -> asleep after 2
     config.most_diameter = 8;
     config.restitution_q16 = 0;
     config.gravity_q16 = {0, 6554};
-    OwnedWorld owned(config);
+    OwnedParticles owned(config);
     ParticleWorld& world = owned.world;
     std::uint32_t low = 99;
     std::uint32_t high = 99;
@@ -184,4 +162,4 @@ TEST_CASE("particles edges: a ball on one that a pointer stirs -> asleep after 2
 }
 
 }  // namespace
-}  // namespace thimble::tests::particles_edges
+}  // namespace thimble::tools

@@ -7,33 +7,16 @@
 #include <cstdlib>
 #include <vector>
 
+#include "support/particle_shadow.h"
 #include "thimble/base/memory.h"
 #include "thimble/plane/particles.h"
 
 namespace thimble::tools {
 namespace {
 
-struct ExactWorld {
-  explicit ExactWorld(const ParticleConfig& config) : bytes(particles_bytes(config)) {
-    REQUIRE(ParticleWorld::make(config, {bytes.data(), bytes.size()}, &world) == Status::kOk);
-  }
-  std::vector<std::uint8_t> bytes;
-  ParticleWorld world;
-};
-
-ParticleConfig floating(std::int32_t width, std::int32_t height) {
-  ParticleConfig config;
-  config.width = width;
-  config.height = height;
-  config.capacity = 12;
-  config.least_diameter = 1;
-  config.gravity_q16 = {0, 0};
-  return config;
-}
-
 // A ball alone at (x, y), at rest; what one step with the pointer makes of its speed.
 Vec2i speed_after(PointerMode mode, Vec2i place, Vec2i at, std::int32_t radius, std::int32_t strength_q16) {
-  ExactWorld exact(floating(400, 400));
+  OwnedParticles exact(weightless(400, 400));
   std::uint32_t id = 0;
   REQUIRE(exact.world.spawn(place.x, place.y, 0, 0, 1, &id) == Status::kOk);
   if (mode == PointerMode::kDrag) {
@@ -117,7 +100,7 @@ TEST_CASE("particles exact: drag -> a quarter of the way to the cell's middle, 3
 
 TEST_CASE("particles exact: a brush of every diameter -> so many cells each way around its place") {
   for (std::int32_t diameter = 1; diameter <= 40; ++diameter) {
-    ExactWorld exact(floating(128, 128));
+    OwnedParticles exact(weightless(128, 128));
     exact.world.draw_wall({60, 50}, diameter);
     const BitField& field = exact.world.field();
     const std::int32_t before = (diameter - 1) / 2;
@@ -148,9 +131,9 @@ TEST_CASE("particles exact: a brush of every diameter -> so many cells each way 
 
 TEST_CASE("particles exact: a floor erased from any end -> the ball on it wakes") {
   for (int turn = 0; turn < 4; ++turn) {
-    ParticleConfig config = floating(100, 60);
+    ParticleConfig config = weightless(100, 60);
     config.gravity_q16 = {0, 6554};
-    ExactWorld exact(config);
+    OwnedParticles exact(config);
     exact.world.draw_box({{0, 40}, {100, 42}});
     REQUIRE(exact.world.spawn(50 * 65536, 37 * 65536, 0, 0, 4, nullptr) == Status::kOk);
     for (int step = 0; step < 500 && exact.world.awake() != 0; ++step) {
@@ -166,10 +149,10 @@ TEST_CASE("particles exact: a floor erased from any end -> the ball on it wakes"
 
 TEST_CASE("particles exact: counters -> each move, wall and ball once; nothing of the last step") {
   for (const std::int32_t substeps_log2 : {0, 2}) {
-    ParticleConfig config = floating(200, 100);
+    ParticleConfig config = weightless(200, 100);
     config.substeps_log2 = substeps_log2;
     config.restitution_q16 = 65536;
-    ExactWorld exact(config);
+    OwnedParticles exact(config);
     // One flies to the right wall, two meet in the middle, a fourth stays where it is and sleeps.
     REQUIRE(exact.world.spawn(150 * 65536, 10 * 65536, 65536, 0, 4, nullptr) == Status::kOk);
     REQUIRE(exact.world.spawn(80 * 65536, 50 * 65536, 65536, 0, 4, nullptr) == Status::kOk);
@@ -189,7 +172,7 @@ TEST_CASE("particles exact: counters -> each move, wall and ball once; nothing o
     CHECK(balls == 1);
   }
   // A sleeper that is hit is woken, once.
-  ExactWorld exact(floating(200, 100));
+  OwnedParticles exact(weightless(200, 100));
   REQUIRE(exact.world.spawn(100 * 65536, 50 * 65536, 0, 0, 4, nullptr) == Status::kOk);
   for (int step = 0; step < 300 && exact.world.awake() != 0; ++step) {
     exact.world.step();
@@ -206,7 +189,7 @@ TEST_CASE("particles exact: counters -> each move, wall and ball once; nothing o
 
 TEST_CASE("particles exact: the state's CRC-32 -> of the bytes that its definition lists") {
   for (const std::int32_t width : {8, 31, 32, 37, 64, 65, 97}) {
-    ExactWorld exact(floating(width, 20));
+    OwnedParticles exact(weightless(width, 20));
     ParticleWorld& world = exact.world;
     std::uint32_t removed = 0;
     REQUIRE(world.spawn(2 * 65536, 3 * 65536, 300, -500, 1, nullptr) == Status::kOk);
@@ -250,18 +233,18 @@ TEST_CASE("particles exact: the state's CRC-32 -> of the bytes that its definiti
 TEST_CASE(
     "particles exact: a random ball that fits exactly -> placed; one that does not -> the same balls to "
     "come") {
-  ParticleConfig config = floating(7, 7);
+  ParticleConfig config = weightless(7, 7);
   config.least_diameter = 7;
   config.most_diameter = 7;
-  ExactWorld whole(config);
+  OwnedParticles whole(config);
   CHECK(whole.world.spawn_random(0) == Status::kOk);
   CHECK(whole.world.spawn_random(0) == Status::kOutOfMemory);
   for (const bool wide : {false, true}) {
-    ParticleConfig low = floating(wide ? 40 : 6, wide ? 6 : 40);
+    ParticleConfig low = weightless(wide ? 40 : 6, wide ? 6 : 40);
     low.least_diameter = 6;
     low.most_diameter = 7;
-    ExactWorld refused(low);
-    ExactWorld other(low);
+    OwnedParticles refused(low);
+    OwnedParticles other(low);
     CHECK(refused.world.set_diameters(7, 7) == Status::kOk);
     for (int i = 0; i < 5; ++i) {
       CHECK(refused.world.spawn_random(900) == Status::kOutOfRange);
@@ -307,7 +290,7 @@ void throw_about(const Turmoil& one, Turmoil* seen) {
   config.gravity_q16 = one.gravity_q16;
   config.substeps_log2 = one.substeps_log2;
   config.subpixel_bits = one.subpixel_bits;
-  ExactWorld exact(config);
+  OwnedParticles exact(config);
   ParticleWorld& world = exact.world;
   for (std::int32_t x = 20; x + 20 < one.width; x += 40) {
     world.draw_wall({x, one.height / 2}, {x + 12, one.height / 2 + x % 17 - 8}, 1 + x % 3);

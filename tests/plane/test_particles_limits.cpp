@@ -14,27 +14,9 @@
 namespace thimble::tools {
 namespace {
 
-// A world in bytes that were used before.
-struct UsedWorld {
-  explicit UsedWorld(const ParticleConfig& config) : bytes(particles_bytes(config), 0xA5) {
-    REQUIRE(ParticleWorld::make(config, {bytes.data(), bytes.size()}, &world) == Status::kOk);
-  }
-  Particle ball(std::uint32_t id) const {
-    Particle one;
-    REQUIRE(world.particle(id, &one));
-    return one;
-  }
-  std::vector<std::uint8_t> bytes;
-  ParticleWorld world;
-};
-
-ParticleConfig weightless(std::int32_t width, std::int32_t height, std::uint32_t capacity) {
-  ParticleConfig config;
-  config.width = width;
-  config.height = height;
-  config.capacity = capacity;
-  config.least_diameter = 1;
-  config.gravity_q16 = {0, 0};
+// As bouncy as can be.
+ParticleConfig bouncy(std::int32_t width, std::int32_t height, std::uint32_t capacity) {
+  ParticleConfig config = weightless(width, height, capacity);
   config.restitution_q16 = 65536;
   return config;
 }
@@ -45,9 +27,9 @@ TEST_CASE("particles limits: any of many balls awake -> just those move, in ever
   for (const std::uint32_t count :
        {31U, 32U, 33U, 1023U, 1024U, 1025U, 1056U, 1984U, 2048U, 33792U, 34000U}) {
     CAPTURE(count);
-    ParticleConfig config = weightless(256, static_cast<std::int32_t>(count / 128 + 2), count);
+    ParticleConfig config = bouncy(256, static_cast<std::int32_t>(count / 128 + 2), count);
     config.most_diameter = 1;
-    UsedWorld used(config);
+    OwnedParticles used(config);
     ParticleWorld& world = used.world;
     for (std::uint32_t id = 0; id < count; ++id) {
       // Every second cell of a row, so that each may move to its right.
@@ -101,11 +83,11 @@ TEST_CASE("particles limits: any of many balls awake -> just those move, in ever
 
 TEST_CASE("particles limits: every cell of a crowded world -> ball_at is the ball whose disc covers it") {
   for (std::int32_t most = 1; most <= kMaxBallDiameter; ++most) {
-    ParticleConfig config = weightless(97, 71, 60);
+    ParticleConfig config = bouncy(97, 71, 60);
     config.most_diameter = most;
     config.least_diameter = most > 2 ? most - 2 : 1;
     config.seed = static_cast<std::uint32_t>(most);
-    UsedWorld used(config);
+    OwnedParticles used(config);
     used.world.draw_wall({3, 60}, {90, 50}, 2);
     for (std::uint32_t i = 0; i < config.capacity; ++i) {
       static_cast<void>(used.world.spawn_random(40000));
@@ -139,9 +121,9 @@ TEST_CASE("particles limits: balls of 256 to 8192 cells a step hit another -> it
   std::mt19937 random(20260802);
   int hits = 0;
   for (int number = 0; number < 600; ++number) {
-    ParticleConfig config = weightless(300, 300, 2);
+    ParticleConfig config = bouncy(300, 300, 2);
     config.most_diameter = kMaxBallDiameter;
-    UsedWorld used(config);
+    OwnedParticles used(config);
     const auto in = [&](double low, double high) {
       return low + (high - low) * static_cast<double>(random() % 65536) / 65536;
     };
@@ -182,9 +164,9 @@ TEST_CASE(
   for (std::int32_t diameter = 1; diameter <= kMaxBallDiameter; ++diameter) {
     for (const std::int32_t speed : {131073, 1000003, 16777215, 33554433, 98765431, 268435455}) {
       for (const bool upright : {false, true}) {
-        ParticleConfig config = weightless(200, 200, 2);
+        ParticleConfig config = bouncy(200, 200, 2);
         config.most_diameter = kMaxBallDiameter;
-        UsedWorld used(config);
+        OwnedParticles used(config);
         const std::int32_t there = q16(100) + 1;
         const std::int32_t here = there - q16(diameter + 1);
         REQUIRE(used.world.spawn(there, there, 0, 0, diameter, nullptr) == Status::kOk);
@@ -206,10 +188,10 @@ TEST_CASE(
 TEST_CASE("particles limits: what slides under gravity about half a cell a step -> slowed, or held back") {
   for (const std::int32_t pull : {20000, 32767, 32768, 32769, 40000}) {
     for (const std::int32_t sign : {1, -1}) {
-      ParticleConfig config = weightless(200, 40, 1);
+      ParticleConfig config = bouncy(200, 40, 1);
       config.gravity_q16 = {0, sign * pull};
       config.restitution_q16 = 65535;
-      UsedWorld used(config);
+      OwnedParticles used(config);
       const std::int32_t y = sign > 0 ? 38 * 65536 + 32767 : 2 * 65536 - 32767;
       REQUIRE(used.world.spawn(q16(50), y, 131072, 0, 4, nullptr) == Status::kOk);
       used.world.step();
@@ -224,8 +206,8 @@ TEST_CASE("particles limits: a pointer beyond two fields -> taken at two fields,
   constexpr std::int32_t kFar = 2 * kMaxFieldSide;
   for (const PointerMode mode : {PointerMode::kDraw, PointerMode::kErase, PointerMode::kAttract}) {
     const auto state = [&](Vec2i at) {
-      ParticleConfig config = weightless(300, 200, 4);
-      UsedWorld used(config);
+      ParticleConfig config = bouncy(300, 200, 4);
+      OwnedParticles used(config);
       used.world.draw_box({{100, 0}, {130, 200}});
       REQUIRE(used.world.spawn(q16(40), q16(40), 0, 0, 4, nullptr) == Status::kOk);
       used.world.set_pointer(mode, {0, 0}, 3);

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "support/counts.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/camera.h"
 #include "thimble/tree/brick_map.h"
@@ -19,8 +20,6 @@ namespace thimble::tests {
 
 /// How many pixels a run draws: a million, fewer where that takes long; with THIMBLE_LONG `longest`.
 std::uint64_t pixels_to_draw(std::uint64_t longest = 100'000'000, std::uint64_t slowly = 100'000);
-/// The seed of all of them: THIMBLE_SEED or this one.
-std::uint64_t seed_or(std::uint64_t otherwise);
 
 enum class ChipWorld { kHills, kBlocks, kDust, kRoom, kMerged, kTower };
 inline constexpr ChipWorld kChipWorlds[] = {ChipWorld::kHills, ChipWorld::kBlocks, ChipWorld::kDust,

@@ -1,7 +1,8 @@
-// How many cases of a kind a test takes.
+// How many cases of a kind a test takes, and from which seed.
 #ifndef THIMBLE_TESTS_SUPPORT_COUNTS_H
 #define THIMBLE_TESTS_SUPPORT_COUNTS_H
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 
@@ -20,6 +21,17 @@ inline bool takes_few() {
 template <class Count>
 Count many_or_few(Count many, Count few) {
   return takes_few() ? few : many;
+}
+
+/// What a variable of the environment says, or this.
+inline std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
+  const char* const text = std::getenv(name);
+  return text != nullptr && *text != '\0' ? std::atoll(text) : otherwise;
+}
+/// The seed of all random cases: THIMBLE_SEED or this one.
+inline std::uint64_t seed_or(std::uint64_t otherwise) {
+  return static_cast<std::uint64_t>(
+      number_from_environment("THIMBLE_SEED", static_cast<std::int64_t>(otherwise)));
 }
 
 }  // namespace thimble::tests

@@ -16,9 +16,6 @@
 
 namespace thimble::testing {
 
-inline constexpr EffectSet kTracing = Effect::kShadows | Effect::kAmbientOcclusion | Effect::kMirror |
-                                      Effect::kGlass | Effect::kMedia | Effect::kWater | Effect::kDirectLight;
-
 /// Not to be moved: the tree points into it.
 class LitWorld {
  public:

@@ -3,6 +3,8 @@
 #ifndef THIMBLE_TESTS_SUPPORT_PARTICLE_SHADOW_H
 #define THIMBLE_TESTS_SUPPORT_PARTICLE_SHADOW_H
 
+#include <doctest/doctest.h>
+
 #include <cstdint>
 #include <cstdlib>
 #include <random>
@@ -23,6 +25,31 @@ inline bool in_disc(int diameter, int column, int row) {
   const int u = 2 * column + 1 - diameter;
   const int v = 2 * row + 1 - diameter;
   return u * u + v * v < diameter * diameter;
+}
+
+/// A world in bytes of its own, which were used before.
+struct OwnedParticles {
+  explicit OwnedParticles(const ParticleConfig& config) : bytes(particles_bytes(config), 0xA5) {
+    REQUIRE(ParticleWorld::make(config, {bytes.data(), bytes.size()}, &world) == Status::kOk);
+  }
+  Particle ball(std::uint32_t id) const {
+    Particle one;
+    REQUIRE(world.particle(id, &one));
+    return one;
+  }
+  std::vector<std::uint8_t> bytes;
+  ParticleWorld world;
+};
+
+/// A place without gravity for balls of any diameter.
+inline ParticleConfig weightless(std::int32_t width, std::int32_t height, std::uint32_t capacity = 12) {
+  ParticleConfig config;
+  config.width = width;
+  config.height = height;
+  config.capacity = capacity;
+  config.least_diameter = 1;
+  config.gravity_q16 = {0, 0};
+  return config;
 }
 
 class ShadowedWorld {

@@ -28,15 +28,6 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text != nullptr && *text != '\0' ? std::atoll(text) : otherwise;
-}
-
-std::uint64_t seed_or(std::int64_t otherwise) {
-  return static_cast<std::uint64_t>(number_from_environment("THIMBLE_SEED", otherwise));
-}
-
 std::int64_t default_rays() {
   return thimble::tests::many_or_few(1000000, 60000);
 }
@@ -172,8 +163,6 @@ class Judge {
         tree_(open_or_throw(bytes_)),
         random_(seed),
         tally_(tally) {}
-
-  const CompactTree& tree() const { return tree_; }
 
   void check_ray(const RayCase& ray_case) {
     const Ray ray = to_core(ray_case.ray);
@@ -566,97 +555,6 @@ TEST_CASE("leave_medium: merged blocks -> crossed whole as media, entered as blo
   }
   CHECK(wrong == 0);
   CHECK(merged > 100);
-}
-
-TEST_CASE("glass of index 1: every pixel's ray -> what is behind it, bit for bit, as without it") {
-  // A cube of glass between the eye and a floor with pillars, one of which touches the glass.
-  Cells with(5);
-  with.fill({0, 0, 0}, {32, 32, 2}, 1);
-  with.fill({20, 3, 2}, {23, 9, 20}, 2);
-  with.fill({14, 18, 2}, {18, 22, 12}, 3);
-  Cells without = with;
-  for (int z = 4; z < 17; ++z) {
-    for (int y = 5; y < 21; ++y) {
-      for (int x = 7; x < 18; ++x) {
-        if (with.at({x, y, z}) == kAir) {
-          with.set({x, y, z}, 9);
-        }
-      }
-    }
-  }
-  const HeapBytes bytes_with = with.tree();
-  const HeapBytes bytes_without = without.tree();
-  const CompactTree glass = open_or_throw(bytes_with);
-  const CompactTree plain = open_or_throw(bytes_without);
-  int through = 0;
-  int differ = 0;
-  for (int eye = 0; eye < 3; ++eye) {
-    const Vec3Q8 origin{Q8::from_raw(eye == 2 ? 2816 : -2000), Q8::from_raw(3000),
-                        Q8::from_raw(eye == 1 ? 9000 : 2600)};
-    for (int y = -60; y < 60; ++y) {
-      for (int x = -60; x < 60; ++x) {
-        const Ray ray{origin, {1000, 9 * x, (eye == 1 ? -900 : -100) + 9 * y}};
-        Hit expected;
-        REQUIRE(closest_hit(plain, ray, &expected) == Status::kOk);
-        Hit hit;
-        REQUIRE(closest_hit(glass, ray, &hit) == Status::kOk);
-        for (int surfaces = 0; surfaces < 8 && hit.kind == HitKind::kHit && hit.material == 9; ++surfaces) {
-          ++through;
-          MediumExit exit;
-          REQUIRE(leave_medium(glass, ray, 9, &exit, point_of(hit)) == Status::kOk);
-          REQUIRE(exit.hit.material != 9);
-          REQUIRE(closest_hit_from(glass, ray, point_of(exit.hit), &hit) == Status::kOk);
-        }
-        differ += hit.kind == expected.kind &&
-                          (hit.kind == HitKind::kMiss ||
-                           (hit.voxel == expected.voxel && hit.axis == expected.axis &&
-                            hit.t_numerator == expected.t_numerator &&
-                            hit.t_denominator == expected.t_denominator && hit.material == expected.material))
-                      ? 0
-                      : 1;
-      }
-    }
-  }
-  CHECK(differ == 0);
-  CHECK(through > 5000);
-}
-
-TEST_CASE("closed mirror box: a ray with any number of bounces -> never outside, never the voxel it left") {
-  Cells cells(4);
-  cells.fill({0, 0, 0}, {16, 16, 16}, 4);
-  cells.fill({1, 1, 1}, {15, 15, 15}, kAir);
-  const HeapBytes bytes = cells.tree();
-  const CompactTree tree = open_or_throw(bytes);
-  std::mt19937_64 random(11);
-  int bad = 0;
-  for (int i = 0; i < 2000; ++i) {
-    Ray ray;
-    for (int axis = 0; axis < 3; ++axis) {
-      ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(pick(random, 256, 15 * 256 - 1)));
-      ray.direction[axis] = static_cast<std::int32_t>(pick(random, -40, 40) * pick(random, 0, 700));
-    }
-    if (ray.direction == Vec3i{}) {
-      continue;
-    }
-    for (int bounce = 0; bounce < 50; ++bounce) {
-      Hit hit;
-      REQUIRE(closest_hit(tree, ray, &hit) == Status::kOk);
-      if (hit.kind != HitKind::kHit || hit.axis < 0) {
-        // In an edge or a corner of the box a start may lie on a wall's plane: then the ray is in that wall
-        // at once.
-        const Vec3i voxel = starting_voxel(ray);
-        bad += hit.kind == HitKind::kHit && hit.axis < 0 && hit.voxel == voxel ? 0 : 1;
-        break;
-      }
-      const Ray next{start_on_face(ray, hit), reflect(ray.direction, hit.axis)};
-      bad += leaves_face(next.direction, hit.axis, looks_to_smaller(ray, hit)) ? 0 : 1;
-      Hit after;
-      REQUIRE(closest_hit(tree, next, &after) == Status::kOk);
-      bad += after.kind == HitKind::kHit && after.voxel != hit.voxel ? 0 : 1;
-      ray = next;
-    }
-  }
-  CHECK(bad == 0);
 }
 
 TEST_CASE(

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <iostream>
 #include <random>
 #include <string>
@@ -21,11 +20,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-
-std::int64_t number_from_environment(const char* name, std::int64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text != nullptr && *text != '\0' ? std::atoll(text) : otherwise;
-}
 
 std::int64_t default_rays() {
   return many_or_few(10000000, 200000);
