@@ -325,6 +325,9 @@ TEST_CASE(
     for (int number = 0; number < kPixelFormats; ++number) {
       CAPTURE(number);
       const auto format = static_cast<PixelFormat>(number);
+      if (width == 200 && tests::takes_few() && number % 3 != 0) {
+        continue;
+      }
       for (const std::size_t offset : {0U, 1U}) {
         world.scene.lights = {world.lights.data(), 1};
         compare(world, format, offset);
