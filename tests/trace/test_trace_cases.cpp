@@ -43,7 +43,6 @@ class Cube {
     CHECK(reference::same_answer(reference::walk(scene_.reference(), to_reference(ray)), expected));
   }
   void expect_miss(const Ray& ray) const { expect(ray, reference::Hit{}); }
-  const SceneUnderTest& scene() const { return scene_; }
 
  private:
   SceneUnderTest scene_;
@@ -200,33 +199,4 @@ TEST_CASE("trace: merged blocks of a coarsened tree -> lowest corner, exact t, t
     }
   }
   CHECK(merged_hits > 100);
-}
-
-TEST_CASE("trace: many materials -> the right one for voxels and for uniform blocks, in pool and compact") {
-  std::mt19937_64 random(71);
-  for (int world = 0; world < 10; ++world) {
-    std::vector<std::uint8_t> bytes(Octree::octree_bytes(60000));
-    Octree pool;
-    REQUIRE(Octree::make(5, {bytes.data(), bytes.size()}, &pool) == Status::kOk);
-    for (int i = 0; i < 30; ++i) {
-      const int block_level = static_cast<int>(pick(random, 0, 3));
-      const int side = 1 << block_level;
-      const Vec3i corner{side * static_cast<int>(pick(random, 0, 31 >> block_level)),
-                         side * static_cast<int>(pick(random, 0, 31 >> block_level)),
-                         side * static_cast<int>(pick(random, 0, 31 >> block_level))};
-      REQUIRE(pool.insert_block(corner, block_level, static_cast<uint8_t>(pick(random, 0, 255))) ==
-              Status::kOk);
-    }
-    std::vector<reference::Block> blocks;
-    leaves_of(pool, pool.root(), {}, 5, blocks);
-    const HeapBytes compact = compact_of(pool, kMinRankShift + world % 8);
-    const CompactTree tree = open_or_throw(compact);
-    CHECK(tree.many_materials());
-    RayCases cases(72 + static_cast<std::uint64_t>(world), {32, 32, 32});
-    int merged_hits = 0;
-    for (int i = 0; i < 20 * kScale; ++i) {
-      check_blocks(pool, tree, blocks, to_core(cases.next().ray), &merged_hits);
-    }
-    CHECK(merged_hits == 0);
-  }
 }
