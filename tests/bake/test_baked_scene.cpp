@@ -13,7 +13,7 @@
 
 #include "support/baked_damage.h"
 #include "support/scene_under_test.h"
-#include "thimble/picture/render.h"
+#include "thimble/bake/baked_scene.h"
 #include "thimble/tree/octree.h"
 
 namespace {
@@ -43,7 +43,7 @@ SceneCamera orthographic() {
 }
 
 // A tree of level 3 with two materials and a solid block.
-HeapBytes small_tree(bool coarsened = false) {
+HeapBytes small_tree() {
   std::vector<std::uint8_t> bytes(Octree::octree_bytes(4096));
   Octree octree;
   REQUIRE(Octree::make(3, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
@@ -54,16 +54,12 @@ HeapBytes small_tree(bool coarsened = false) {
     const Vec3i at{coordinate(), coordinate(), coordinate()};
     REQUIRE(octree.insert(at, static_cast<std::uint8_t>(random() % 3)) == Status::kOk);
   }
-  if (coarsened) {
-    REQUIRE(octree.coarsen_to(octree.nodes_used() / 2) == Status::kOk);
-  }
   return compact_of(octree);
 }
 
 // All parts but the brick map, which only has to come back.
 struct WholeScene {
-  explicit WholeScene(const SceneCamera& with, bool coarsened = false)
-      : tree(small_tree(coarsened)), camera(with) {
+  explicit WholeScene(const SceneCamera& with) : tree(small_tree()), camera(with) {
     parts.tree = tree.view();
     parts.palette = Span<const Rgb8>(kColors);
     parts.camera = &camera;
@@ -73,8 +69,8 @@ struct WholeScene {
   WholeScene(const WholeScene&) = delete;
   WholeScene& operator=(const WholeScene&) = delete;
 
-  HeapBytes baked(std::size_t offset = 0) const {
-    HeapBytes bytes(baked_bytes(parts), offset);
+  HeapBytes baked() const {
+    HeapBytes bytes(baked_bytes(parts));
     REQUIRE(BakedScene::make(parts, bytes.span(), nullptr) == Status::kOk);
     return bytes;
   }
@@ -84,16 +80,6 @@ struct WholeScene {
   SceneCamera camera;
   BakedParts parts;
 };
-
-bool equal(ConstBytes a, ConstBytes b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end());
-}
-
-bool equal(const SceneCamera& a, const SceneCamera& b) {
-  return a.is_perspective == b.is_perspective && a.direction_bits == b.direction_bits && a.eye == b.eye &&
-         a.target == b.target && a.forward == b.forward && a.up == b.up && a.fov_degrees == b.fov_degrees &&
-         a.span == b.span;
-}
 
 std::uint32_t load32(ConstBytes bytes, std::size_t at) {
   std::uint32_t word = 0;
@@ -126,30 +112,6 @@ constexpr std::size_t entry(std::size_t index) {
 }
 
 }  // namespace
-
-TEST_CASE(
-    "baked scene: opened again, at any address -> tree, palette, camera, bricks and name as they were") {
-  for (const SceneCamera& camera : {perspective(), orthographic()}) {
-    for (const std::size_t offset : {0U, 1U, 2U, 3U}) {
-      CAPTURE(offset);
-      const WholeScene whole(camera);
-      const HeapBytes bytes = whole.baked(offset);
-      CHECK(BakedScene::validate(bytes.view()) == nullptr);
-      BakedScene scene;
-      REQUIRE(BakedScene::open(bytes.view(), &scene) == Status::kOk);
-      CHECK(scene.validate() == Status::kOk);
-      CHECK(equal({scene.tree().bytes(), scene.tree().size_bytes()}, whole.parts.tree));
-      CHECK(equal(scene.section(SectionKind::kTree), whole.parts.tree));
-      CHECK(
-          std::equal(scene.palette().begin(), scene.palette().end(), std::begin(kColors), std::end(kColors)));
-      REQUIRE(scene.has_camera());
-      CHECK(equal(scene.camera(), camera));
-      CHECK(equal(scene.section(SectionKind::kBrickMap), whole.parts.brick_map));
-      CHECK(equal(scene.section(SectionKind::kName), whole.parts.name));
-      CHECK(equal(scene.bytes(), bytes.view()));
-    }
-  }
-}
 
 TEST_CASE(
     "baked scene: bytes behind the tree -> refused; a scene never opened -> damaged, without sections") {
@@ -361,19 +323,4 @@ TEST_CASE("baked scene: a part that fills the last section -> no byte behind the
       CHECK(bytes[i] == 0xA5);
     }
   }
-}
-
-TEST_CASE("baked scene: an empty world -> bakes, opens and shows nothing") {
-  std::vector<std::uint8_t> pool(64);
-  Octree octree;
-  REQUIRE(Octree::make(12, {pool.data(), pool.size()}, &octree) == Status::kOk);
-  const HeapBytes tree = compact_of(octree);
-  BakedParts parts;
-  parts.tree = tree.view();
-  const HeapBytes bytes(baked_bytes(parts));
-  REQUIRE(BakedScene::make(parts, bytes.span(), nullptr) == Status::kOk);
-  BakedScene scene;
-  REQUIRE(BakedScene::open(bytes.view(), &scene) == Status::kOk);
-  CHECK(scene.tree().empty());
-  CHECK(use_damaged(bytes.view(), {1, 1, 1}) == nullptr);
 }

@@ -405,27 +405,6 @@ TEST_CASE("water: mirrored and turned disturbances -> mirrored and turned waves,
   }
 }
 
-TEST_CASE("water: a touch in the middle -> waves with all eight symmetries of a square, bit for bit") {
-  for (const std::int32_t side : {20, 21}) {
-    Pool pool;
-    make_pool(pool, side, side);
-    REQUIRE(pool.open() == Status::kOk);
-    REQUIRE(pool.water.touch(128 * side, 128 * side, 800, 900) == Status::kOk);
-    REQUIRE(pool.water.drop(128 * side, 128 * side, 800, 900, 900) == Status::kOk);
-    for (int step = 0; step < 500; ++step) {
-      pool.water.step();
-      for (std::int32_t y = 0; y < side; ++y) {
-        for (std::int32_t x = 0; x < side; ++x) {
-          for (int symmetry = 1; symmetry < 8; ++symmetry) {
-            const auto [to_x, to_y] = image(symmetry, x, y, side - 1);
-            REQUIRE(pool.water.height_q16(x, y) == pool.water.height_q16(to_x, to_y));
-          }
-        }
-      }
-    }
-  }
-}
-
 TEST_CASE("water: a touch -> sinks as deep as asked, rises around, nothing is lost") {
   Pool pool;
   make_pool(pool, 40, 40);

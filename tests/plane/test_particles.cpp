@@ -96,19 +96,6 @@ TEST_CASE("particles: worlds of every kind -> field, discs and sleepers are righ
   }
 }
 
-TEST_CASE("particles: the paper's world falling -> right after every step of the fall") {
-  ParticleConfig config;
-  config.seed = 77;
-  ShadowedWorld shadow(config);
-  REQUIRE(shadow.fill(693, q16(3)) == 693);
-  for (int step = 0; step < 200 / kShare; ++step) {
-    shadow.world.step();
-    if (step % 4 == 0) {
-      REQUIRE(shadow.fault() == "");
-    }
-  }
-}
-
 TEST_CASE("particles: 5,000 cells a step -> nothing comes through a wall of one cell") {
   for (const bool upright : {true, false}) {
     for (const double speed : {50.0, 500.0, 5000.0}) {
