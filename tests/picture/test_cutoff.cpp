@@ -396,37 +396,6 @@ TEST_CASE("cutoff: a band that cannot be drawn -> an error and nothing drawn") {
   CHECK(attempt(tree, camera, 0, 15, pixels.size(), 0) == Status::kOk);
 }
 
-TEST_CASE("cutoff: any bytes that open as a tree -> no read outside, visits bounded, an answer") {
-  INFO("seed ", kSeed);
-  std::mt19937_64 random(kSeed);
-  const SceneUnderTest world({16, 16, 16}, random_voxels(random, 16), 3, 5);
-  Cutoff cutoff;
-  REQUIRE(cutoff.set(pinhole(4, 30, 60), Q16::saturate(1)) == Status::kOk);
-  const Rgb8 palette[] = {{1, 2, 3}, {200, 100, 50}};
-  const int rounds = kScenes * 20;
-  for (int round = 0; round < rounds; ++round) {
-    const HeapBytes bytes(world.compact().size_bytes());
-    std::copy_n(world.compact().bytes(), bytes.span().size, bytes.span().data);
-    for (std::int64_t hits = pick(random, 1, 6); hits > 0; --hits) {
-      const std::int64_t at = pick(random, static_cast<std::int64_t>(kCompactHeaderBytes),
-                                   static_cast<std::int64_t>(bytes.span().size) - 1);
-      bytes.span()[static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(random());
-    }
-    CompactTree tree;
-    REQUIRE(CompactTree::open(bytes.view(), &tree) == Status::kOk);
-    const HeapBytes table(node_colors_bytes(tree.node_count()));
-    NodeColors colors;
-    const Status status = NodeColors::make(tree, palette, {}, table.span(), &colors);
-    CHECK((status == Status::kOk || status == Status::kDamaged));
-    RayCases rays(random(), {16, 16, 16}, full_limits({16, 16, 16}));
-    for (int i = 0; i < 40; ++i) {
-      CutHit hit;
-      REQUIRE(closest_hit_cut(tree, to_core(rays.next().ray), cutoff, &hit) == Status::kOk);
-      CHECK(hit.hit.visits <= 200);
-    }
-  }
-}
-
 // --- Mean colours.
 
 TEST_CASE("node colours: every node -> the mean of its voxels' colours, once rounded") {

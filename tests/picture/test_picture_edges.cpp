@@ -141,24 +141,6 @@ TEST_CASE("picture edges: cameras that no frame by bricks takes -> told, and ref
   CHECK(render_band(tree, bricks.map, Camera(), shading, nothing) == Status::kBadArgument);
 }
 
-TEST_CASE("picture edges: a map of another tree, or of none -> damaged, not a pixel drawn") {
-  OwnedPool pool(4);
-  REQUIRE(pool.octree.insert_block({4, 4, 4}, 2, 1) == Status::kOk);
-  const HeapBytes bytes = compact_of(pool.octree);
-  REQUIRE(pool.octree.insert({0, 0, 0}, 1) == Status::kOk);
-  const HeapBytes other_bytes = compact_of(pool.octree);
-  const CompactTree tree = open_or_throw(bytes);
-  const CompactTree other = open_or_throw(other_bytes);
-  const Bricks bricks(tree);
-  const Camera camera = ahead(4);
-  for (const BrickMap& map : {bricks.map, BrickMap()}) {
-    Picture picture(camera, PixelFormat::kGray8);
-    CHECK(render_band(other, map, camera, {}, picture.band) == Status::kDamaged);
-    CHECK(render_band_32(other, map, camera, {}, picture.band) == Status::kDamaged);
-    CHECK(picture.untouched());
-  }
-}
-
 // ---- with a cut-off
 
 TEST_CASE("picture edges: a ray with a cut-off that no path takes -> a status, and the hit as it was") {
@@ -349,27 +331,6 @@ TEST_CASE(
 }
 
 // ---- samples
-
-TEST_CASE("picture edges: samples of pictures of no width, of less, or of too many -> a status") {
-  std::vector<std::uint8_t> fine(1000, 200);
-  std::vector<std::uint8_t> row(100, 0x5A);
-  const auto average = [&](int across, std::int32_t width_px) {
-    return average_samples({fine.data(), fine.size()}, across, width_px, 0, PixelFormat::kGray8,
-                           {row.data(), row.size()});
-  };
-  CHECK(average(2, -1) == Status::kOutOfRange);
-  CHECK(average(2, INT32_MIN) == Status::kOutOfRange);
-  CHECK(average(0, 4) == Status::kOutOfRange);
-  CHECK(average(-1, 4) == Status::kOutOfRange);
-  CHECK(average(kMaxSamplesAcross + 1, 4) == Status::kOutOfRange);
-  CHECK(average(2, kMaxPicturePx / 2 + 1) == Status::kOutOfRange);
-  CHECK(average(2, kMaxPicturePx / 2) == Status::kOutOfMemory);
-  CHECK(average(2, 0) == Status::kOk);
-  CHECK(row[0] == 0x5A);
-  REQUIRE(average(2, 4) == Status::kOk);
-  CHECK(row[3] == 200);
-  CHECK(row[4] == 0x5A);
-}
 
 }  // namespace
 }  // namespace thimble::tests::picture_edges

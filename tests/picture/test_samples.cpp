@@ -105,6 +105,12 @@ TEST_CASE("samples: limits -> an error and nothing written") {
   CHECK(attempt(0, 0, 10, 0) == Status::kOutOfRange);
   CHECK(attempt(0, kMaxSamplesAcross + 1, 1, 0) == Status::kOutOfRange);
   CHECK(attempt(0, 2, kMaxPicturePx / 2 + 1, 0) == Status::kOutOfRange);
+  CHECK(attempt(0, 2, kMaxPicturePx / 2, 0) == Status::kOutOfMemory);
+  for (const std::int32_t below : {-1, INT32_MIN}) {
+    CHECK(attempt(0, below, 10, 0) == Status::kOutOfRange);
+    CHECK(attempt(0, 2, below, 0) == Status::kOutOfRange);
+  }
+  CHECK(attempt(0, 2, 0, 0) == Status::kOk);
   CHECK(attempt(1, 2, 10, 0) == Status::kOutOfMemory);
   CHECK(attempt(0, 2, 10, 1) == Status::kOutOfMemory);
   CHECK(row.view()[0] == 7);
