@@ -150,22 +150,6 @@ TEST_CASE(
   CHECK(map.material(tree, last.number, last.bit) == 9);
 }
 
-TEST_CASE("deep map: no tree, levels that have no map -> none made, no bytes") {
-  CHECK(most_brick_map_bytes(CompactTree()) == 0);
-  CHECK(BrickMap::make(CompactTree(), {}, nullptr, nullptr) == Status::kOutOfRange);
-  for (const int level : {1, 11}) {
-    CAPTURE(level);
-    std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
-    Octree octree;
-    REQUIRE(Octree::make(level, {pool.data(), pool.size()}, &octree) == Status::kOk);
-    REQUIRE(octree.insert({1, 1, 1}, 5) == Status::kOk);
-    const HeapBytes bytes = compact_of(octree);
-    const CompactTree tree = open_or_throw(bytes);
-    CHECK(most_brick_map_bytes(tree) == 0);
-    CHECK(BrickMap::make(tree, {}, nullptr, nullptr) == Status::kOutOfRange);
-  }
-}
-
 TEST_CASE("deep map: each beginning of a map -> truncated, or not a map") {
   std::mt19937_64 random(914);
   const ChipScene scene = make_deep_scene(random, DeepWorld::kCorners, 10);
@@ -182,31 +166,6 @@ TEST_CASE("deep map: each beginning of a map -> truncated, or not a map") {
     const char* const text = BrickMap::validate(bytes.view());
     REQUIRE(text != nullptr);
     CHECK(std::strcmp(text, length < 4 ? "not a brick map" : "truncated") == 0);
-  }
-}
-
-TEST_CASE(
-    "deep map: less room than it takes -> out of memory, nothing written behind it; exactly so much -> "
-    "made") {
-  std::mt19937_64 random(911);
-  for (int turn = 0; turn < kDeepWorldKinds; ++turn) {
-    CAPTURE(turn);
-    const ChipScene scene = make_deep_scene(random, static_cast<DeepWorld>(turn), 9);
-    const std::size_t size = scene.map.size_bytes();
-    REQUIRE(size <= most_brick_map_bytes(scene.tree));
-    const HeapBytes room(size);
-    std::size_t written = 0;
-    BrickMap map;
-    REQUIRE(BrickMap::make(scene.tree, room.span(), &map, &written) == Status::kOk);
-    CHECK(written == size);
-    CHECK(BrickMap::validate(room.view()) == nullptr);
-    CHECK(std::memcmp(room.view().data, scene.map_words.data(), size) == 0);
-    for (const std::size_t less : {size - 1, size - 12, size / 2, std::size_t{48}, std::size_t{0}}) {
-      const HeapBytes tight(less);
-      CHECK(BrickMap::make(scene.tree, tight.span(), nullptr, nullptr) == Status::kOutOfMemory);
-    }
-    const HeapBytes odd(size, 4);
-    CHECK(BrickMap::make(scene.tree, odd.span(), nullptr, nullptr) == Status::kBadArgument);
   }
 }
 

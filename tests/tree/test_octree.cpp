@@ -230,26 +230,25 @@ void check_holds(const Octree& tree, const Model& model) {
   CHECK(missing == 0);
 }
 
-/// A pool with guard bytes on both sides, which may start at any address.
+/// A pool with guard bytes on both sides.
 class Pool {
  public:
-  explicit Pool(std::size_t bytes, std::size_t offset = 0)
-      : bytes_(bytes), offset_(offset), storage_(bytes + offset + 2 * kGuard, kPattern) {}
   static Pool of_nodes(std::size_t nodes) { return Pool(Octree::octree_bytes(nodes)); }
-  Bytes bytes() { return {storage_.data() + kGuard + offset_, bytes_}; }
+  Bytes bytes() { return {storage_.data() + kGuard, bytes_}; }
   std::vector<std::uint8_t> contents() const { return storage_; }
   bool intact() const {
     const auto is_pattern = [](std::uint8_t byte) { return byte == kPattern; };
-    const auto first = storage_.begin() + static_cast<std::ptrdiff_t>(kGuard + offset_);
+    const auto first = storage_.begin() + static_cast<std::ptrdiff_t>(kGuard);
     return std::all_of(storage_.begin(), first, is_pattern) &&
            std::all_of(first + static_cast<std::ptrdiff_t>(bytes_), storage_.end(), is_pattern);
   }
 
  private:
+  explicit Pool(std::size_t bytes) : bytes_(bytes), storage_(bytes + 2 * kGuard, kPattern) {}
+
   static constexpr std::size_t kGuard = 32;
   static constexpr std::uint8_t kPattern = 0xA5;
   std::size_t bytes_;
-  std::size_t offset_;
   std::vector<std::uint8_t> storage_;
 };
 
@@ -379,30 +378,6 @@ std::uint64_t coarsen_slowly(Ref& root, std::size_t max_nodes) {
   return added;
 }
 
-/// Whether all that is solid in `inner` is solid in `outer`.
-bool covers(const Ref& outer, const Ref& inner) {
-  if (outer.mask == 0) {
-    return true;
-  }
-  if (inner.mask == 0 || (outer.mask & inner.mask) != inner.mask) {
-    return false;
-  }
-  if (inner.level == 1) {
-    return true;
-  }
-  auto outer_child = outer.children.begin();
-  auto inner_child = inner.children.begin();
-  for (int octant = 0; octant < 8; ++octant) {
-    const bool in_inner = (inner.mask >> octant & 1) != 0;
-    if (in_inner && !covers(*outer_child, *inner_child)) {
-      return false;
-    }
-    inner_child += in_inner ? 1 : 0;
-    outer_child += (outer.mask >> octant & 1) != 0 ? 1 : 0;
-  }
-  return true;
-}
-
 constexpr int kMergedCell = 1000;
 
 /// What each voxel is: -1 empty, else its material, plus kMergedCell in a merged block.
@@ -515,43 +490,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "octree: every number of bytes at every address -> nothing outside is written, and the bound is enough") {
-  Random random(7);
-  const int level = 3;
-  const Model model = random_model(random, level, 2, 60);
-  const std::size_t enough = nodes_of(model, level);
-  for (std::size_t offset = 0; offset < 8; ++offset) {
-    for (std::size_t bytes = 0; bytes <= Octree::octree_bytes(enough); ++bytes) {
-      Pool pool(bytes, offset);
-      Octree tree;
-      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
-      const std::size_t padding = (0 - reinterpret_cast<std::uintptr_t>(pool.bytes().data)) % 4;
-      CHECK(tree.capacity() == (bytes < padding ? 0 : (bytes - padding) / 8));
-      bool refused = false;
-      for (const auto& [index, material] : model) {
-        const Status status = tree.insert(position(index), material);
-        refused = refused || status == Status::kOutOfMemory;
-      }
-      CHECK(pool.intact());
-      CHECK(refused == (tree.capacity() < enough));
-      if (bytes == Octree::octree_bytes(enough)) {
-        CHECK_FALSE(refused);
-      }
-      tree.set_coarsen(true);
-      for (const auto& [index, material] : model) {
-        REQUIRE(tree.insert(position(index), material) ==
-                (tree.capacity() > 0 ? Status::kOk : Status::kOutOfMemory));
-      }
-      CHECK(pool.intact());
-      if (tree.capacity() > 0) {
-        check_holds(tree, model);
-      }
-    }
-  }
-  CHECK(Octree::octree_bytes(SIZE_MAX / 2) == SIZE_MAX);
-}
-
 TEST_CASE("octree: coarsening to every size -> what the slow greedy search makes, node by node") {
   for (std::uint64_t seed = 1; seed <= 40U * static_cast<unsigned>(kEffort); ++seed) {
     CAPTURE(seed);
@@ -654,36 +592,6 @@ TEST_CASE("octree: edits between coarsenings -> only the edit changes, and the t
     }
     CHECK(pool.intact());
   }
-}
-
-TEST_CASE(
-    "octree: a smaller budget -> a superset of the larger one's solid, as many nodes as allowed or fewer") {
-  Random random(21);
-  const int level = 8;
-  Model model;
-  for (int i = 0; i < 3000; ++i) {
-    const int spread = 1 << (3 + below(random, 5));
-    model[morton({below(random, spread), below(random, 256), below(random, spread)})] = 0;
-  }
-  std::uint64_t last_voxels = 0;
-  Ref last = canonical(model, level);
-  for (std::size_t max_nodes = nodes_of(model, level); max_nodes > 0; max_nodes = max_nodes * 2 / 3) {
-    Pool pool = Pool::of_nodes(20000);
-    Octree tree;
-    REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
-    fill(tree, model);
-    REQUIRE(tree.coarsen_to(max_nodes) == Status::kOk);
-    CHECK(tree.nodes_used() <= max_nodes);
-    CHECK(tree.voxels() >= last_voxels);
-    CHECK(tree.voxels() == model.size() + tree.solid_added());
-    CHECK(count_solid(read(tree, tree.root(), level)) == tree.voxels());
-    check_holds(tree, model);
-    last_voxels = tree.voxels();
-    const Ref now = read(tree, tree.root(), level);
-    CHECK(covers(now, last));
-    last = now;
-  }
-  CHECK(last_voxels == volume(level));
 }
 
 TEST_CASE(

@@ -96,25 +96,6 @@ TEST_CASE("tree edges: a block that completes seven others, one of them merged -
   }
 }
 
-TEST_CASE("tree edges: coarsening at a price out of range -> at the nearest one") {
-  constexpr int kLast = Octree::kPriceSteps - 1;
-  for (const int step : {INT32_MIN, -1, 0, kLast, kLast + 1, INT32_MAX}) {
-    OwnedPool pool(3);
-    // Four solid blocks of two materials, which merging joins for nothing; 8 voxels to a block of 512.
-    for (std::int32_t i = 0; i < 8; ++i) {
-      REQUIRE(pool.octree.insert_block({(i & 1) * 2, (i >> 1 & 1) * 2, (i >> 2) * 2}, 1,
-                                       static_cast<std::uint8_t>(i % 2)) == Status::kOk);
-    }
-    REQUIRE(pool.octree.insert({7, 7, 7}, 3) == Status::kOk);
-    // At the least price what adds nothing goes: the eight blocks; at the greatest everything.
-    const bool cheap = step <= 0;
-    CHECK(pool.octree.nodes_at(step) == (cheap ? 4 : 1));
-    pool.octree.coarsen_at(step);
-    CHECK(pool.octree.nodes_used() == (cheap ? 4 : 1));
-    CHECK(pool.octree.solid_added() == (cheap ? 0 : 512 - 65));
-  }
-}
-
 // ---- compact trees
 
 TEST_CASE("tree edges: views of no tree -> nothing in them, and no part of a world") {
@@ -519,11 +500,13 @@ TEST_CASE("tree edges: a brick map of no tree, or of a level without maps -> out
   HeapBytes out(most_brick_map_bytes(2));
   BrickMap map;
   CHECK(BrickMap::make(CompactTree(), out.span(), &map) == Status::kOutOfRange);
+  CHECK(most_brick_map_bytes(CompactTree()) == 0);
   for (const int level : {1, 11, 12}) {
     OwnedPool pool(level);
     REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);
     const HeapBytes bytes = compact_of(pool.octree);
     CHECK(BrickMap::make(open_or_throw(bytes), out.span(), &map) == Status::kOutOfRange);
+    CHECK(most_brick_map_bytes(open_or_throw(bytes)) == 0);
   }
   OwnedPool pool(2);
   REQUIRE(pool.octree.insert({1, 1, 1}, 2) == Status::kOk);
