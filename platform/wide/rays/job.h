@@ -45,11 +45,6 @@ void put_hit(Job* job, size_t ray, const Vec3i& cell, uint32_t visits);
 /// Notes that a ray of `exits` met nothing.
 void put_no_exit(Job* job, size_t ray, uint32_t visits);
 
-/// Whether t = numerator / denominator lies before the point.
-inline bool is_before(int64_t numerator, int64_t denominator, const RayPoint& before) {
-  return numerator * before.t_denominator < before.t_numerator * denominator;  // 23 + 31 and 31 + 28 bits
-}
-
 }  // namespace thimble::wide
 
 #endif

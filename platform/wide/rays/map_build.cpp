@@ -1,12 +1,171 @@
-// Makes the map of a compact tree: chunks and leaves in one walk over the nodes, then how far the empty cubes reach.
+// Makes the map of a compact tree: chunks and leaves in one walk over the nodes, then how far the empty cubes reach; and
+// its layers. The layer of a material that rays go through says where that material is not: a cube that it fills is
+// empty there, a cube that holds nothing of it is solid.
 #include <algorithm>
 
 #include "wide/rays/leaf_tag.h"
-#include "wide/rays/map_parts.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
 namespace {
+
+constexpr int kChunkLevel = 4;
+constexpr int kLeafLevel = 2;
+constexpr unsigned kLeaves = 64;                    // of a chunk
+constexpr uint32_t kEmptyCube = 0x11111111U;        // before it is known how far it reaches
+constexpr uint64_t kMostWords = uint64_t{1} << 28;  // of chunks, so that a cube says where its own begins
+
+// How large a map is, and where each level of the tree begins.
+struct MapShape {
+  uint32_t level_begin[kMaxLevel + 1];
+  uint32_t block_begin[kMaxLevel + 1];  // the number of the first solid block of each level
+  uint64_t top = 0;                     // cubes
+  uint64_t words = 0;                   // of chunks
+};
+
+struct Corner {
+  uint32_t x;
+  uint32_t y;
+  uint32_t z;
+};
+
+// One numbering of a map's cubes, 2^bits a side.
+struct Cubes {
+  uint32_t* top;
+  int bits;
+
+  // The word of the cube that begins at `corner`, in voxels.
+  uint32_t* at(const Corner& corner) const {
+    return top + ((uint64_t{corner.z >> kChunkLevel} << bits | corner.y >> kChunkLevel) << bits |
+                  corner.x >> kChunkLevel);
+  }
+  // Fills the cubes of a block of 2^level voxels a side.
+  void fill(const Corner& corner, int level, uint32_t word) const {
+    const uint32_t side = uint32_t{1} << (level - kChunkLevel);
+    for (uint32_t i = 0; i < side * side; ++i) {
+      std::fill_n(at({corner.x, corner.y + i % side * 16, corner.z + i / side * 16}), side, word);
+    }
+  }
+};
+
+Corner child_corner(const Corner& corner, unsigned octant, int level) {
+  const uint32_t half = uint32_t{1} << (level - 1);
+  return {corner.x + ((octant & 1U) != 0 ? half : 0), corner.y + ((octant & 2U) != 0 ? half : 0),
+          corner.z + ((octant & 4U) != 0 ? half : 0)};
+}
+
+// The number of a cell in its cube of 4^3 cells.
+unsigned bit_of(const Corner& corner, int level) {
+  return ((corner.x >> level) & 3U) | ((corner.y >> level) & 3U) << 2 | ((corner.z >> level) & 3U) << 4;
+}
+
+// Spreads the mask of a node of level 1 to the bits of a leaf, of which the node has the first voxel.
+uint64_t spread(unsigned mask) {
+  return uint64_t{mask & 3U} | uint64_t{(mask >> 2) & 3U} << 4 | uint64_t{(mask >> 4) & 3U} << 16 |
+         uint64_t{(mask >> 6) & 3U} << 20;
+}
+
+// Walks the tree depth first, which meets the nodes, blocks and voxels of each level in the order in which they stand,
+// and hands `taker` what is solid:
+//
+//     take_block(corner, level, material)   a block of a chunk's size or larger
+//     take_leaf(corner, voxels, material)   within a chunk: bits of the leaf at `corner`, of one block
+//     take_voxels(corner, mask, number)     single voxels: the mask of their node, and the number of the first
+//     take_chunk(corner, node)              behind all that a chunk holds; in a smaller world it is the root
+template <class Taker>
+class TreeWalk {
+ public:
+  TreeWalk(const CompactTree& tree, const MapShape& shape, Taker* taker)
+      : tree_(tree), taker_(*taker), next_voxel_(tree.node_count()) {
+    std::copy(shape.level_begin, shape.level_begin + kMaxLevel + 1, next_node_);
+    std::copy(shape.block_begin, shape.block_begin + kMaxLevel + 1, next_block_);
+  }
+
+  void run() {
+    if (tree_.level() < kChunkLevel) {
+      enter_chunk(tree_.level(), {0, 0, 0});
+    } else {
+      enter(tree_.level(), {0, 0, 0});
+    }
+  }
+
+ private:
+  void enter(int level, const Corner& corner) {
+    if (level == kChunkLevel && tree_.mask(next_node_[level]) != 0) {
+      enter_chunk(level, corner);
+      return;
+    }
+    visit(
+        level, [&](unsigned octant) { enter(level - 1, child_corner(corner, octant, level)); },
+        [&](uint8_t material) { taker_.take_block(corner, level, material); });
+  }
+
+  void enter_chunk(int level, const Corner& corner) {
+    const uint32_t node = next_node_[level];
+    collect(level, corner);
+    taker_.take_chunk(corner, node);
+  }
+
+  void collect(int level, const Corner& corner) {
+    const unsigned mask = tree_.mask(next_node_[level]);
+    if (level == 1 && mask != 0) {
+      ++next_node_[1];
+      taker_.take_voxels(corner, mask, next_voxel_);
+      next_voxel_ += static_cast<uint32_t>(__builtin_popcount(mask));
+      return;
+    }
+    visit(
+        level, [&](unsigned octant) { collect(level - 1, child_corner(corner, octant, level)); },
+        [&](uint8_t material) {
+          if (level < kLeafLevel) {
+            taker_.take_leaf(corner, spread(0xFF) << bit_of(corner, 0), material);
+            return;
+          }
+          const uint32_t side = uint32_t{1} << (level - kLeafLevel);
+          for (uint32_t i = 0; i < side * side * side; ++i) {
+            taker_.take_leaf(
+                {corner.x + i % side * 4, corner.y + i / side % side * 4, corner.z + i / side / side * 4},
+                ~uint64_t{0}, material);
+          }
+        });
+  }
+
+  // Calls enter_child(octant) for each child of the next node of `level`, or enter_block(material) where it is solid.
+  template <class EnterChild, class EnterBlock>
+  void visit(int level, const EnterChild& enter_child, const EnterBlock& enter_block) {
+    unsigned mask = tree_.mask(next_node_[level]++);
+    if (mask == 0) {
+      enter_block(tree_.material_of_block(next_block_[level]++));
+    }
+    for (; mask != 0; mask &= mask - 1) {
+      enter_child(static_cast<unsigned>(__builtin_ctz(mask)));
+    }
+  }
+
+  const CompactTree& tree_;
+  Taker& taker_;
+  uint32_t next_node_[kMaxLevel + 1];
+  uint32_t next_block_[kMaxLevel + 1];
+  uint32_t next_voxel_;
+};
+
+// The media of a map. Each has a numbering of cubes of its own, in which everything but the medium is solid.
+struct MediaShape {
+  uint8_t layers = 0;
+  uint8_t materials[kMostMedia];  // the layers' materials, in order
+  uint64_t words = 0;             // of their chunks
+};
+
+bool has_nodes(const CompactTree& tree) {
+  return tree.many_materials() || tree.merged();
+}
+// Whether chunks say where the tree keeps the materials of their voxels.
+bool has_tags(const CompactTree& tree) {
+  return tree.many_materials() && !tree.merged();
+}
+int map_level(const CompactTree& tree) {
+  return std::max(tree.level(), kChunkLevel);
+}
 
 constexpr uint32_t kMaxReach = 15;
 constexpr uint64_t kMaterials = 256;
@@ -68,14 +227,39 @@ size_t map_bytes(const MapShape& shape, const MediaShape& media) {
                              (shape.words + media.words) * sizeof(uint64_t) + kPadding);
 }
 
+// Writes a chunk from word `next` on: the mask of its leaves, `second` if chunks have such a word, and the leaves.
+// Without a place to write it only counts words. Returns the mask.
+uint64_t put_leaves(const uint64_t (&leaves)[kLeaves], bool has_second, uint64_t second, uint64_t* chunks,
+                    uint64_t* next) {
+  const uint64_t begin = *next;
+  *next += has_second ? 2 : 1;
+  uint64_t mask = 0;
+  for (unsigned leaf = 0; leaf < kLeaves; ++leaf) {
+    if (leaves[leaf] == 0) {
+      continue;
+    }
+    mask |= uint64_t{1} << leaf;
+    if (chunks != nullptr) {
+      chunks[*next] = leaves[leaf];
+    }
+    ++*next;
+  }
+  if (chunks != nullptr) {
+    chunks[begin] = mask;
+  }
+  if (chunks != nullptr && has_second) {
+    chunks[begin + 1] = second;
+  }
+  return mask;
+}
+
 // Writes what a walk over the tree hands it.
 class MapWriter {
  public:
   MapWriter(const CompactTree& tree, const MapShape& shape, uint32_t* top, uint64_t* chunks)
       : tree_(tree),
-        top_(top),
+        cubes_{top, map_level(tree) - kChunkLevel},
         chunks_(chunks),
-        bits_(map_level(tree) - kChunkLevel),
         has_nodes_(has_nodes(tree)),
         has_tags_(has_tags(tree)) {
     std::fill(top, top + shape.top, kEmptyCube);
@@ -83,7 +267,7 @@ class MapWriter {
   }
 
   void take_block(const Corner& corner, int level, uint8_t material) {
-    fill_cubes(level, corner, has_tags_ ? solid_chunk(material) : 0);
+    cubes_.fill(corner, level, has_tags_ ? solid_chunk(material) << 4 : 0);
   }
   void take_leaf(const Corner& leaf, uint64_t voxels, uint8_t material) {
     chunk_[bit_of(leaf, kLeafLevel)] |= voxels;
@@ -98,7 +282,7 @@ class MapWriter {
     }
   }
   void take_chunk(const Corner& corner, uint32_t node) {
-    *cube(corner.x >> kChunkLevel, corner.y >> kChunkLevel, corner.z >> kChunkLevel) = next_word_ << 4;
+    *cubes_.at(corner) = static_cast<uint32_t>(next_word_) << 4;
     put_chunk(node);
   }
   uint64_t words() const { return next_word_; }
@@ -107,23 +291,10 @@ class MapWriter {
   // Returns where the chunk begins that is solid through in a material; writes it first if need be.
   uint32_t solid_chunk(uint8_t material) {
     if (solid_[material] == 0) {
-      solid_[material] = next_word_;
+      solid_[material] = static_cast<uint32_t>(next_word_);
       put_solid_chunk(kSolidChunk | material);
     }
     return solid_[material];
-  }
-
-  uint32_t* cube(uint32_t x, uint32_t y, uint32_t z) const {
-    return top_ + ((uint64_t{z} << bits_ | y) << bits_ | x);
-  }
-  void fill_cubes(int level, const Corner& corner, uint32_t chunk) {
-    const uint32_t side = uint32_t{1} << (level - kChunkLevel);
-    const Corner low{corner.x >> kChunkLevel, corner.y >> kChunkLevel, corner.z >> kChunkLevel};
-    for (uint32_t z = low.z; z < low.z + side; ++z) {
-      for (uint32_t y = low.y; y < low.y + side; ++y) {
-        std::fill_n(cube(low.x, y, z), side, chunk << 4);
-      }
-    }
   }
 
   void put_solid_chunk(uint64_t second) {
@@ -133,17 +304,7 @@ class MapWriter {
 
   // Writes what was collected of a chunk, and begins the next.
   void put_chunk(uint64_t node) {
-    uint64_t& mask = chunks_[next_word_++];
-    mask = 0;
-    if (has_nodes_) {
-      chunks_[next_word_++] = node;
-    }
-    for (unsigned leaf = 0; leaf < kLeaves; ++leaf) {
-      if (chunk_[leaf] != 0) {
-        mask |= uint64_t{1} << leaf;
-        chunks_[next_word_++] = chunk_[leaf];
-      }
-    }
+    put_leaves(chunk_, has_nodes_, node, chunks_, &next_word_);
     for (unsigned leaf = 0; has_tags_ && node < kSolidChunk && leaf < kLeaves; ++leaf) {
       if (chunk_[leaf] != 0) {
         chunks_[next_word_++] = tags_[leaf].is_plain ? tags_[leaf].whole() : tags_[leaf].tag.word();
@@ -197,16 +358,146 @@ class MapWriter {
   }
 
   const CompactTree& tree_;
-  uint32_t* top_;
+  Cubes cubes_;
   uint64_t* chunks_;
-  int bits_;
   bool has_nodes_;
   bool has_tags_;
-  uint32_t next_word_ = 0;
+  uint64_t next_word_ = 0;
   uint32_t solid_[kMaterials] = {};  // by material: where its solid chunk begins; 0: not written yet
   uint64_t chunk_[kLeaves];
   Collected tags_[kLeaves];
 };
+
+// Hands single voxels to a taker of leaves, each with its material.
+template <class Taker>
+void take_each(const CompactTree& tree, const Corner& corner, unsigned mask, uint32_t voxel, Taker* taker) {
+  for (; mask != 0; mask &= mask - 1, ++voxel) {
+    taker->take_leaf(corner, spread(mask & (0 - mask)) << bit_of(corner, 0),
+                     tree.many_materials() ? tree.voxel_material(voxel) : tree.uniform_material());
+  }
+}
+
+// Collects which materials the tree holds.
+struct UsedMaterials {
+  const CompactTree& tree;
+  bool of[256] = {};
+  void take_leaf(const Corner& /*corner*/, uint64_t /*voxels*/, uint8_t material) { of[material] = true; }
+  void take_voxels(const Corner& corner, unsigned mask, uint32_t voxel) {
+    take_each(tree, corner, mask, voxel, this);
+  }
+  void take_block(const Corner& /*corner*/, int /*level*/, uint8_t material) { of[material] = true; }
+  void take_chunk(const Corner& /*corner*/, uint32_t /*node*/) {}
+};
+
+// Writes cubes and chunks; without a place to write it only counts words.
+class LayerWriter {
+ public:
+  LayerWriter(const CompactTree& tree, const MediaShape& media, uint32_t* top, uint64_t* chunks,
+              uint64_t next_word)
+      : tree_(tree),
+        media_(media),
+        bits_(map_level(tree) - kChunkLevel),
+        has_nodes_(has_nodes(tree)),
+        top_(top),
+        chunks_(chunks),
+        next_word_(next_word) {
+    for (uint8_t layer = 0; layer < media.layers; ++layer) {
+      layer_of_[media.materials[layer]] = layer;
+    }
+  }
+
+  void take_leaf(const Corner& corner, uint64_t voxels, uint8_t material) {
+    const uint8_t layer = layer_of_[material];
+    if (layer != kNone) {
+      inside_[layer][bit_of(corner, kLeafLevel)] |= voxels;
+      holds_[layer] = true;
+    }
+  }
+  void take_voxels(const Corner& corner, unsigned mask, uint32_t voxel) {
+    take_each(tree_, corner, mask, voxel, this);
+  }
+  void take_block(const Corner& corner, int level, uint8_t material) {
+    const uint8_t layer = layer_of_[material];
+    if (layer != kNone && top_ != nullptr) {
+      cubes_of(layer).fill(corner, level, kEmptyCube);
+    }
+  }
+  void take_chunk(const Corner& corner, uint32_t /*node*/) {
+    for (uint8_t layer = 0; layer < media_.layers; ++layer) {
+      if (holds_[layer]) {
+        put(layer, corner);
+        std::fill(inside_[layer], inside_[layer] + kLeaves, 0);
+        holds_[layer] = false;
+      }
+    }
+  }
+  uint64_t words() const { return next_word_; }
+
+ private:
+  static constexpr uint8_t kNone = UINT8_MAX;
+  struct Layers {
+    uint8_t of[256];
+    Layers() { std::fill(of, of + 256, kNone); }
+    uint8_t& operator[](uint8_t material) { return of[material]; }
+  };
+
+  Cubes cubes_of(uint8_t layer) const { return {top_ + (uint64_t{layer} << 3 * bits_), bits_}; }
+  void put(uint8_t layer, const Corner& corner) {
+    uint64_t outside[kLeaves];
+    std::transform(inside_[layer], inside_[layer] + kLeaves, outside, [](uint64_t leaf) { return ~leaf; });
+    const uint64_t begin = next_word_;
+    const bool is_empty = put_leaves(outside, has_nodes_, UINT64_MAX, chunks_, &next_word_) == 0;
+    next_word_ = is_empty ? begin : next_word_;
+    if (chunks_ != nullptr) {
+      *cubes_of(layer).at(corner) = is_empty ? kEmptyCube : static_cast<uint32_t>(begin) << 4;
+    }
+  }
+
+  const CompactTree& tree_;
+  const MediaShape& media_;
+  int bits_;
+  bool has_nodes_;
+  uint32_t* top_;
+  uint64_t* chunks_;
+  uint64_t next_word_;
+  Layers layer_of_;
+  uint64_t inside_[kMostMedia][kLeaves] = {};
+  bool holds_[kMostMedia] = {};
+};
+
+// Finds which of `materials` the tree holds, as many as there may be layers.
+MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<const uint8_t> materials) {
+  MediaShape media;
+  if (materials.size == 0 || tree.empty() || tree.level() > kMostMediaLevel) {
+    return media;
+  }
+  UsedMaterials used{tree};
+  TreeWalk(tree, shape, &used).run();
+  for (size_t i = 0; i < materials.size && media.layers < kMostMedia; ++i) {
+    if (used.of[materials.data[i]]) {
+      used.of[materials.data[i]] = false;  // each material gets one layer
+      media.materials[media.layers++] = materials.data[i];
+    }
+  }
+  LayerWriter counter(tree, media, nullptr, nullptr, 0);
+  if (media.layers != 0) {
+    TreeWalk(tree, shape, &counter).run();
+  }
+  // A chunk's first words are written before it is known to be empty.
+  media.words = counter.words() + 2;
+  return media;
+}
+
+// Writes the cubes of all layers, one layer after the other, at `top`, and their chunks from word `next_word` on.
+void write_media(const CompactTree& tree, const MapShape& shape, const MediaShape& media, uint32_t* top,
+                 uint64_t* chunks, uint64_t next_word) {
+  if (media.layers == 0) {
+    return;
+  }
+  std::fill(top, top + shape.top * media.layers, 0U);  // 0 is the first chunk, which is solid
+  LayerWriter writer(tree, media, top, chunks, next_word);
+  TreeWalk(tree, shape, &writer).run();
+}
 
 // Writes how far the empty cubes reach along one octant after the other. An empty cube of side k + 1 is an empty cell,
 // and the empty cubes of side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell chunks, comes

@@ -55,17 +55,18 @@ struct Leaf {
 
   bool holds() const { return (voxels >> voxel & 1U) != 0; }
 };
-Leaf leaf_at(const MapCells& cells, const Vec3i& voxel) {
-  const auto part = [&](int axis, int level, uint64_t mask) {
-    return static_cast<uint64_t>(voxel[axis]) >> level & mask;
-  };
-  const auto bit = [&](int level) {
-    return part(0, level, 3) | part(1, level, 3) << 2 | part(2, level, 3) << 4;
-  };
+// The word of a voxel's cube.
+uint32_t cube_at(const MapCells& cells, const Vec3i& voxel) {
+  const auto cube = [&](int axis) { return static_cast<uint64_t>(voxel[axis]) >> kCubeLevel; };
   const int bits = cells.level - kCubeLevel;
-  const uint64_t all = UINT64_MAX;
-  const uint32_t cube = cells.top[(part(2, kCubeLevel, all) << bits | part(1, kCubeLevel, all)) << bits |
-                                  part(0, kCubeLevel, all)];
+  return cells.top[(cube(2) << bits | cube(1)) << bits | cube(0)];
+}
+Leaf leaf_at(const MapCells& cells, const Vec3i& voxel) {
+  const auto bit = [&](int level) {
+    const auto part = [&](int axis) { return static_cast<uint64_t>(voxel[axis]) >> level & 3; };
+    return part(0) | part(1) << 2 | part(2) << 4;
+  };
+  const uint32_t cube = cube_at(cells, voxel);
   Leaf leaf;
   if ((cube & 15U) != 0) {
     return leaf;
@@ -153,9 +154,7 @@ struct Parent {
 Parent parent_of(const RayMap& map, const Vec3i& voxel) {
   const CompactTree& tree = map.tree();
   const MapCells& cells = *map.cells();
-  const auto cube = [&](int axis) { return static_cast<uint64_t>(voxel[axis]) >> kCubeLevel; };
-  const int bits = cells.level - kCubeLevel;
-  const uint64_t known = cells.chunks[(cells.top[(cube(2) << bits | cube(1)) << bits | cube(0)] >> 4) + 1];
+  const uint64_t known = cells.chunks[(cube_at(cells, voxel) >> 4) + 1];
   const bool is_known = known < kSolidChunk && tree.level() > kCubeLevel;
   Parent parent{is_known ? static_cast<uint32_t>(known) : 0, is_known ? kCubeLevel : tree.level()};
   while (parent.level > 1 && tree.mask(parent.node) != 0) {
@@ -222,6 +221,20 @@ void find_face(const Ray& ray, const Vec3i& corner, int32_t side, Hit* hit) {
   hit->t_denominator = axis < 0 ? 1 : static_cast<int32_t>(speed * Q8::kOne);
 }
 
+// Makes a hit that does not lie before the ray's point a miss.
+void drop_late(const Job& job, size_t ray, Hit* hit) {
+  if (hit->kind != HitKind::kHit || job.bound != Bound::kBefore) {
+    return;
+  }
+  const RayPoint& before = job.points[ray * job.point_step];
+  // 23 + 31 and 31 + 28 bits.
+  if (int64_t{hit->t_numerator} * before.t_denominator >= int64_t{before.t_numerator} * hit->t_denominator) {
+    const uint32_t visits = hit->visits;
+    *hit = Hit{};
+    hit->visits = visits;
+  }
+}
+
 // Stores what a job wants of a hit without its voxel.
 void put_class(Job* job, size_t ray, const Hit& hit) {
   if (hit.kind != HitKind::kHit) {
@@ -252,12 +265,7 @@ void trace_by_core(Job* job, size_t ray) {
   if (job->status == Status::kOk) {
     job->status = status;
   }
-  if (hit.kind == HitKind::kHit && job->bound == Bound::kBefore &&
-      !is_before(hit.t_numerator, hit.t_denominator, job->points[ray * job->point_step])) {
-    const uint32_t visits = hit.visits;
-    hit = Hit{};
-    hit.visits = visits;
-  }
+  drop_late(*job, ray, &hit);
   if (job->hits != nullptr) {
     job->hits[ray] = hit;
   } else if (job->exits != nullptr) {
@@ -302,11 +310,7 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   } else {
     enter(block_at(*job->map, voxel));
   }
-  if (job->bound == Bound::kBefore &&
-      !is_before(hit.t_numerator, hit.t_denominator, job->points[number * job->point_step])) {
-    hit = Hit{};
-    hit.visits = visits;
-  }
+  drop_late(*job, number, &hit);
   if (job->hits != nullptr) {
     return;
   }
