@@ -66,11 +66,6 @@ class Haze {
  public:
   Haze(const VoxelLists& lists, const WideFrame& frame, bool by_rows)
       : lists_(lists), frame_(frame), by_rows_(by_rows) {
-    for (int axis = 0; axis < 3; ++axis) {
-      eye_cell_[axis] = frame.perspective           ? frame.eye[axis] >> 8
-                        : frame.direction[axis] < 0 ? INT32_MAX
-                                                    : INT32_MIN;
-    }
     // A block's bend is its pixels times this (TileDrawer::is_flat).
     const float bend_per_px = frame.perspective ? frame.norm_w / (4 * frame.reach_x) : 0;
     table_px_ =
@@ -162,10 +157,7 @@ class Haze {
   int split(const Cell& cell) {
     const unsigned mask = lists_.children(cell.node);
     const uint32_t side = uint32_t{1} << (cell.level - 1);
-    unsigned first = 0;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      first |= eye_cell_[axis] >= static_cast<int32_t>(cell.corner[axis] + side) ? 1U << axis : 0U;
-    }
+    const unsigned first = frame_.nearest_octant(cell.corner, cell.level);
     for (unsigned turn = 0; turn < 8; ++turn) {
       const unsigned octant = turn ^ first;
       if ((mask >> octant & 1U) == 0) {
@@ -178,7 +170,7 @@ class Haze {
       for (unsigned axis = 0; axis < 3; ++axis) {
         child.corner[axis] = cell.corner[axis] + ((octant >> axis & 1U) != 0 ? side : 0);
       }
-      const unsigned ways = ways_to(eye_cell_, child.corner, uint32_t{1} << child.level);
+      const unsigned ways = ways_to(frame_.eye_cell, child.corner, uint32_t{1} << child.level);
       if ((lists_.facing(lists_.nodes()[child.node]) & ways) != 0 && place(&child)) {
         cells_[count_++] = child;
       }
@@ -322,7 +314,6 @@ class Haze {
   const VoxelLists& lists_;
   const WideFrame& frame_;
   bool by_rows_;
-  int32_t eye_cell_[3];
   float table_px_;  // mean side of blocks that are drawn by tables
   Cell cells_[kRoom];
   int count_ = 0;

@@ -160,6 +160,9 @@ bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame) {
   for (int axis = 0; axis < 3; ++axis) {
     frame->eye[axis] = camera.eye()[axis].raw;
     frame->direction[axis] = camera.direction()[axis];
+    frame->eye_cell[axis] = camera.is_perspective()      ? frame->eye[axis] >> 8
+                            : frame->direction[axis] < 0 ? INT32_MAX
+                                                         : INT32_MIN;
   }
   frame->perspective = camera.is_perspective();
   const Map map = store_exact(camera.affine(), frame);

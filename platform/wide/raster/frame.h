@@ -86,6 +86,20 @@ struct WideFrame {
   /// of a hidden voxel of material 0. Null: the lists leave nothing out.
   const CompactTree* hidden_in = nullptr;
   uint32_t first_hidden = 0;
+
+  /// The voxel that the eye is in; a parallel camera's rays come from beyond the world.
+  int32_t eye_cell[3];
+
+  /// The octant of a cube of 2^level voxels a side that is nearest to the eye.
+  template <class Coordinate>
+  unsigned nearest_octant(const Coordinate (&corner)[3], int level) const {
+    unsigned octant = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const int32_t middle = static_cast<int32_t>(corner[axis]) + (int32_t{1} << (level - 1));
+      octant |= eye_cell[axis] >= middle ? 1U << axis : 0U;
+    }
+    return octant;
+  }
 };
 
 /// Returns false for cameras so narrow or so far off that floats cannot tell their pixels apart, or whose map has no

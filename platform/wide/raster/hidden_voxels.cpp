@@ -4,17 +4,12 @@
 
 #include "thimble/picture/camera.h"
 #include "thimble/picture/shading.h"
-#include "thimble/trace/ray.h"
+#include "thimble/trace/secondary_ray.h"
 #include "wide/raster/exact.h"
 #include "wide/raster/surface.h"
 
 namespace thimble::wide {
 namespace {
-
-// The pixel's number, as kernels count.
-size_t place_of(const Depths& depths, int32_t x, int32_t y) {
-  return 32 * depths.word(x, y) + (static_cast<uint32_t>(x) & 31U);
-}
 
 uint32_t down_of(const Ray& ray) {
   uint32_t down = 0;
@@ -53,7 +48,7 @@ void ask_core(const WideFrame& frame, const Depths& depths, int32_t x, int32_t y
     within[axis] = at & 1023U;
     corner[axis] = at - within[axis];
   }
-  const size_t at = place_of(depths, x, y);
+  const size_t at = depths.pixel(x, y);
   if (depths.gray_scale != nullptr) {
     const uint32_t entry = within[0] | within[1] << 10 | within[2] << 20;
     depths.nearest_sum[at] = static_cast<uint16_t>(mirrored_sum(entry, down));
@@ -69,7 +64,7 @@ void ask_core(const WideFrame& frame, const Depths& depths, int32_t x, int32_t y
 
 void ask_core_behind(const WideFrame& frame, const Depths& depths, int32_t x, int32_t y, uint32_t entry,
                      uint32_t key, uint32_t down, Batch* batch) {
-  const size_t at = place_of(depths, x, y);
+  const size_t at = depths.pixel(x, y);
   if (holds_something(depths, x, y, at)) {
     const uint64_t value = batch->cube_value[down] | uint64_t{key} << kEntryBits;
     const bool is_nearer = depths.gray_scale != nullptr ? depths.nearest_sum[at] <= mirrored_sum(entry, down)
@@ -110,30 +105,23 @@ SolidStarts find_solid_starts(const CompactTree& tree, const WideFrame& frame) {
   }
   int cells = 0;
   for (unsigned octant = 0; octant < 8; ++octant) {
-    int32_t cell[3];
+    Vec3i cell;
     bool is_new = true;  // along an axis on which the eye lies in no plane it touches only one cell
     for (unsigned axis = 0; axis < 3; ++axis) {
-      const int32_t raw = camera.eye()[static_cast<int>(axis)].raw;
       const bool is_lower = (octant >> axis & 1U) != 0;
-      is_new = is_new && (!is_lower || (raw & 255) == 0);
-      cell[axis] = (raw >> 8) - (is_lower ? 1 : 0);
+      is_new = is_new && (!is_lower || (frame.eye[axis] & 255) == 0);
+      cell[static_cast<int>(axis)] = frame.eye_cell[axis] - (is_lower ? 1 : 0);
     }
-    int level = 0;
     if (!is_new) {
       continue;
     }
     ++cells;
-    if (solid_at(tree, cell, &level)) {
-      SolidStarts::Voxel& voxel = starts.voxels[starts.count++];
-      Ray ray;  // from its middle
+    SolidStarts::Voxel& voxel = starts.voxels[starts.count];
+    if (material_at(tree, cell, &voxel.material)) {
       for (int axis = 0; axis < 3; ++axis) {
         voxel.at[axis] = static_cast<uint16_t>(cell[axis]);
-        ray.origin[axis] = Q8::from_raw(256 * cell[axis] + 128);
       }
-      ray.direction.x = 1;
-      Hit hit;
-      (void)closest_hit(tree, ray, &hit);
-      voxel.material = hit.material;
+      ++starts.count;
     }
   }
   starts.are_all = cells == static_cast<int>(starts.count);

@@ -27,8 +27,7 @@
 
 namespace thimble::wide {
 
-/// The ways (BlockNode) in which rays from the eye, which is in voxel `eye_cell`, may run to a cube of the world. A
-/// parallel camera's eye counts as beyond all voxels.
+/// The ways (BlockNode) in which rays from the eye, which is in `eye_cell` (frame.h), may run to a cube of the world.
 inline unsigned ways_to(const int32_t (&eye_cell)[3], const uint32_t (&corner)[3], uint32_t side) {
   constexpr unsigned kUp[3] = {0x55, 0x33, 0x0F};
   unsigned ways = 0xFF;

@@ -48,11 +48,11 @@ struct Depths {
   int32_t rows;       ///< rows of the picture, and words from a strip to the next
   int32_t first_row;  ///< the number of the first row that is held
 
-  /// The index in `covered` of the word that holds the pixel; in the other arrays the pixel has 32 times that + (x &
-  /// 31).
+  /// The index in `covered` of the word that holds the pixel, and the pixel's own in the other arrays.
   size_t word(int32_t x, int32_t y) const {
     return static_cast<size_t>(x >> 5) * static_cast<size_t>(rows) + static_cast<size_t>(y - first_row);
   }
+  size_t pixel(int32_t x, int32_t y) const { return 32 * word(x, y) + (static_cast<uint32_t>(x) & 31U); }
 };
 inline constexpr int kPieceWords = 8;
 inline constexpr int kEntryBits = 28;

@@ -11,6 +11,40 @@ constexpr int32_t kMergedRows = 32;
 
 }  // namespace
 
+Tiles::Tiles(int32_t rows, int threads, const float (&work)[CostEstimate::kParts]) : end_{rows} {
+  if (threads == 1) {
+    return;
+  }
+  float all = 0;
+  for (const float part : work) {
+    all += part;
+  }
+  // Rows take some time by themselves: they are cleared and painted.
+  const float each = 0.03F * all / CostEstimate::kParts + 1e-6F;
+  all += each * CostEstimate::kParts;
+  count_ = 0;
+  float done = 0;
+  int part = 0;
+  for (int32_t last = 0; last < rows;) {
+    const float wanted = all * static_cast<float>(count_ + 1) / static_cast<float>(threads);
+    while (part < CostEstimate::kParts && done + work[part] + each <= wanted) {
+      done += work[part] + each;
+      ++part;
+    }
+    float at = static_cast<float>(part);
+    if (part < CostEstimate::kParts) {
+      at += (wanted - done) / (work[part] + each);
+    }
+    // If the sums are not numbers, one tile takes all rows that are left.
+    at = at >= 0 && at < CostEstimate::kParts ? at : CostEstimate::kParts;
+    const int32_t row = static_cast<int32_t>(at * static_cast<float>(rows) / CostEstimate::kParts);
+    int32_t end = (row + kPatchRows / 2) / kPatchRows * kPatchRows;
+    end = end <= last ? last + kPatchRows : end;
+    last = end < rows && count_ + 1 < threads ? end : rows;
+    end_[count_++] = last;
+  }
+}
+
 uint64_t ParallelFrame::draw_tiles(const Tiles& tiles, uint32_t* splits) const {
   TileDrawer::Others others(tiles.count());
   if (thread_count() == 1) {

@@ -3,13 +3,28 @@
 #ifndef THIMBLE_PLATFORM_WIDE_RASTER_PARALLEL_FRAME_H
 #define THIMBLE_PLATFORM_WIDE_RASTER_PARALLEL_FRAME_H
 
+#include "wide/raster/cost_model.h"
 #include "wide/raster/painter.h"
 #include "wide/raster/renderer.h"
 #include "wide/raster/tile_drawer.h"
-#include "wide/raster/tiles.h"
 #include "wide/raster/workspace.h"
 
 namespace thimble::wide {
+
+/// Tiles of whole rows, one for each thread, that take about the same work. They are few, since both sides of a seam look at the boxes on it.
+class Tiles {
+ public:
+  /// `work` is what equal parts of the rows take, from the first down.
+  Tiles(int32_t rows, int threads, const float (&work)[CostEstimate::kParts]);
+
+  int count() const { return count_; }
+  int32_t begin(int tile) const { return tile == 0 ? 0 : end_[tile - 1]; }
+  int32_t end(int tile) const { return end_[tile]; }
+
+ private:
+  int count_ = 1;
+  int32_t end_[kMaxThreads];
+};
 
 /// Draws and paints a frame, either tile by tile in one picture, or with a picture for each thread.
 class ParallelFrame {

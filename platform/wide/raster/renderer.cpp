@@ -1,7 +1,7 @@
 #include "wide/raster/renderer.h"
 
+#include "thimble/light/host/asked.h"
 #include "wide/raster/cost_model.h"
-#include "wide/raster/coverage.h"
 #include "wide/raster/parallel_frame.h"
 
 namespace thimble::wide {
@@ -23,29 +23,15 @@ bool is_sparse(const VoxelLists& lists, const Camera& camera, const Band& band, 
          words >= Workspace::kLeastSparseWords && lists.entries().size < words / kPieceWords;
 }
 
+// Refuses the bands that `render_band` refuses.
 Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace, int threads) {
-  const int32_t width = camera.width_px();
-  if (width == 0 || camera.level() != lists.tree().level() || band.first_row < 0 || band.rows < 0 ||
-      band.rows > camera.height_px() - band.first_row) {
-    return Status::kBadArgument;
+  size_t stride = 0;
+  const lit::Frame unlit{lists.tree(), camera, Shading(), LitScene(), LitOptions(), Effect::kNone};
+  const Status status = lit::check_frame(unlit, band, &stride);
+  if (status != Status::kOk || band.rows == 0) {
+    return status;
   }
-  const int32_t multiple = band_row_multiple(band.format);
-  const bool ends = band.first_row + band.rows == camera.height_px();
-  if (band.first_row % multiple != 0 || (!ends && band.rows % multiple != 0)) {
-    return Status::kBadArgument;
-  }
-  const size_t line_bytes = row_bytes(band.format, width);
-  const size_t stride = band.stride_bytes == 0 ? line_bytes : band.stride_bytes;
-  if (stride < line_bytes) {
-    return Status::kBadArgument;
-  }
-  if (band.rows == 0) {
-    return Status::kOk;
-  }
-  if (line_bytes > band.pixels.size ||
-      row_place(band.format, whole_rows(band.format, band.rows)) - 1 >
-          (band.pixels.size - line_bytes) / stride ||
-      workspace.size < workspace_bytes(width, band.rows, threads)) {
+  if (workspace.size < workspace_bytes(camera.width_px(), band.rows, threads)) {
     return Status::kOutOfMemory;
   }
   return lists.entries().size > size_t{1} << kEntryBits ? Status::kTooFine : Status::kOk;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "thimble/picture/camera.h"
 #include "wide/raster/cost_model.h"
-#include "wide/raster/coverage.h"
-#include "wide/raster/surface_list.h"
+#include "wide/raster/exact.h"
+#include "wide/raster/surface.h"
+#include "wide/raster/workspace.h"
 
 namespace thimble::wide {
 namespace {
@@ -42,7 +42,74 @@ bool touches_edge(const Rectangle& where, const Tile& tile) {
   return where.x0 == tile.x0 || where.y0 == tile.y0 || where.x1 == tile.x1 || where.y1 == tile.y1;
 }
 
+// Entries begin .. end - 1 of a cube of 2^level voxels a side.
+struct Part {
+  uint32_t begin, end;
+  int32_t level;
+  uint32_t corner[3];
+};
+
+// The octant of a cube of 2^(level + 1) voxels a side that holds the entry.
+unsigned octant_of(uint32_t entry, int32_t level) {
+  return (x_of(entry) >> level & 1U) | (entry >> (10 + level) & 1U) << 1 | (entry >> (20 + level) & 1U) << 2;
+}
+
 }  // namespace
+
+bool SortedRun::cull_and_sort(const WideFrame& frame, const Block& block, const Depths& depths, Batch* batch,
+                              Run* run) {
+  run->count = cull_run(frame, *run, depths, batch, entries_, numbers_);
+  if (run->count == 0) {
+    return false;
+  }
+  sort(frame, block, run->count);
+  run->entries = sorted_entries_;
+  run->numbers = sorted_numbers_;
+  run->sorted = true;
+  return true;
+}
+
+// In every block of the tree the entries of an octant stand together. So this takes the octants in the order of their
+// distance from the eye, down to single entries.
+void SortedRun::sort(const WideFrame& frame, const Block& block, uint32_t count) {
+  Part stack[7 * kCubeLevel + 8];
+  int depth = 0;
+  uint32_t written = 0;
+  stack[depth++] = {0, count, block.level, {block.corner[0], block.corner[1], block.corner[2]}};
+  while (depth > 0) {
+    const Part part = stack[--depth];
+    if (part.end - part.begin == 1 || part.level == 0) {
+      for (uint32_t i = part.begin; i < part.end; ++i) {
+        sorted_entries_[written] = entries_[i];
+        sorted_numbers_[written] = numbers_[i];
+        ++written;
+      }
+      continue;
+    }
+    const int32_t level = part.level - 1;
+    const unsigned nearest = frame.nearest_octant(part.corner, part.level);
+    uint32_t begin[9] = {};
+    uint32_t at = part.begin;
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      begin[octant] = at;
+      while (at < part.end && octant_of(entries_[at], level) == octant) {
+        ++at;
+      }
+    }
+    begin[8] = at;
+    for (unsigned turn = 8; turn-- > 0;) {
+      const unsigned octant = turn ^ nearest;
+      if (begin[octant] == begin[octant + 1]) {
+        continue;
+      }
+      Part child{begin[octant], begin[octant + 1], level, {0, 0, 0}};
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        child.corner[axis] = part.corner[axis] + ((octant >> axis & 1U) << level);
+      }
+      stack[depth++] = child;
+    }
+  }
+}
 
 TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others,
                        std::atomic<uint32_t>* next_share)
@@ -55,15 +122,7 @@ TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Ba
       batch_(batch),
       others_(others),
       next_share_(next_share),
-      share_(next_share == nullptr ? 0 : (*next_share)++) {
-  const Camera& camera = *frame_.camera;
-  for (int axis = 0; axis < 3; ++axis) {
-    // Rays of a parallel camera come from beyond the world.
-    eye_cell_[axis] = camera.is_perspective()        ? camera.eye()[axis].raw >> 8
-                      : camera.direction()[axis] < 0 ? INT32_MAX
-                                                     : INT32_MIN;
-  }
-}
+      share_(next_share == nullptr ? 0 : (*next_share)++) {}
 
 void TileDrawer::start(int32_t y0, int32_t y1) {
   frame_.tile.y0 = y0;
@@ -142,7 +201,7 @@ void TileDrawer::draw() {
 // Whether the eye may see any voxel of the block.
 bool TileDrawer::faces_eye(const Block& block, const BlockNode& node) const {
   const uint32_t corner[3] = {block.corner[0], block.corner[1], block.corner[2]};
-  return (lists_.facing(node) & ways_to(eye_cell_, corner, uint32_t{1} << block.level)) != 0;
+  return (lists_.facing(node) & ways_to(frame_.eye_cell, corner, uint32_t{1} << block.level)) != 0;
 }
 
 // Whether all pixels of the block are known to be covered. Small blocks with tables look that up while they are drawn.
@@ -188,15 +247,6 @@ float TileDrawer::voxel_px(const Block& block) const {
   return block.place.per_depth == 0 ? 1e9F : 2 * frame_.reach_x * block.place.per_depth;
 }
 
-unsigned TileDrawer::nearest_octant(const Block& block) const {
-  const int32_t side = int32_t{1} << (block.level - 1);
-  unsigned octant = 0;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    octant |= eye_cell_[axis] >= block.corner[axis] + side ? 1U << axis : 0U;
-  }
-  return octant;
-}
-
 // Whether the next run is one of ours. All threads pass the same runs in the same order; each takes the next free share
 // when it has drawn its last one, so every run is drawn once.
 bool TileDrawer::is_ours() {
@@ -213,7 +263,8 @@ bool TileDrawer::is_ours() {
 // Pushes the children that may be seen; the last one pushed is the first one drawn.
 void TileDrawer::push_children(const Block& block, const BlockNode& node, unsigned mask) {
   Block* const children = stack_ + depth_;
-  const int count = find_children(frame_, block, mask, node.first_child, nearest_octant(block), children);
+  const int count = find_children(frame_, block, mask, node.first_child,
+                                  frame_.nearest_octant(block.corner, block.level), children);
   for (int child = 0; child < count; ++child) {
     __builtin_prefetch(&lists_.nodes()[children[child].node]);
   }
@@ -295,7 +346,7 @@ void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
     return;
   }
   if (by_blocks_ && run.count > 1 && run.count <= SortedRun::kMostBoxes && is_worth_sorting(block, node) &&
-      !sorted_.cull_and_sort(frame_, block, eye_cell_, depths_, batch_, &run)) {
+      !sorted_.cull_and_sort(frame_, block, depths_, batch_, &run)) {
     return;
   }
   draw_run(frame_, run, depths_, batch_);

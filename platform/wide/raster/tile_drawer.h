@@ -8,11 +8,29 @@
 
 #include "wide/raster/hidden_voxels.h"
 #include "wide/raster/kernels.h"
-#include "wide/raster/sorted_run.h"
 #include "wide/raster/voxel_lists.h"
 #include "wide/raster/work_sharing.h"
 
 namespace thimble::wide {
+
+/// The entries of a run that cull_run() kept, and the same entries from front to back.
+class SortedRun {
+ public:
+  static constexpr uint32_t kMostBoxes = 512;
+
+  /// Culls the run of a block, which has at most kMostBoxes boxes, and sorts those that are left; `run` then reads them
+  /// from here. Returns whether any are left.
+  bool cull_and_sort(const WideFrame& frame, const Block& block, const Depths& depths, Batch* batch,
+                     Run* run);
+
+ private:
+  void sort(const WideFrame& frame, const Block& block, uint32_t count);
+
+  uint32_t entries_[kMostBoxes + kReadAhead];
+  uint32_t numbers_[kMostBoxes + kReadAhead];
+  uint32_t sorted_entries_[kMostBoxes + kReadAhead];
+  uint32_t sorted_numbers_[kMostBoxes + kReadAhead];
+};
 
 /// Draws for one thread, one tile or part of a tile after the other.
 class TileDrawer {
@@ -56,7 +74,6 @@ class TileDrawer {
   float voxel_px(const Block& block) const;
   // Whether the boxes of a block are drawn from front to back.
   bool is_worth_sorting(const Block& block, const BlockNode& node) const;
-  unsigned nearest_octant(const Block& block) const;
   bool is_ours();
 
   void push_children(const Block& block, const BlockNode& node, unsigned mask);
@@ -84,7 +101,6 @@ class TileDrawer {
   std::atomic<uint32_t>* next_share_;
   uint32_t share_;
   uint32_t run_ = 0;
-  int32_t eye_cell_[3];
   int depth_ = 0;  ///< blocks on stack_
   Block stack_[7 * kMaxLevel + 8];
   Block ahead_[kAhead];  ///< a ring of blocks whose boxes are being fetched, in the order of drawing

@@ -2,7 +2,6 @@
 
 #include "thimble/tree/compact_tree.h"
 #include "wide/raster/surface.h"
-#include "wide/raster/surface_list.h"
 
 namespace thimble::wide {
 namespace {
@@ -107,81 +106,53 @@ class ListWriter {
   }
 
   // Writes the lists of a tree that is not empty.
-  void write() {
-    int level = tree_.level();
-    enter(level);
-    for (;;) {
-      Visit& visit = visits_[level];
-      if (visit.mask != 0 && level > 0) {  // nodes of level 0 have no children
-        const unsigned octant = static_cast<unsigned>(__builtin_ctz(visit.mask));
-        visit.mask &= visit.mask - 1;
-        --level;
-        const uint32_t side = uint32_t{1} << level;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-          corner_[axis] = (corner_[axis] & ~(2 * side - 1)) | ((octant >> axis & 1U) != 0 ? side : 0);
-        }
-        enter(level);
-        continue;
-      }
-      if (level >= block_level_) {
-        BlockNode& node = to_.nodes[visit.node];
-        node.entries = written_ - node.first_entry;
-        node.area_or_mask = census_.has_blocks ? static_cast<uint32_t>(face_area_) - node.area_or_mask
-                                               : 0xFF00U | tree_.mask(visit.node);
-      }
-      if (level == tree_.level()) {
-        return;
-      }
-      ++level;
-    }
-  }
+  void write() { write(tree_.level(), {0, 0, 0}); }
 
   uint32_t written() const { return written_; }
   uint64_t face_area() const { return face_area_; }
 
  private:
-  struct Visit {
-    uint32_t node;
-    uint32_t mask;  // the children that are not visited yet
-  };
-
-  // Begins the visit of the next node of this level, and writes the entries that are its own.
-  void enter(int level) {
-    Visit& visit = visits_[level];
-    // Nodes of one level are visited in the order in which they stand, so counting up finds them.
-    visit.node = next_node_[level]++;
-    visit.mask = tree_.mask(visit.node);
-    const bool solid = visit.mask == 0;
-    if (level >= block_level_) {
-      to_.nodes[visit.node] = {written_, 0, level > 1 && !solid ? next_node_[level - 1] : 0,
-                               static_cast<uint32_t>(face_area_)};
+  // Writes the next node of this level, and what it holds. Nodes of one level are visited in the order in which they
+  // stand, so counting up finds them.
+  void write(int level, const uint32_t (&corner)[3]) {
+    const uint32_t node = next_node_[level]++;
+    const unsigned mask = tree_.mask(node);
+    const uint32_t first = written_;
+    const uint64_t area = face_area_;
+    const uint32_t first_child = level > 1 && mask != 0 ? next_node_[level - 1] : 0;
+    if (mask == 0) {
+      add_block(level, corner, node);
     }
-    if (solid) {
-      add_block(level, visit.node);
-    } else if (level == 1) {
-      for (; visit.mask != 0; visit.mask &= visit.mask - 1) {
-        const unsigned octant = static_cast<unsigned>(__builtin_ctz(visit.mask));
-        const uint32_t at[3] = {corner_[0] + (octant & 1U), corner_[1] + (octant >> 1 & 1U),
-                                corner_[2] + (octant >> 2)};
-        add(at, 0, to_.materials == nullptr ? 0 : tree_.voxel_material(voxel_), visit.node);
-        ++voxel_;
+    for (unsigned left = mask; left != 0; left &= left - 1) {
+      const unsigned octant = static_cast<unsigned>(__builtin_ctz(left));
+      const uint32_t side = uint32_t{1} << (level - 1);
+      const uint32_t at[3] = {corner[0] + side * (octant & 1U), corner[1] + side * (octant >> 1 & 1U),
+                              corner[2] + side * (octant >> 2)};
+      if (level == 1) {
+        add(at, 0, to_.materials == nullptr ? 0 : tree_.voxel_material(voxel_++), node);
+      } else {
+        write(level - 1, at);
       }
+    }
+    if (level >= block_level_) {
+      to_.nodes[node] = {first, written_ - first, first_child,
+                         census_.has_blocks ? static_cast<uint32_t>(face_area_ - area) : 0xFF00U | mask};
     }
   }
 
-  void add_block(int level, uint32_t node) {
+  void add_block(int level, const uint32_t (&corner)[3], uint32_t node) {
     const uint8_t material = to_.materials == nullptr ? 0 : tree_.block_material(node);
     if (!census_.splits) {
       for (uint32_t piece = 0; piece < pieces_of(level); ++piece) {
-        add(corner_, level < kCubeLevel ? level : kCubeLevel, material, node);
+        add(corner, level < kCubeLevel ? level : kCubeLevel, material, node);
       }
       return;
     }
     for (uint32_t code = 0; code >> (3 * level) == 0; ++code) {
       const Vec3i place = morton_voxel(code);
-      const uint32_t at[3] = {corner_[0] + static_cast<uint32_t>(place.x),
-                              corner_[1] + static_cast<uint32_t>(place.y),
-                              corner_[2] + static_cast<uint32_t>(place.z)};
+      const uint32_t at[3] = {corner[0] + static_cast<uint32_t>(place.x),
+                              corner[1] + static_cast<uint32_t>(place.y),
+                              corner[2] + static_cast<uint32_t>(place.z)};
       add(at, 0, material, node);
     }
   }
@@ -202,8 +173,6 @@ class ListWriter {
   int block_level_;
   ListTo to_;
   uint32_t next_node_[kMaxLevel + 1];
-  Visit visits_[kMaxLevel + 1];
-  uint32_t corner_[3] = {0, 0, 0};
   uint32_t written_ = 0;
   uint32_t voxel_;  // the number of the next single voxel
   uint64_t face_area_ = 0;
