@@ -74,23 +74,24 @@ void FaceLightsParts::lay_out(const FaceLightsShape& shape, ArrayArena* arena) {
   exits = arena->take<MediumExit>(of_ways);
 }
 
+void put_hits(const Hit* hits, lit::Asked* asked, lit::Answer* answers) {
+  for (uint32_t i = 0; i < asked->count; ++i) {
+    answers[asked->answer[i]].hit = hits[i];
+    answers[asked->answer[i]].into_solid = false;
+  }
+  asked->count = 0;
+}
+
 // Rays were checked when they were queued, so none is refused.
 void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits, MediumExit* exits,
                  lit::Answer* answers) {
-  const auto put_hits = [&](lit::Asked* asked) {
-    for (uint32_t i = 0; i < asked->count; ++i) {
-      answers[asked->answer[i]].hit = hits[i];
-      answers[asked->answer[i]].into_solid = false;
-    }
-    asked->count = 0;
-  };
   lit::Asked& closest = questions[static_cast<int>(lit::Question::kClosest)];
   (void)first_hit(map, {closest.rays, closest.count}, {hits, closest.count});
-  put_hits(&closest);
+  put_hits(hits, &closest, answers);
   lit::Asked& before = questions[static_cast<int>(lit::Question::kBefore)];
   (void)first_hit_before(map, {before.rays, before.count}, {before.before, before.count},
                          {hits, before.count});
-  put_hits(&before);
+  put_hits(hits, &before, answers);
   static_assert(lit::kInNothing == kInAir);
   lit::Asked& on = questions[static_cast<int>(lit::Question::kOn)];
   (void)first_change(map, {on.rays, on.count}, {on.before, on.count}, {on.in, on.count}, {exits, on.count});
@@ -351,20 +352,15 @@ void FaceLights::add_arriving(const Light& light, uint32_t asking) {
   if (asking == 0) {
     return;
   }
-  if ((frame_.effects & Effect::kShadows) == 0) {
-    for (uint32_t i = 0; i < asking; ++i) {
-      for (int c = 0; c < 3; ++c) {
-        parts_.light[parts_.asking[i]].c[c] += parts_.bright[i].c[c];
-      }
-    }
-    return;
+  const bool has_shadows = (frame_.effects & Effect::kShadows) != 0;
+  if (has_shadows) {
+    find_shadows(light, asking);
   }
-  find_shadows(light, asking);
-  if (has_clear_) {
+  if (has_shadows && has_clear_) {
     go_through(light, asking);
   }
   for (uint32_t i = 0; i < asking; ++i) {
-    const bool arrives = parts_.any[i] != kBlocks;
+    const bool arrives = !has_shadows || parts_.any[i] != kBlocks;
     if (shape_.has_water && arrives && parts_.in_water[parts_.asking[i]] != 0) {
       filter_by_water(light, i);
     }

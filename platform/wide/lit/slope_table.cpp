@@ -36,52 +36,44 @@ int turned(int place, bool upwards) {
   return upwards ? place : kSide - 1 - place;
 }
 
-// Turns rows along x into columns along an axis.
-void turn_to(int axis, bool upwards, const uint16_t (*rows)[kSide], ColumnBits* columns) {
+// Turns rows along x into columns along an axis; with kBack columns into rows.
+template <bool kBack, class Rows, class Columns>
+void turn(int axis, bool upwards, Rows* rows, Columns* columns) {
+  const auto copy = [](auto& row, auto& column) {
+    if constexpr (kBack) {
+      row = column;
+    } else {
+      column = row;
+    }
+  };
   if (axis == 0) {
     for (int z = 0; z < kSide; ++z) {
       for (int y = 0; y < kSide; ++y) {
-        columns->at[z][y] = upwards ? rows[z][y] : kReversed[rows[z][y]];
+        uint16_t word = kBack ? columns->at[z][y] : rows[z][y];
+        word = upwards ? word : kReversed[word];
+        kBack ? copy(rows[z][y], word) : copy(word, columns->at[z][y]);
       }
     }
     return;
   }
   uint16_t words[16][kTurnLanes] = {};
-  for (int z = 0; z < kSide; ++z) {
-    for (int y = 0; y < kSide; ++y) {
-      (axis == 1 ? words[turned(y, upwards)][z] : words[turned(z, upwards)][y]) = rows[z][y];
-    }
-  }
-  turn_words(words);
-  for (int v = 0; v < kSide; ++v) {
-    for (int x = 0; x < kSide; ++x) {
-      columns->at[v][x] = words[x][v];
-    }
-  }
-}
-
-// Turns columns along an axis into rows along x.
-void turn_from(int axis, bool upwards, const ColumnBits& columns, uint16_t (*rows)[kSide]) {
-  if (axis == 0) {
+  const auto copy_rows = [&] {
     for (int z = 0; z < kSide; ++z) {
       for (int y = 0; y < kSide; ++y) {
-        rows[z][y] = upwards ? columns.at[z][y] : kReversed[columns.at[z][y]];
+        copy(rows[z][y], axis == 1 ? words[turned(y, upwards)][z] : words[turned(z, upwards)][y]);
       }
     }
-    return;
-  }
-  uint16_t words[16][kTurnLanes] = {};
-  for (int v = 0; v < kSide; ++v) {
-    for (int x = 0; x < kSide; ++x) {
-      words[x][v] = columns.at[v][x];
+  };
+  const auto copy_columns = [&] {
+    for (int v = 0; v < kSide; ++v) {
+      for (int x = 0; x < kSide; ++x) {
+        copy(words[x][v], columns->at[v][x]);
+      }
     }
-  }
+  };
+  kBack ? copy_columns() : copy_rows();
   turn_words(words);
-  for (int z = 0; z < kSide; ++z) {
-    for (int y = 0; y < kSide; ++y) {
-      rows[z][y] = axis == 1 ? words[turned(y, upwards)][z] : words[turned(z, upwards)][y];
-    }
-  }
+  kBack ? copy_rows() : copy_columns();
 }
 
 // The order in which the surface is followed: ring by ring, the corners of a ring last. Three columns say which height
@@ -247,8 +239,8 @@ void follow(int along, bool upwards, const Face& face, KnownSlope* known) {
     known->cut = known->columns;
   } else {
     uint16_t rows[kSide][kSide];
-    turn_from(face.axis, !face.negative, known->columns, rows);
-    turn_to(along, upwards, rows, &known->cut);
+    turn<true>(face.axis, !face.negative, rows, &known->columns);
+    turn<false>(along, upwards, rows, &known->cut);
   }
   Vec3i out;
   out[face.axis] = face.negative ? -1 : 1;
@@ -303,7 +295,7 @@ KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t inde
   }
   const KnownWindow& window = window_at(low, index_q12);
   known.visits = window.visits;
-  turn_to(face.axis, !face.negative, window.window.rows, &known.columns);
+  turn<false>(face.axis, !face.negative, window.window.rows, &known.columns);
   Columns columns(&known.columns, middle_of(voxel, face), face.axis, !face.negative);
   const unsigned behind = 3U << (columns.middle_w - 2);
   static_assert(lit::kSlopeShell == 3);

@@ -287,12 +287,7 @@ void Stream::answer() {
   const auto find_within = [&](lit::Question question, const RayPoint& end) {
     lit::Asked& near = parts_.questions[static_cast<int>(question)];
     (void)first_hit_within(map_, {near.rays, near.count}, end, {parts_.hits, near.count}, is_clear_);
-    for (uint32_t i = 0; i < near.count; ++i) {
-      lit::Answer& answer = parts_.answers[near.answer[i]];
-      answer.hit = parts_.hits[i];
-      answer.into_solid = false;
-    }
-    near.count = 0;
+    put_hits(parts_.hits, &near, parts_.answers);
   };
   find_within(lit::Question::kNear, {occlusion.reach, kOcclusionLength});
   find_within(lit::Question::kAround, lit::slope_reach(occlusion));
