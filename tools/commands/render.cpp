@@ -10,8 +10,8 @@
 #include "boards/board_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
-#include "commands/part_options.h"
 #include "commands/render_command.h"
+#include "commands/render_output.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
 #include "output/hit_csv.h"
@@ -44,23 +44,23 @@ std::int32_t plain_band_rows(const RenderCommand& command, PixelFormat format) {
 // What belongs to the scene's own look and films only.
 void check_look(const RenderCommand& command) {
   const bool look = takes_look(command);
-  if (command.wishes_look && !look) {
+  if (command.look.given && !look) {
     refuse_usage(
         "--background and --ground are for pictures in the scene's own look, without --shade, --effects, "
         "--structure, --engine, --cutoff, --max-depth and --board");
   }
-  check_output(command);
-  const bool is_turned = command.turntable != 0;
-  if (command.is_film() && (!look || !command.hits_path.empty() || !command.depth_path.empty() ||
-                            (is_turned && command.view.eye))) {
+  command.output.check(command.look.wishes.background.kind == BackgroundKind::kNone);
+  const bool is_turned = command.output.turntable != 0;
+  if (command.output.is_film() && (!look || !command.output.hits_path.empty() ||
+                                   !command.output.depth_path.empty() || (is_turned && command.view.eye))) {
     refuse_usage(std::string(is_turned ? "--turntable shows the scene's own look from all sides"
                                        : "--camera-path shows the scene's own look") +
                  ", without --shade, --effects, --structure, --engine, --cutoff, --max-depth, --board, "
                  "--eye, --hits and "
                  "--depth-image");
   }
-  if (command.look.background.kind == BackgroundKind::kNone && !command.rows &&
-      image_kind(command.output) != ImageKind::kPng) {
+  if (command.look.wishes.background.kind == BackgroundKind::kNone && !command.output.rows &&
+      image_kind(command.output.path) != ImageKind::kPng) {
     refuse_usage("--background none wants a .png, the one that holds what is transparent");
   }
 }
@@ -68,29 +68,24 @@ void check_look(const RenderCommand& command) {
 // What contradicts itself whatever the scene is.
 void check_usage(const RenderCommand& command) {
   check_look(command);
-  const bool wide = command.engine.name == "wide" || command.engine.name == "gpu";
-  if (wide && !command.quality.plain()) {
-    refuse_usage("--engine " + command.engine.name +
-                 " draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
-  }
+  command.engine.check(command.quality.plain(), command.effects.named() || command.effects.bounces);
   if (command.quality.cuts() && command.scene.structure != StructureKind::kCompact) {
     refuse_usage("--cutoff and --max-depth want --structure compact");
   }
-  if (wide && (command.effects.named() || command.effects.bounces)) {
-    refuse_usage("--engine " + command.engine.name + " draws without --effects and --bounces");
-  }
-  if (command.effects.named() && !command.shade_name.empty() && command.shade != ShadeMode::kColor) {
-    refuse_usage("--shade " + command.shade_name + " shows no light, and so no --effects and no --normals");
+  if (command.effects.named() && !command.look.shade_name.empty() &&
+      command.look.shade != ShadeMode::kColor) {
+    refuse_usage("--shade " + command.look.shade_name +
+                 " shows no light, and so no --effects and no --normals");
   }
 }
 
 // An explicit --shade is drawn as such, unless --effects stands beside it.
 EffectChoice effect_choice(const RenderCommand& command) {
   constexpr EffectChoice kNone{false, Effect::kNone};
-  if (command.shade_name.empty() || command.effects.named()) {
+  if (command.look.shade_name.empty() || command.effects.named()) {
     return command.effects.choice;
   }
-  return command.effects.given && command.shade == ShadeMode::kColor ? command.effects.choice : kNone;
+  return command.effects.given && command.look.shade == ShadeMode::kColor ? command.effects.choice : kNone;
 }
 
 // What a lit picture cannot honour.
@@ -185,7 +180,7 @@ Subject subject_of(const RenderCommand& command, const SceneSource& source, Buil
   subject.fine = command.quality.across == 1
                      ? subject.framing.camera
                      : frame_scene(finer(command.view, command.quality.across), source, shape).camera;
-  subject.shading.mode = command.shade;
+  subject.shading.mode = command.look.shade;
   subject.shading.palette = Span<const Rgb8>(built->palette().data(), built->palette().size());
   const DepthRange range = depth_range(subject.camera(), built->bounds());
   subject.shading.near_q8 = range.near_q8;
@@ -196,7 +191,7 @@ Subject subject_of(const RenderCommand& command, const SceneSource& source, Buil
 // The whole picture, or --rows of it.
 Status paint_with(const BandPainter& painter, const Subject& subject, const Progress& progress,
                   Painting* painting) {
-  const RowRange rows = subject.command.rows.value_or(RowRange{0, subject.camera().height_px()});
+  const RowRange rows = subject.command.output.rows.value_or(RowRange{0, subject.camera().height_px()});
   return paint(painter, subject.camera().width_px(), rows, subject.format, progress, painting);
 }
 
@@ -320,42 +315,13 @@ PartHeader part_of(const Subject& subject, const SceneSource& source, const Ligh
   add_camera(subject.framing.kept, &camera);
   part.camera_crc32 = camera.value();
   CrcSum options;
-  options.add_all(command.shade, subject.format, quality.samples_key(), quality.cutoff.raw,
+  options.add_all(command.look.shade, subject.format, quality.samples_key(), quality.cutoff.raw,
                   quality.max_depth);
   if (is_lit) {
     add_lighting(light.lighting, light.used, light.effects, subject.built.level(), &options);
   }
   part.options_crc32 = options.value();
   return part;
-}
-
-// What is wrong with the numbers of rows and frames.
-void check_part_size(RenderCommand* command) {
-  if (command->rows) {
-    check_range("--rows", *command->rows, command->view.height_px,
-                "the picture of " + std::to_string(command->view.height_px) + " rows");
-  }
-  if (!command->camera_path.empty()) {
-    command->path = read_camera_path(command->camera_path, command->view);
-    if (command->path.has_fov && (command->fov_given || command->view.orthographic)) {
-      refuse_usage("--camera-path", command->fov_given ? "its fov is the angle, without --fov"
-                                                       : "its fov is the angle of --projection perspective");
-    }
-  }
-  if (command->frames) {
-    const std::int64_t all = command->turntable != 0
-                                 ? command->turntable
-                                 : static_cast<std::int64_t>(command->path.cameras.size());
-    check_range("--part", *command->frames, all, "the film of " + std::to_string(all) + " frames");
-  }
-}
-
-// How the picture is kept: a part as a .ppm holds it, unless it is to be rows of a .pbm.
-ImageKind kind_of(const RenderCommand& command) {
-  if (command.rows) {
-    return is_mono_part(command.output) ? ImageKind::kPbm : ImageKind::kPpm;
-  }
-  return image_kind(command.output).value_or(ImageKind::kPpm);
 }
 
 // From a file to a picture: reader, source, builder, tree, painter, output.
@@ -368,12 +334,13 @@ void run(const RenderCommand& given) {
     throw InputError("--samples auto wants a picture of at most " +
                      std::to_string(kMaxPicturePx / kEdgeGrid) + " pixels a side");
   }
-  check_part_size(&command);
+  command.output.read_sizes(command.view, command.fov_given);
   command.engine.check_budget(command.scene.budget_bytes().has_value());
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
-  OutputSet outputs({command.output, command.hits_path, command.depth_path, command.scene.stats_path},
-                    {command.scene.arguments.scene, command.camera_path});
-  const ImageKind kind = kind_of(command);
+  OutputSet outputs(
+      {command.output.path, command.output.hits_path, command.output.depth_path, command.scene.stats_path},
+      {command.scene.arguments.scene, command.output.camera_path});
+  const ImageKind kind = command.output.kind(ImageKind::kPpm);
   // A board's picture is drawn as its display takes it.
   const PixelFormat format =
       command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
@@ -384,8 +351,8 @@ void run(const RenderCommand& given) {
     render_look(command, *source, outputs);
     return;
   }
-  if (command.shade_name.empty()) {
-    command.shade = source->single_material() ? ShadeMode::kDepth : ShadeMode::kColor;
+  if (command.look.shade_name.empty()) {
+    command.look.shade = source->single_material() ? ShadeMode::kDepth : ShadeMode::kColor;
   }
   Light light = light_of(command, *source);
 
@@ -408,7 +375,7 @@ void run(const RenderCommand& given) {
   bar.clear();
 
   const Image shown = converted(painting.image, pixel_format(kind));
-  if (command.rows) {
+  if (command.output.rows) {
     write_rows(outputs[kPicture], part_of(subject, *source, light), shown, subject.camera().height_px());
   } else {
     write_image(outputs[kPicture], kind, shown);
@@ -432,37 +399,31 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
   add_text_option(
       app, "--background", "none|RRGGBB|gradient",
       [command](const std::string& text) {
-        command->wishes_look = true;
-        return parse_background(text, &command->look.background) ? ""
-                                                                 : "is not none, gradient or six hex digits";
+        command->look.given = true;
+        return parse_background(text, &command->look.wishes.background)
+                   ? ""
+                   : "is not none, gradient or six hex digits";
       },
       "what stands behind the scene; none is transparent, in a .png (default: the scene's sky, else a soft "
       "gradient, black behind stars)");
   add_choice_option(
       app, "--ground", {"auto", "on", "off"},
       [command](std::size_t index) {
-        command->wishes_look = true;
-        command->look.ground = index == 0 ? std::nullopt : std::optional<bool>(index == 1);
+        command->look.given = true;
+        command->look.wishes.ground = index == 0 ? std::nullopt : std::optional<bool>(index == 1);
       },
       "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light")
       .default_str("auto");
-  add_whole_option(app, "--turntable", "N", 2, 1000, &command->turntable,
+  add_whole_option(app, "--turntable", "N", 2, 1000, &command->output.turntable,
                    "a film of N frames once around the scene, six seconds long");
   add_path_option(
-      app, "--camera-path", "FILE.csv", &command->camera_path,
+      app, "--camera-path", "FILE.csv", &command->output.camera_path,
       std::string("a film of a frame a line, 25 a second; a header line is allowed; ") + kPathColumns);
   for (const char* const place : {"--eye", "--target", "--up", "--view", "--turn", "--tilt", "--turntable"}) {
     exclude_each_other(app, "--camera-path", place);
   }
-  add_range(
-      app, "--rows", &command->rows,
-      "draw only COUNT rows of the picture from row FIRST on, counted from 0 at the top, and write them as a "
-      "part for thimble join; name it F.part, and with --effects for a .pbm F.pbm.part");
-  add_range(
-      app, "--part", &command->frames,
-      "with --turntable or --camera-path: draw only COUNT frames from frame FIRST on, counted from 0, and "
-      "write them as a part for thimble join");
-  add_flag(app, "--verbose", &command->verbose, "say on standard error what the scene's look came to");
+  command->output.add_parts(app);
+  add_flag(app, "--verbose", &command->look.verbose, "say on standard error what the scene's look came to");
 }
 
 }  // namespace
@@ -493,7 +454,7 @@ void print_summary(const Stats& stats, const std::string& note) {
 }
 
 bool takes_look(const RenderCommand& command) {
-  return command.shade_name.empty() && !command.effects.given &&
+  return command.look.shade_name.empty() && !command.effects.given &&
          command.scene.structure == StructureKind::kCompact && command.engine.name == "auto" &&
          !command.quality.cuts() && command.scene.board == nullptr;
 }
@@ -560,23 +521,22 @@ void add_render(CLI::App& app) {
   add_text_option(
       *sub, "-o,--output", "FILE",
       [command](const std::string& text) {
-        command->output = text;
+        command->output.path = text;
         return text.empty() ? "is not a file's name" : "";
       },
       "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output; with --turntable "
       "or --camera-path a .gif or .y4m")
       .required();
   add_picture_view(*sub, &command->view);
-  add_shade(*sub, &command->shade,
+  add_shade(*sub, &command->look.shade,
             "brightness by distance (the paper's), the face's direction, the palette in one light, or white "
             "where anything is; given without --effects it draws none",
-            &command->shade_name);
+            &command->look.shade_name);
   add_look(*sub, command);
-  add_path_option(*sub, "--hits", "FILE.csv", &command->hits_path,
+  add_path_option(*sub, "--hits", "FILE.csv", &command->output.hits_path,
                   "what the ray of each pixel's centre hits, a line a pixel, row by row from the top left: "
-                  "px,py and the columns "
-                  "that trace writes");
-  add_path_option(*sub, "--depth-image", "FILE.pfm", &command->depth_path,
+                  "px,py and the columns that trace writes");
+  add_path_option(*sub, "--depth-image", "FILE.pfm", &command->output.depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
   add_effect_options(*sub, &command->effects,
                      "; what calls for none is drawn by --shade; --structure compact and --engine auto "

@@ -6,10 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "commands/camera_path.h"
+#include "commands/render_output.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "output/image.h"
 #include "output/output_set.h"
 #include "scene/default_look.h"
 #include "scene/framing.h"
@@ -20,32 +19,28 @@ namespace thimble::tools {
 
 class GpuEngine;
 
+/// How the scene is to look.
+struct RenderLook {
+  LookWishes wishes;
+  bool given = false;  ///< --background or --ground
+  bool verbose = false;
+  ShadeMode shade = ShadeMode::kDepth;
+  std::string shade_name;  ///< empty unless given
+};
+
 struct RenderCommand {
   SceneOptions scene;
   EngineOptions engine;
   ViewWishes view;
+  bool fov_given = false;
   Quality quality;
   EffectWishes effects;
-  LookWishes look;
-  bool wishes_look = false;  ///< --background or --ground
-  bool verbose = false;
-  int turntable = 0;        ///< frames of a film; 0: none
-  std::string camera_path;  ///< a file of a film's cameras; empty: none
-  bool fov_given = false;
-  CameraPath path;                 ///< what it holds, once it is read
-  std::optional<RowRange> rows;    ///< a part of a picture
-  std::optional<RowRange> frames;  ///< a part of a film
-  ShadeMode shade = ShadeMode::kDepth;
-  std::string shade_name;  ///< empty unless given
-  std::string output;
-  std::string hits_path;
-  std::string depth_path;
-
-  bool is_film() const { return turntable != 0 || !camera_path.empty(); }
+  RenderLook look;
+  RenderOutput output;
 };
 
 /// The files that it writes, by their place in the set.
-enum RenderOutput : std::size_t { kPicture, kHits, kDepths, kStats };
+enum RenderFile : std::size_t { kPicture, kHits, kDepths, kStats };
 
 /// Rows in a band of `row_bytes` each: as many as a sixteenth of the budget holds, fewer when the scene needs
 /// the room; at most `most`.

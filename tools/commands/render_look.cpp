@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "commands/part_options.h"
 #include "commands/render_command.h"
+#include "commands/render_output.h"
 #include "output/image.h"
 #include "output/part_file.h"
 #include "output/progress.h"
@@ -29,7 +29,7 @@ class LookStudio {
       : command_(command),
         source_(source),
         lighting_(command.effects.lighting(source.lighting())),
-        wishes_(command.look),
+        wishes_(command.look.wishes),
         built_(build()),
         shape_(shape_of(built_)),
         facts_(facts_of(source, glowing(), shape_)) {}
@@ -53,7 +53,7 @@ class LookStudio {
                fine_camera(),
                work(),
                is_lit ? command_.engine.lit_threads(&built_, look_.effects) : command_.engine.threads,
-               command_.rows.value_or(RowRange{}),
+               command_.output.rows.value_or(RowRange{}),
                streams_.get()};
     if (exposure_ == 0) {
       exposure_ = measured_exposure(canvas_);  // of the first view for all, so that a film does not flicker
@@ -154,7 +154,7 @@ class LookStudio {
 };
 
 void print_look(const RenderCommand& command, const LookStudio& studio) {
-  if (command.verbose) {
+  if (command.look.verbose) {
     std::array<char, 32> exposure{};
     std::snprintf(exposure.data(), exposure.size(), "%.2f", studio.exposure() / 256.0);
     std::fprintf(stderr, "look: %s; exposure %s\n", studio.look().text.c_str(), exposure.data());
@@ -220,12 +220,9 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
   ProgressBar bar("tracing", command.scene.quiet);
   const Painting painting = studio.paint([&](double done) { bar.update(done); });
   bar.clear();
-  ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
-  if (command.rows) {
-    kind = is_mono_part(command.output) ? ImageKind::kPbm : ImageKind::kPng;
-  }
+  const ImageKind kind = command.output.kind(ImageKind::kPng);
   const Image shown = converted(painting.image, pixel_format(kind));
-  if (command.rows) {
+  if (command.output.rows) {
     write_rows(outputs[kPicture], part_of(source, studio, {studio.framing()}), shown, command.view.height_px);
   } else {
     write_image(outputs[kPicture], kind, shown);
@@ -282,11 +279,11 @@ class Filming {
 };
 
 void write_part(const RenderCommand& command, PartHeader header, Filming& filming, OutputFile* file) {
-  header.kind = command.turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath;
+  header.kind = command.output.turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath;
   header.width_px = static_cast<std::uint32_t>(command.view.width_px);
   header.height_px = static_cast<std::uint32_t>(command.view.height_px);
-  header.first = static_cast<std::uint32_t>(command.frames->first);
-  header.count = static_cast<std::uint32_t>(command.frames->count);
+  header.first = static_cast<std::uint32_t>(command.output.frames->first);
+  header.count = static_cast<std::uint32_t>(command.output.frames->count);
   header.all = static_cast<std::uint32_t>(filming.framings().size());
   PartWriter part(file, header);
   for (std::size_t i = 0; i < header.count; ++i) {
@@ -298,15 +295,16 @@ void write_part(const RenderCommand& command, PartHeader header, Filming& filmin
 void render_film(const RenderCommand& command, const SceneSource& source, LookStudio& studio,
                  OutputSet& outputs) {
   Filming filming(studio,
-                  command.turntable != 0 ? frame_turns(command.view, studio.shape(), command.turntable)
-                                         : frame_path(command.camera_path, command.path, studio.shape()),
+                  command.output.turntable != 0
+                      ? frame_turns(command.view, studio.shape(), command.output.turntable)
+                      : frame_path(command.output.camera_path, command.output.cameras, studio.shape()),
                   command.scene.quiet);
   const std::string note = filming.framings().front().note;
-  if (command.frames) {
+  if (command.output.frames) {
     write_part(command, part_of(source, studio, filming.framings()), filming, outputs[kPicture]);
   } else {
-    Film film(outputs[kPicture], command.output,
-              command.turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath,
+    Film film(outputs[kPicture], command.output.path,
+              command.output.turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath,
               filming.framings().size(), [&](std::size_t number) { return filming.draw(number); });
     for (std::size_t i = 0; i < filming.framings().size(); ++i) {
       film.add(filming.shoot(i));
@@ -324,7 +322,7 @@ void render_film(const RenderCommand& command, const SceneSource& source, LookSt
 
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs) {
   LookStudio studio(command, source);
-  if (command.is_film()) {
+  if (command.output.is_film()) {
     render_film(command, source, studio, outputs);
   } else {
     render_picture(command, source, studio, outputs);

@@ -307,6 +307,17 @@ std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built) const {
   return name == "gpu" ? std::make_unique<GpuEngine>(built) : nullptr;
 }
 
+void EngineOptions::check(bool is_plain, bool has_effects) const {
+  const bool draws_plain = name == "wide" || name == "gpu";
+  if (draws_plain && !is_plain) {
+    refuse_usage("--engine " + name +
+                 " draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
+  }
+  if (draws_plain && has_effects) {
+    refuse_usage("--engine " + name + " draws without --effects and --bounces");
+  }
+}
+
 void EngineOptions::check_budget(bool has_budget) const {
   if (name == "gpu" && has_budget) {
     refuse_usage("--engine gpu keeps the scene in the GPU's memory, without --memory and --board");

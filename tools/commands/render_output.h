@@ -1,7 +1,7 @@
-/// @file part_options.h
-/// --rows and --part: a part of a picture or of a film, for `thimble join`.
-#ifndef THIMBLE_TOOLS_COMMANDS_PART_OPTIONS_H
-#define THIMBLE_TOOLS_COMMANDS_PART_OPTIONS_H
+/// @file render_output.h
+/// What `thimble render` writes: a picture, a film, or with --rows and --part a part of one, for `thimble join`.
+#ifndef THIMBLE_TOOLS_COMMANDS_RENDER_OUTPUT_H
+#define THIMBLE_TOOLS_COMMANDS_RENDER_OUTPUT_H
 
 #include <cstdint>
 #include <optional>
@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "commands/camera_path.h"
 #include "output/image.h"
 #include "output/part_file.h"
 #include "scene/built_scene.h"
@@ -22,20 +23,28 @@ class App;
 namespace thimble::tools {
 
 class OutputFile;
-struct RenderCommand;
 
-/// An option that is FIRST:COUNT.
-void add_range(CLI::App& app, const std::string& name, std::optional<RowRange>* range,
-               const std::string& help);
-/// Ends the command as wrong usage where `range` reaches beyond `all` rows or frames.
-void check_range(const std::string& name, const RowRange& range, std::int64_t all,
-                 const std::string& of_what);
+struct RenderOutput {
+  std::string path;  ///< --output
+  std::string hits_path;
+  std::string depth_path;
+  int turntable = 0;               ///< frames of a film; 0: none
+  std::string camera_path;         ///< a file of a film's cameras; empty: none
+  CameraPath cameras;              ///< what it holds, once it is read
+  std::optional<RowRange> rows;    ///< a part of a picture
+  std::optional<RowRange> frames;  ///< a part of a film
 
-/// Ends the command as wrong usage where --output, --rows, --part, --turntable and --camera-path do not go together.
-void check_output(const RenderCommand& command);
-
-/// Whether a part of that name is drawn in one bit a pixel: its ending is .pbm.part.
-bool is_mono_part(const std::string& output);
+  /// --rows and --part.
+  void add_parts(CLI::App& app);
+  bool is_film() const { return turntable != 0 || !camera_path.empty(); }
+  /// How the picture is kept: `of_rows` for a part of one, unless it is to be rows of a .pbm.
+  ImageKind kind(ImageKind of_rows) const;
+  /// Ends the command as wrong usage where --output, --rows, --part, --turntable and --camera-path do not go together,
+  /// or with what is transparent.
+  void check(bool is_transparent) const;
+  /// Reads the cameras, and refuses rows and frames that there are not. Throws OutputError.
+  void read_sizes(const ViewWishes& view, bool fov_given);
+};
 
 /// The part of a picture that these rows are. `image` is Rgb888, with or without alpha, or Mono1.
 void write_rows(OutputFile* file, PartHeader header, const Image& image, std::int32_t height_px);

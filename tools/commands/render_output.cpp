@@ -1,4 +1,4 @@
-#include "commands/part_options.h"
+#include "commands/render_output.h"
 
 #include <zlib.h>
 
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "commands/arguments.h"
-#include "commands/render_command.h"
 #include "output/output_file.h"
 #include "output/units.h"
 #include "scene/animation.h"
@@ -30,31 +29,18 @@ std::optional<RowRange> parse_range(const std::string& text) {
   return RowRange{static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*count)};
 }
 
-void check_part(const RenderCommand& command) {
-  if (command.rows && command.is_film()) {
-    refuse_usage("--rows is a part of a picture; of a film with --turntable or --camera-path take --part");
-  }
-  if (command.frames && !command.is_film()) {
-    refuse_usage(
-        "--part is a part of a film, which wants --turntable or --camera-path; of a picture take --rows");
-  }
-  if (!command.hits_path.empty() || !command.depth_path.empty()) {
-    refuse_usage("--hits and --depth-image are of whole pictures, without --rows and --part");
-  }
-  const std::string& name = command.output;
-  if (name != "-" && (image_kind(name) || is_film(name))) {
-    refuse_usage("--output", in_quotes(name) +
-                                 " is named as a picture or a film, and --rows and --part write a "
-                                 "part of one for thimble join: call it F.part");
-  }
-  if (is_mono_part(name) && (command.is_film() || command.look.background.kind == BackgroundKind::kNone)) {
-    refuse_usage("--output", in_quotes(name) +
-                                 " is named as rows of a .pbm, which holds neither films nor what is "
-                                 "transparent");
-  }
+// Whether a part of that name is drawn in one bit a pixel.
+bool is_mono_part(const std::string& output) {
+  return output.ends_with(".pbm.part");
 }
 
-}  // namespace
+void check_range(const std::string& name, const RowRange& range, std::int64_t all,
+                 const std::string& of_what) {
+  if (std::int64_t{range.first} + range.count > all) {
+    refuse_usage(name, std::to_string(range.first) + ":" + std::to_string(range.count) + " goes beyond " +
+                           of_what + ", whose last is " + std::to_string(all - 1));
+  }
+}
 
 void add_range(CLI::App& app, const std::string& name, std::optional<RowRange>* range,
                const std::string& help) {
@@ -67,30 +53,80 @@ void add_range(CLI::App& app, const std::string& name, std::optional<RowRange>* 
       help);
 }
 
-void check_range(const std::string& name, const RowRange& range, std::int64_t all,
-                 const std::string& of_what) {
-  if (std::int64_t{range.first} + range.count > all) {
-    refuse_usage(name, std::to_string(range.first) + ":" + std::to_string(range.count) + " goes beyond " +
-                           of_what + ", whose last is " + std::to_string(all - 1));
+void check_part(const RenderOutput& output, bool is_transparent) {
+  if (output.rows && output.is_film()) {
+    refuse_usage("--rows is a part of a picture; of a film with --turntable or --camera-path take --part");
+  }
+  if (output.frames && !output.is_film()) {
+    refuse_usage(
+        "--part is a part of a film, which wants --turntable or --camera-path; of a picture take --rows");
+  }
+  if (!output.hits_path.empty() || !output.depth_path.empty()) {
+    refuse_usage("--hits and --depth-image are of whole pictures, without --rows and --part");
+  }
+  const std::string& name = output.path;
+  if (name != "-" && (image_kind(name) || is_film(name))) {
+    refuse_usage("--output", in_quotes(name) +
+                                 " is named as a picture or a film, and --rows and --part write a "
+                                 "part of one for thimble join: call it F.part");
+  }
+  if (is_mono_part(name) && (output.is_film() || is_transparent)) {
+    refuse_usage("--output", in_quotes(name) +
+                                 " is named as rows of a .pbm, which holds neither films nor what is "
+                                 "transparent");
   }
 }
 
-bool is_mono_part(const std::string& output) {
-  return output.ends_with(".pbm.part");
+}  // namespace
+
+void RenderOutput::add_parts(CLI::App& app) {
+  add_range(
+      app, "--rows", &rows,
+      "draw only COUNT rows of the picture from row FIRST on, counted from 0 at the top, and write them as a "
+      "part for thimble join; name it F.part, and with --effects for a .pbm F.pbm.part");
+  add_range(
+      app, "--part", &frames,
+      "with --turntable or --camera-path: draw only COUNT frames from frame FIRST on, counted from 0, and "
+      "write them as a part for thimble join");
 }
 
-void check_output(const RenderCommand& command) {
-  if (command.rows || command.frames) {
-    check_part(command);
+ImageKind RenderOutput::kind(ImageKind of_rows) const {
+  if (rows) {
+    return is_mono_part(path) ? ImageKind::kPbm : of_rows;
+  }
+  return image_kind(path).value_or(ImageKind::kPpm);
+}
+
+void RenderOutput::check(bool is_transparent) const {
+  if (rows || frames) {
+    check_part(*this, is_transparent);
     return;
   }
-  const bool named_film = is_film(command.output);
-  if (!named_film && !image_kind(command.output)) {
-    refuse_usage("--output", in_quotes(command.output) + " does not end in .ppm, .pgm, .pbm or .png");
+  const bool named_film = tools::is_film(path);
+  if (!named_film && !image_kind(path)) {
+    refuse_usage("--output", in_quotes(path) + " does not end in .ppm, .pgm, .pbm or .png");
   }
-  if (named_film != command.is_film()) {
+  if (named_film != is_film()) {
     refuse_usage(named_film ? "a .gif and a .y4m are films, which want --turntable or --camera-path"
                             : "--turntable and --camera-path make a film: -o wants a .gif or .y4m");
+  }
+}
+
+void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
+  if (rows) {
+    check_range("--rows", *rows, view.height_px,
+                "the picture of " + std::to_string(view.height_px) + " rows");
+  }
+  if (!camera_path.empty()) {
+    cameras = read_camera_path(camera_path, view);
+    if (cameras.has_fov && (fov_given || view.orthographic)) {
+      refuse_usage("--camera-path", fov_given ? "its fov is the angle, without --fov"
+                                              : "its fov is the angle of --projection perspective");
+    }
+  }
+  if (frames) {
+    const std::int64_t all = turntable != 0 ? turntable : static_cast<std::int64_t>(cameras.cameras.size());
+    check_range("--part", *frames, all, "the film of " + std::to_string(all) + " frames");
   }
 }
 
