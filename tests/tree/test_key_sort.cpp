@@ -87,24 +87,23 @@ class Voxels : public tools::SceneSource {
     Vec3i at;
     std::uint8_t material;
   };
-  Voxels(int level, std::vector<Voxel> voxels, bool single) : voxels_(std::move(voxels)), single_(single) {
-    level_ = level;
-  }
-  std::string kind() const override { return "voxels"; }
-  std::uint64_t points() const override { return voxels_.size(); }
-  bool is_point_set() const override { return true; }
-  bool single_material() const override { return single_; }
-  const tools::Palette& palette() const override { return palette_; }
-  void stream(const tools::VoxelSink& sink, const tools::Progress&) const override {
-    for (const Voxel& voxel : voxels_) {
-      sink(voxel.at.x, voxel.at.y, voxel.at.z, voxel.material);
-    }
-  }
+  Voxels(int level, const std::vector<Voxel>& voxels, bool single)
+      : SceneSource(facts_of(level, voxels.size(), single),
+                    [voxels](const tools::VoxelSink& sink, const tools::Progress&) {
+                      for (const Voxel& voxel : voxels) {
+                        sink(voxel.at.x, voxel.at.y, voxel.at.z, voxel.material);
+                      }
+                    }) {}
 
  private:
-  std::vector<Voxel> voxels_;
-  bool single_;
-  tools::Palette palette_{};
+  static tools::SourceFacts facts_of(int level, std::size_t points, bool single) {
+    tools::SourceFacts facts;
+    facts.level = level;
+    facts.points = points;
+    facts.is_point_set = true;
+    facts.single_material = single;
+    return facts;
+  }
 };
 
 // Points, crowds and solid boxes; every third time voxels repeat, with other materials.
@@ -146,7 +145,7 @@ Voxels random_world(std::mt19937_64& random) {
     }
   }
   std::shuffle(voxels.begin(), voxels.end(), random);
-  return Voxels(level, std::move(voxels), single);
+  return Voxels(level, voxels, single);
 }
 
 // The same scene through the core's octree.

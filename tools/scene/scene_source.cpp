@@ -17,22 +17,17 @@
 namespace thimble::tools {
 namespace {
 
-// Calls `progress` once every so many voxels with the part done.
-class Meter {
- public:
-  Meter(const Progress& progress, std::uint64_t total) : progress_(progress), total_(total) {}
-  void step() {
+// `sink`, and `progress` with the part done once every so many of `total` voxels.
+VoxelSink metered(const VoxelSink& sink, const Progress& progress, std::uint64_t total) {
+  return [&sink, &progress, total, done = std::uint64_t{0}](std::int32_t x, std::int32_t y, std::int32_t z,
+                                                            std::uint8_t material) mutable {
     constexpr std::uint64_t kEvery = 1 << 16;
-    if (++done_ % kEvery == 0 && progress_ && total_ != 0) {
-      progress_(std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)));
+    sink(x, y, z, material);
+    if (++done % kEvery == 0 && progress && total != 0) {
+      progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
     }
-  }
-
- private:
-  const Progress& progress_;
-  std::uint64_t total_;
-  std::uint64_t done_ = 0;
-};
+  };
+}
 
 void check_depth(int depth) {
   if (depth < kMinLevel || depth > kMaxLevel) {
@@ -40,37 +35,24 @@ void check_depth(int depth) {
   }
 }
 
-class GeneratedScene final : public SceneSource {
- public:
-  explicit GeneratedScene(const GeneratorSpec& spec)
-      : spec_(spec), palette_(generator_palette(spec.kind)), camera_(generator_camera(spec)) {
-    level_ = spec.depth;
-  }
-  std::string kind() const override {
-    constexpr std::array kNames{"points", "cluster", "spheres", "water", "demo"};  // by GeneratorKind
-    return std::string("generator ") + kNames[static_cast<std::size_t>(spec_.kind)];
-  }
-  std::uint64_t points() const override { return is_point_set() ? spec_.count : 0; }
-  bool is_point_set() const override {
-    return spec_.kind == GeneratorKind::kPoints || spec_.kind == GeneratorKind::kCluster;
-  }
-  bool single_material() const override { return is_point_set(); }
-  const Palette& palette() const override { return palette_; }
-  const SceneCamera* camera() const override { return camera_ ? &*camera_ : nullptr; }
-  LitDescription lighting() const override { return generator_lighting(spec_); }
-  void stream(const VoxelSink& sink, const Progress& progress) const override {
-    Meter meter(progress, is_point_set() ? spec_.count : std::uint64_t{1} << (3 * spec_.depth - 3));
-    generate(spec_, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-      sink(x, y, z, material);
-      meter.step();
-    });
-  }
-
- private:
-  GeneratorSpec spec_;
-  Palette palette_;
-  std::optional<SceneCamera> camera_;
-};
+std::unique_ptr<SceneSource> generated_scene(const GeneratorSpec& spec) {
+  constexpr std::array kNames{"points", "cluster", "spheres", "water", "demo"};  // by GeneratorKind
+  const bool is_points = spec.kind == GeneratorKind::kPoints || spec.kind == GeneratorKind::kCluster;
+  SourceFacts facts;
+  facts.kind = std::string("generator ") + kNames[static_cast<std::size_t>(spec.kind)];
+  facts.level = spec.depth;
+  facts.points = is_points ? spec.count : 0;
+  facts.is_point_set = is_points;
+  facts.single_material = is_points;
+  facts.palette = generator_palette(spec.kind);
+  facts.camera = generator_camera(spec);
+  facts.lighting = generator_lighting(spec);
+  const std::uint64_t total = is_points ? spec.count : std::uint64_t{1} << (3 * spec.depth - 3);
+  return std::make_unique<SceneSource>(std::move(facts),
+                                       [spec, total](const VoxelSink& sink, const Progress& progress) {
+                                         generate(spec, metered(sink, progress, total));
+                                       });
+}
 
 // The level of a world for voxels that lie where they lie: the smallest, or `depth` where that is enough.
 int level_for(const std::array<std::int32_t, 3>& size, std::optional<int> depth) {
@@ -91,224 +73,175 @@ int level_for(const std::array<std::int32_t, 3>& size, std::optional<int> depth)
   return level;
 }
 
-class VoxelModelScene final : public SceneSource {
- public:
-  VoxelModelScene(std::unique_ptr<VoxelModel> model, std::optional<int> depth) : model_(std::move(model)) {
-    level_ = level_for(model_->size(), depth);
-    model_->for_each([&](auto, auto, auto, auto) { ++voxels_; });
-  }
-  std::string kind() const override {
-    return model_->frames() == 1 ? "voxel model"
-                                 : "voxel model of " + std::to_string(model_->frames()) + " frames";
-  }
-  std::uint64_t points() const override { return voxels_; }
-  bool is_point_set() const override { return false; }
-  bool single_material() const override { return false; }
-  bool is_scalable() const override { return false; }
-  std::array<std::int32_t, 3> extent() const override { return model_->size(); }
-  const Palette& palette() const override { return model_->palette(); }
-  std::uint32_t frames() const override { return model_->frames(); }
-  void stream(const VoxelSink& sink, const Progress& progress) const override {
-    Meter meter(progress, voxels_);
-    model_->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-      sink(x, y, z, material);
-      meter.step();
-    });
-  }
+std::unique_ptr<SceneSource> model_scene(std::unique_ptr<VoxelModel> read, std::optional<int> depth) {
+  const std::shared_ptr<const VoxelModel> model = std::move(read);
+  SourceFacts facts;
+  facts.frames = model->frames();
+  facts.kind =
+      facts.frames == 1 ? "voxel model" : "voxel model of " + std::to_string(facts.frames) + " frames";
+  facts.extent = model->size();
+  facts.level = level_for(*facts.extent, depth);
+  model->for_each([&](auto, auto, auto, auto) { ++facts.points; });
+  facts.is_scalable = false;
+  facts.palette = model->palette();
+  const std::uint64_t voxels = facts.points;
+  return std::make_unique<SceneSource>(std::move(facts),
+                                       [model, voxels](const VoxelSink& sink, const Progress& progress) {
+                                         model->for_each(metered(sink, progress, voxels));
+                                       });
+}
 
- private:
-  std::unique_ptr<VoxelModel> model_;
-  std::uint64_t voxels_ = 0;
-};
-
-class VoxelGridScene final : public SceneSource {
- public:
-  VoxelGridScene(std::unique_ptr<VoxelGrid> grid, std::optional<int> depth)
-      : grid_(std::move(grid)), colors_(histogram()) {
-    level_ = level_for(grid_->size(), depth);
-  }
-  std::string kind() const override { return "voxel grid"; }
-  std::uint64_t points() const override { return voxels_; }
-  bool is_point_set() const override { return false; }
-  bool single_material() const override { return colors_.colors() == 0; }
-  bool is_scalable() const override { return false; }
-  std::array<std::int32_t, 3> extent() const override { return grid_->size(); }
-  const Palette& palette() const override { return colors_.palette(); }
-  void stream(const VoxelSink& sink, const Progress& progress) const override {
-    Meter meter(progress, voxels_);
-    const bool has_color = grid_->has_color();
-    grid_->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb color) {
-      sink(x, y, z, has_color ? colors_.index(color) : std::uint8_t{0});
-      meter.step();
-    });
-  }
-
- private:
-  ColorHistogram histogram() {
-    ColorHistogram colors;
-    const bool has_color = grid_->has_color();
-    grid_->for_each([&](auto, auto, auto, Rgb color) {
-      ++voxels_;
-      if (has_color) {
-        colors.add(color);
-      }
-    });
-    return colors;
-  }
-
-  std::unique_ptr<VoxelGrid> grid_;
-  std::uint64_t voxels_ = 0;
-  PaletteMap colors_;
-};
-
-class PointScene final : public SceneSource {
- public:
-  PointScene(std::unique_ptr<PointCloud> cloud, const SceneArguments& arguments)
-      : cloud_(std::move(cloud)),
-        survey_(survey_points(*cloud_)),
-        colors_(survey_.colors),
-        as_voxels_(arguments.as_voxels) {
-    constexpr int kDefaultDepth = 9;
-    level_ = arguments.depth.value_or(as_voxels_ ? smallest_level(survey_) : kDefaultDepth);
-  }
-  std::string kind() const override {
-    return as_voxels_ ? "points as voxels" : "point cloud, fitted to the world";
-  }
-  std::uint64_t points() const override { return survey_.points; }
-  bool is_point_set() const override { return true; }
-  bool single_material() const override { return colors_.colors() == 0; }
-  bool is_scalable() const override { return !as_voxels_; }
-  std::array<std::int32_t, 3> extent() const override {
-    if (!as_voxels_) {
-      return SceneSource::extent();
+std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::optional<int> depth) {
+  const std::shared_ptr<const VoxelGrid> grid = std::move(read);
+  SourceFacts facts;
+  facts.kind = "voxel grid";
+  ColorHistogram histogram;
+  const bool has_color = grid->has_color();
+  grid->for_each([&](auto, auto, auto, Rgb color) {
+    ++facts.points;
+    if (has_color) {
+      histogram.add(color);
     }
-    std::array<std::int32_t, 3> result{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      result[axis] = static_cast<std::int32_t>(std::clamp(survey_.bounds.high[axis], 0.0, 4095.0)) + 1;
-    }
-    return result;
-  }
-  const Palette& palette() const override { return colors_.palette(); }
-  void stream(const VoxelSink& sink, const Progress& progress) const override {
-    Meter meter(progress, survey_.points);
-    const VoxelSink counted = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-      sink(x, y, z, material);
-      meter.step();
-    };
-    if (as_voxels_) {
-      place_points(*cloud_, level_, &colors_, counted);
-    } else {
-      fit_points(*cloud_, survey_, level_, &colors_, counted);
-    }
-  }
-
- private:
-  std::unique_ptr<PointCloud> cloud_;
-  PointSurvey survey_;
-  PaletteMap colors_;
-  bool as_voxels_;
-};
-
-class MeshScene final : public SceneSource {
- public:
-  MeshScene(TriangleMesh mesh, const SceneArguments& arguments)
-      : mesh_(std::move(mesh)), colors_(triangle_colors(mesh_)), z_up_(arguments.z_up || mesh_.is_z_up) {
-    constexpr int kDefaultDepth = 9;
-    level_ = arguments.depth.value_or(kDefaultDepth);
-    if (mesh_.triangles.empty()) {
-      throw InputError("no triangles");
-    }
-  }
-  std::string kind() const override { return "triangle mesh, voxelised"; }
-  bool is_mesh() const override { return true; }
-  std::uint64_t points() const override { return mesh_.positions.size(); }
-  bool is_point_set() const override { return false; }
-  bool single_material() const override { return colors_.colors() == 0; }
-  const Palette& palette() const override { return colors_.palette(); }
-  void stream(const VoxelSink& sink, const Progress& progress) const override {
-    voxelise(mesh_, level_, z_up_, &colors_, sink, progress);
-  }
-  void stream_blocks(const VisitBlock& visit, const Progress& progress) const override {
-    const BlockSink sink = [&](const UnitPoint& voxel, int level, std::uint8_t material) {
-      visit({voxel[0], voxel[1], voxel[2]}, level, material);
-    };
-    voxelise(mesh_, level_, z_up_, &colors_, sink, progress);
-  }
-
- private:
-  TriangleMesh mesh_;
-  PaletteMap colors_;
-  bool z_up_;
-};
-
-class BakedFileScene final : public SceneSource {
- public:
-  BakedFileScene(BakedFile file, std::optional<int> depth) : file_(std::move(file)) {
-    level_ = tree().level();
-    if (depth && *depth != level_) {
-      throw InputError("was baked with depth " + std::to_string(level_) + "; --depth cannot change that");
-    }
-    palette_.fill(default_material());
-    for (std::size_t i = 0; i < file_.scene.palette().size; ++i) {
-      const Rgb8 color = file_.scene.palette()[i];
-      palette_[i].color = {color.r, color.g, color.b};
-    }
-    BakedLighting lighting;
-    if (BakedLighting::open(file_.scene.section(SectionKind::kLighting), level_, &lighting) != Status::kOk) {
-      return;  // baked without
-    }
-    lit_ = describe_baked(lighting, palette_);
-    for (std::size_t i = 0; i < lighting.scene.surfaces.size; ++i) {
-      const Rgb color = palette_[i].color;
-      palette_[i] = material_of(lighting.scene.surfaces[i]);
-      palette_[i].color = color;
-    }
-  }
-  std::string kind() const override { return "baked scene"; }
-  std::uint64_t points() const override { return tree().voxel_count(); }
-  bool is_point_set() const override { return false; }
-  bool single_material() const override { return !tree().many_materials() && tree().uniform_material() == 0; }
-  bool has_colors() const override {
-    const Rgb plain = default_material().color;
-    const Rgb first = palette_[0].color;
-    return !single_material() || first.r != plain.r || first.g != plain.g || first.b != plain.b;
-  }
-  bool is_scalable() const override { return false; }
-  const SceneCamera* camera() const override {
-    return file_.scene.has_camera() ? &file_.scene.camera() : nullptr;
-  }
-  LitDescription lighting() const override { return lit_ ? *lit_ : describe_palette(palette_); }
-  const BakedScene* baked() const override { return &file_.scene; }
-  std::optional<LookNote> look_note() const override {
-    return read_look_note(file_.scene.section(SectionKind::kLook));
-  }
-  std::array<std::int32_t, 3> extent() const override {
-    const Vec3i& max = tree().bounds().high;
-    return {max.x, max.y, max.z};
-  }
-  const Palette& palette() const override { return palette_; }
-  void stream(const VoxelSink& sink, const Progress& progress) const override {
-    Meter meter(progress, tree().voxel_count());
-    for_each_block(tree(), [&](const Vec3i& corner, int level, std::uint8_t material) {
-      for_voxels(corner, level, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-        sink(x, y, z, material);
-        meter.step();
+  });
+  const auto colors = std::make_shared<const PaletteMap>(histogram);
+  facts.extent = grid->size();
+  facts.level = level_for(*facts.extent, depth);
+  facts.single_material = colors->colors() == 0;
+  facts.is_scalable = false;
+  facts.palette = colors->palette();
+  const std::uint64_t voxels = facts.points;
+  return std::make_unique<SceneSource>(
+      std::move(facts), [grid, colors, voxels](const VoxelSink& sink, const Progress& progress) {
+        const VoxelSink counted = metered(sink, progress, voxels);
+        grid->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb color) {
+          counted(x, y, z, colors->index(color));  // 0 of a grid without colours
+        });
       });
-    });
+}
+
+std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const SceneArguments& arguments) {
+  constexpr int kDefaultDepth = 9;
+  // A cloud, what the first pass learned of it, and its colours.
+  struct Points {
+    explicit Points(std::unique_ptr<PointCloud> read)
+        : cloud(std::move(read)), survey(survey_points(*cloud)), colors(survey.colors) {}
+    std::unique_ptr<PointCloud> cloud;
+    PointSurvey survey;
+    PaletteMap colors;
+  };
+  const auto points = std::make_shared<const Points>(std::move(read));
+  const bool as_voxels = arguments.as_voxels;
+  SourceFacts facts;
+  facts.kind = as_voxels ? "points as voxels" : "point cloud, fitted to the world";
+  facts.level = arguments.depth.value_or(as_voxels ? smallest_level(points->survey) : kDefaultDepth);
+  facts.points = points->survey.points;
+  facts.is_point_set = true;
+  facts.single_material = points->colors.colors() == 0;
+  facts.is_scalable = !as_voxels;
+  for (std::size_t axis = 0; as_voxels && axis < 3; ++axis) {
+    const double high = std::clamp(points->survey.bounds.high[axis], 0.0, 4095.0);
+    facts.extent = facts.extent.value_or(std::array<std::int32_t, 3>{});
+    (*facts.extent)[axis] = static_cast<std::int32_t>(high) + 1;
   }
+  facts.palette = points->colors.palette();
+  const int level = facts.level;
+  return std::make_unique<SceneSource>(
+      std::move(facts), [points, as_voxels, level](const VoxelSink& sink, const Progress& progress) {
+        const VoxelSink counted = metered(sink, progress, points->survey.points);
+        if (as_voxels) {
+          place_points(*points->cloud, level, &points->colors, counted);
+        } else {
+          fit_points(*points->cloud, points->survey, level, &points->colors, counted);
+        }
+      });
+}
 
- private:
-  const CompactTree& tree() const { return file_.scene.tree(); }
+std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments& arguments) {
+  constexpr int kDefaultDepth = 9;
+  const auto mesh = std::make_shared<const TriangleMesh>(std::move(read));
+  const auto colors = std::make_shared<const PaletteMap>(triangle_colors(*mesh));
+  const bool z_up = arguments.z_up || mesh->is_z_up;
+  if (mesh->triangles.empty()) {
+    throw InputError("no triangles");
+  }
+  SourceFacts facts;
+  facts.kind = "triangle mesh, voxelised";
+  facts.level = arguments.depth.value_or(kDefaultDepth);
+  facts.points = mesh->positions.size();
+  facts.is_mesh = true;
+  facts.single_material = colors->colors() == 0;
+  facts.palette = colors->palette();
+  const int level = facts.level;
+  return std::make_unique<SceneSource>(
+      std::move(facts),
+      [mesh, colors, level, z_up](const VoxelSink& sink, const Progress& progress) {
+        voxelise(*mesh, level, z_up, colors.get(), sink, progress);
+      },
+      [mesh, colors, level, z_up](const VisitBlock& visit, const Progress& progress) {
+        const BlockSink sink = [&](const UnitPoint& voxel, int block_level, std::uint8_t material) {
+          visit({voxel[0], voxel[1], voxel[2]}, block_level, material);
+        };
+        voxelise(*mesh, level, z_up, colors.get(), sink, progress);
+      });
+}
 
-  BakedFile file_;
-  Palette palette_;
-  std::optional<LitDescription> lit_;
-};
+std::unique_ptr<SceneSource> baked_scene(BakedFile read, std::optional<int> depth) {
+  const auto file = std::make_shared<const BakedFile>(std::move(read));
+  const BakedScene& scene = file->scene;
+  const CompactTree& tree = scene.tree();
+  if (depth && *depth != tree.level()) {
+    throw InputError("was baked with depth " + std::to_string(tree.level()) + "; --depth cannot change that");
+  }
+  SourceFacts facts;
+  facts.kind = "baked scene";
+  facts.level = tree.level();
+  facts.points = tree.voxel_count();
+  facts.single_material = !tree.many_materials() && tree.uniform_material() == 0;
+  facts.is_scalable = false;
+  const Vec3i& high = tree.bounds().high;
+  facts.extent = {high.x, high.y, high.z};
+  Palette& palette = facts.palette;
+  palette.fill(default_material());
+  for (std::size_t i = 0; i < scene.palette().size; ++i) {
+    const Rgb8 color = scene.palette()[i];
+    palette[i].color = {color.r, color.g, color.b};
+  }
+  const Rgb plain = default_material().color;
+  const Rgb first = palette[0].color;
+  facts.has_colors = !facts.single_material || first.r != plain.r || first.g != plain.g || first.b != plain.b;
+  BakedLighting lighting;
+  if (BakedLighting::open(scene.section(SectionKind::kLighting), facts.level, &lighting) == Status::kOk) {
+    facts.lighting = describe_baked(lighting, palette);
+    for (std::size_t i = 0; i < lighting.scene.surfaces.size; ++i) {
+      const Rgb color = palette[i].color;
+      palette[i] = material_of(lighting.scene.surfaces[i]);
+      palette[i].color = color;
+    }
+  }
+  if (scene.has_camera()) {
+    facts.camera = scene.camera();
+  }
+  facts.look_note = read_look_note(scene.section(SectionKind::kLook));
+  facts.baked = file;
+  return std::make_unique<SceneSource>(
+      std::move(facts),
+      [file](const VoxelSink& sink, const Progress& progress) {
+        const CompactTree& voxels = file->scene.tree();
+        const VoxelSink counted = metered(sink, progress, voxels.voxel_count());
+        for_each_block(voxels, [&](const Vec3i& corner, int level, std::uint8_t material) {
+          for_voxels(corner, level,
+                     [&](std::int32_t x, std::int32_t y, std::int32_t z) { counted(x, y, z, material); });
+        });
+      },
+      [file](const VisitBlock& visit, const Progress& /*progress*/) {
+        for_each_block(file->scene.tree(), visit);
+      });
+}
 
 std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& arguments, SceneOpening* opening,
                                       const Progress& progress) {
   if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
-    return std::make_unique<PointScene>(std::move(*cloud), arguments);
+    return point_scene(std::move(*cloud), arguments);
   }
   if (arguments.as_voxels) {
     throw InputError("--as-voxels is for point files");
@@ -317,18 +250,21 @@ std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& argum
     return open_text_scene(**text, arguments, opening, progress);
   }
   if (auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
-    return std::make_unique<VoxelGridScene>(std::move(*grid), arguments.depth);
+    return grid_scene(std::move(*grid), arguments.depth);
   }
   if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
-    return std::make_unique<VoxelModelScene>(std::move(*model), arguments.depth);
+    return model_scene(std::move(*model), arguments.depth);
   }
   if (auto* baked = std::get_if<BakedFile>(&source)) {
-    return std::make_unique<BakedFileScene>(std::move(*baked), arguments.depth);
+    return baked_scene(std::move(*baked), arguments.depth);
   }
-  return std::make_unique<MeshScene>(std::move(std::get<TriangleMesh>(source)), arguments);
+  return mesh_scene(std::move(std::get<TriangleMesh>(source)), arguments);
 }
 
 }  // namespace
+
+SceneSource::SceneSource(SourceFacts facts, Stream stream, StreamBlocks blocks)
+    : facts_(std::move(facts)), stream_(std::move(stream)), blocks_(std::move(blocks)) {}
 
 void SceneSource::add_file(const std::string& path) {
   if (std::find(files_.begin(), files_.end(), path) == files_.end()) {
@@ -345,17 +281,16 @@ void SceneSource::add_notes(const Notes& notes) {
 }
 
 std::array<std::int32_t, 3> SceneSource::extent() const {
-  const std::int32_t side = std::int32_t{1} << level_;
-  return {side, side, side};
+  const std::int32_t side = std::int32_t{1} << facts_.level;
+  return facts_.extent.value_or(std::array{side, side, side});
 }
 
 void SceneSource::stream_blocks(const VisitBlock& visit, const Progress& progress) const {
-  const BakedScene* scene = baked();
-  if (scene != nullptr) {
-    for_each_block(scene->tree(), visit);
+  if (blocks_) {
+    blocks_(visit, progress);
     return;
   }
-  stream(
+  stream_(
       [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
         visit({x, y, z}, 0, material);
       },
@@ -388,7 +323,7 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
     if (arguments.depth) {
       spec->depth = *arguments.depth;
     }
-    return std::make_unique<GeneratedScene>(*spec);
+    return generated_scene(*spec);
   }
   const ArrayAs as = arguments.as_heights  ? ArrayAs::kHeights
                      : arguments.as_points ? ArrayAs::kPoints

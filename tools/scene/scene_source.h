@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -20,40 +21,59 @@
 
 namespace thimble::tools {
 
+/// What a source says of itself before it streams: plain data, filled in by whoever makes the source.
+struct SourceFacts {
+  std::string kind;           ///< for a person: "voxel model", "generator points", ...
+  int level = 1;              ///< the world is 2^level voxels a side
+  std::uint64_t points = 0;   ///< what the input counts: points, voxels of the file, vertices
+  bool is_point_set = false;  ///< single voxels strewn about, of which a list is smaller than a pool of nodes
+  bool is_mesh = false;       ///< every stream voxelises triangles again
+  bool single_material = false;  ///< all voxels have material 0
+  std::optional<bool>
+      has_colors{};         ///< it says its colours, be it only one; else where its materials are many
+  bool is_scalable = true;  ///< another --depth shows the same scene finer or coarser
+  /// One past the greatest index on each axis that can occur: what a dense grid must hold; else the whole world.
+  std::optional<std::array<std::int32_t, 3>> extent{};
+  Palette palette{};
+  std::optional<SceneCamera> camera{};  ///< that the scene brings along: a baked one, or a generator's own
+  /// What light does in it by its file, its text or its generator; else the palette's surfaces alone.
+  std::optional<LitDescription> lighting{};
+  std::shared_ptr<const BakedFile> baked{};  ///< the baked scene that it is
+  std::optional<LookNote> look_note{};       ///< what a baked scene keeps of the one that it was made from
+  std::uint32_t frames = 1;                  ///< of its file; `SceneArguments::frame` takes one
+  std::size_t placements = 0;  ///< models, boxes and balls of a .scene, those within it counted each time
+};
+
 /// Streams the same voxels on every call.
 class SceneSource {
  public:
-  virtual ~SceneSource() = default;
-  /// What it is, for a person: ".vox model", "point cloud, fitted", "generator points", ...
-  virtual std::string kind() const = 0;
-  /// The world is 2^level voxels a side.
-  int level() const { return level_; }
-  /// What the input counts: points, voxels of the file, vertices; known before streaming.
-  virtual std::uint64_t points() const = 0;
-  /// Whether it is made of single voxels strewn about, of which a list is smaller than a pool of nodes.
-  virtual bool is_point_set() const = 0;
-  /// Whether every stream voxelises triangles again.
-  virtual bool is_mesh() const { return false; }
-  /// Whether all voxels have material 0.
-  virtual bool single_material() const = 0;
-  /// One past the greatest index on each axis that can occur: what a dense grid must hold.
-  virtual std::array<std::int32_t, 3> extent() const;
-  virtual const Palette& palette() const = 0;
-  /// Whether what it is read from says its colours, be it only one.
-  virtual bool has_colors() const { return !single_material(); }
-  /// Whether another --depth shows the same scene finer or coarser.
-  virtual bool is_scalable() const { return true; }
-  /// The camera that the scene brings along, or null: a baked one, or a generator's own.
-  virtual const SceneCamera* camera() const { return nullptr; }
-  /// What light does in it: what its file, its text or its generator says, else the palette's surfaces alone.
+  /// Calls the sink for each voxel. Where a position repeats, the last one counts; in a point set the one with the
+  /// greatest material.
+  using Stream = std::function<void(const VoxelSink& sink, const Progress& progress)>;
+  using StreamBlocks = std::function<void(const VisitBlock& visit, const Progress& progress)>;
+  /// `blocks`: the same in blocks, for a source that has larger ones than voxels.
+  SceneSource(SourceFacts facts, Stream stream, StreamBlocks blocks = nullptr);
+
+  const std::string& kind() const { return facts_.kind; }
+  int level() const { return facts_.level; }
+  std::uint64_t points() const { return facts_.points; }
+  bool is_point_set() const { return facts_.is_point_set; }
+  bool is_mesh() const { return facts_.is_mesh; }
+  bool single_material() const { return facts_.single_material; }
+  std::array<std::int32_t, 3> extent() const;
+  const Palette& palette() const { return facts_.palette; }
+  bool has_colors() const { return facts_.has_colors.value_or(!facts_.single_material); }
+  bool is_scalable() const { return facts_.is_scalable; }
+  const SceneCamera* camera() const { return facts_.camera ? &*facts_.camera : nullptr; }
   /// Made anew by each call.
-  virtual LitDescription lighting() const { return describe_palette(palette()); }
-  /// The baked scene that it is, or null. Its bytes live as long as the source.
-  virtual const BakedScene* baked() const { return nullptr; }
-  /// Of a baked scene: what it keeps of the scene that it was made from, if it does.
-  virtual std::optional<LookNote> look_note() const { return std::nullopt; }
-  /// How many frames its file has; `SceneArguments::frame` takes one.
-  virtual std::uint32_t frames() const { return 1; }
+  LitDescription lighting() const {
+    return facts_.lighting ? *facts_.lighting : describe_palette(facts_.palette);
+  }
+  /// Its bytes live as long as the source.
+  const BakedScene* baked() const { return facts_.baked != nullptr ? &facts_.baked->scene : nullptr; }
+  const std::optional<LookNote>& look_note() const { return facts_.look_note; }
+  std::uint32_t frames() const { return facts_.frames; }
+  std::size_t placements() const { return facts_.placements; }
   /// The files that it was read from: its own, and those that a .scene names, each once. None for a
   /// generator.
   const std::vector<std::string>& files() const { return files_; }
@@ -61,15 +81,13 @@ class SceneSource {
   /// What their readers left out or had to decide (readers/source.h), each with the file's name.
   const Notes& notes() const { return notes_; }
   void add_notes(const Notes& notes);
-  /// Where a position repeats, the last voxel counts; in a point set the one with the greatest material.
-  virtual void stream(const VoxelSink& sink, const Progress& progress) const = 0;
-  /// The same in blocks where the source has larger ones than voxels.
-  virtual void stream_blocks(const VisitBlock& visit, const Progress& progress) const;
-
- protected:
-  int level_ = 1;
+  void stream(const VoxelSink& sink, const Progress& progress) const { stream_(sink, progress); }
+  void stream_blocks(const VisitBlock& visit, const Progress& progress) const;
 
  private:
+  SourceFacts facts_;
+  Stream stream_;
+  StreamBlocks blocks_;
   std::vector<std::string> files_;
   Notes notes_;
 };
@@ -104,8 +122,7 @@ struct OpenedModel {
   std::shared_ptr<const SceneSource> source;
   UsedMaterials used;
   VoxelBox solid;
-  std::uint64_t voxels = 0;      ///< streamed, repeated ones too
-  std::uint64_t placements = 0;  ///< a scene's own models, boxes and balls
+  std::uint64_t voxels = 0;  ///< streamed, repeated ones too
 };
 
 /// What the files of one scene share while they are opened.

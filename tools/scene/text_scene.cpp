@@ -74,11 +74,17 @@ std::string corner_text(const Vec3i& corner) {
   return std::to_string(corner.x) + " " + std::to_string(corner.y) + " " + std::to_string(corner.z);
 }
 
-class TextScene final : public SceneSource {
+// What a scene text puts together, and how it streams.
+class TextScene {
  public:
   TextScene(const SceneText& text, const SceneArguments& arguments, SceneOpening* opening,
             const Progress& progress)
-      : text_(text), placements_(text.parts.size()) {
+      : text_(text) {
+    facts_.kind = "scene text";
+    facts_.is_scalable = false;
+    facts_.placements = text.parts.size();
+    facts_.lighting.emplace();
+    facts_.extent = {1, 1, 1};
     models_.reserve(text_.parts.size());
     for (const SceneText::Part& part : text_.parts) {
       if (part.kind == SceneText::PartKind::kModel) {
@@ -90,37 +96,29 @@ class TextScene final : public SceneSource {
     check_numbers();
     merge_palettes();
     make_lighting();
-  }
-
-  std::string kind() const override { return "scene text"; }
-  std::uint64_t points() const override { return voxels_; }
-  bool is_point_set() const override { return false; }
-  bool single_material() const override { return materials_ <= 1; }
-  bool has_colors() const override {
-    // A box's or a ball's material has one, and so has what replaces a model's.
+    facts_.camera = text_.camera;
+    facts_.single_material = materials_ <= 1;
+    // A box's or a ball's material has a colour, and so has what replaces a model's.
     const bool stated = std::any_of(text_.parts.begin(), text_.parts.end(), [](const SceneText::Part& part) {
       return part.kind != SceneText::PartKind::kModel || part.replaces;
     });
-    return !single_material() || stated ||
-           std::any_of(models_.begin(), models_.end(),
-                       [](const Placement& each) { return each.model->source->has_colors(); });
-  }
-  bool is_scalable() const override { return false; }
-  std::array<std::int32_t, 3> extent() const override { return {extent_.x, extent_.y, extent_.z}; }
-  const Palette& palette() const override { return palette_; }
-  const SceneCamera* camera() const override { return text_.camera ? &*text_.camera : nullptr; }
-  LitDescription lighting() const override { return lit_; }
-
-  void stream(const VoxelSink& sink, const Progress& progress) const override {
-    stream_blocks(
-        [&](const Vec3i& at, int level, std::uint8_t material) {
-          for_voxels(at, level,
-                     [&](std::int32_t x, std::int32_t y, std::int32_t z) { sink(x, y, z, material); });
-        },
-        progress);
+    facts_.has_colors = !facts_.single_material || stated ||
+                        std::any_of(models_.begin(), models_.end(),
+                                    [](const Placement& each) { return each.model->source->has_colors(); });
   }
 
-  void stream_blocks(const VisitBlock& visit, const Progress& progress) const override {
+  const SourceFacts& facts() const { return facts_; }
+  // Hands what its models were read from, and what was said of them, on to `source`.
+  void add_models_to(SceneSource* source) const {
+    for (const Placement& model : models_) {
+      for (const std::string& file : model.model->source->files()) {
+        source->add_file(file);
+      }
+      source->add_notes(model.model->source->notes());
+    }
+  }
+
+  void stream_blocks(const VisitBlock& visit, const Progress& progress) const {
     std::uint64_t done = 0;
     std::uint64_t told = 0;
     const VisitBlock counted = [&](const Vec3i& at, int level, std::uint8_t material) {
@@ -129,7 +127,7 @@ class TextScene final : public SceneSource {
       done += std::uint64_t{1} << (3 * level);
       if (done - told >= kEvery && progress) {
         told = done;
-        progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(voxels_)));
+        progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(facts_.points)));
       }
     };
     std::size_t model = 0;
@@ -149,7 +147,7 @@ class TextScene final : public SceneSource {
   }
 
  private:
-  std::int32_t side() const { return std::int32_t{1} << level_; }
+  std::int32_t side() const { return std::int32_t{1} << facts_.level; }
   bool inside(const Vec3i& voxel) const {
     const auto within = [this](std::int32_t v) { return v >= 0 && v < side(); };
     return within(voxel.x) && within(voxel.y) && within(voxel.z);
@@ -200,7 +198,7 @@ class TextScene final : public SceneSource {
       }
       return within ? Filled::kAll : Filled::kSome;
     };
-    stream_filled({}, level_, filled, material, visit);
+    stream_filled({}, facts_.level, filled, material, visit);
   }
 
   // The voxels whose centres lie in the ball.
@@ -219,7 +217,7 @@ class TextScene final : public SceneSource {
       }
       return farthest <= reach ? Filled::kAll : nearest > reach ? Filled::kNothing : Filled::kSome;
     };
-    stream_filled({}, level_, filled, material, visit);
+    stream_filled({}, facts_.level, filled, material, visit);
   }
 
   void add_model(const SceneText::Part& part, const std::string& own_path, SceneOpening* opening,
@@ -245,16 +243,12 @@ class TextScene final : public SceneSource {
         kept = survey(open_scene(arguments, opening, progress));
       }
       model.model = kept;
-      for (const std::string& file : kept->source->files()) {
-        add_file(file);
-      }
-      add_notes(kept->source->notes());
     } catch (const InputError& error) {
       fail_at(part.file_place, printable(part.file) + ": " + error.what());
     }
     // Scenes within scenes multiply.
-    placements_ += model.model->placements;
-    if (placements_ > kMostPlacements) {
+    facts_.placements += model.model->source->placements();
+    if (facts_.placements > kMostPlacements) {
       fail_at(part.place, "with this the scene places more than the limit of " + grouped(kMostPlacements) +
                               " models, boxes and balls");
     }
@@ -281,8 +275,6 @@ class TextScene final : public SceneSource {
           grow(&model->solid, {x, y, z});
         },
         {});
-    const auto* nested = dynamic_cast<const TextScene*>(source.get());
-    model->placements = nested != nullptr ? nested->placements_ : 0;
     model->source = std::move(source);
     return model;
   }
@@ -306,11 +298,12 @@ class TextScene final : public SceneSource {
         need(box_of(part), part.place);
       }
     }
-    level_ = asked ? *asked : text_.depth.value_or(0);
-    if (level_ == 0) {
-      level_ = kMinLevel;
-      while (level_ < kMaxLevel && side() < largest) {
-        ++level_;
+    int& level = facts_.level;
+    level = asked ? *asked : text_.depth.value_or(0);
+    if (level == 0) {
+      level = kMinLevel;
+      while (level < kMaxLevel && side() < largest) {
+        ++level;
       }
       if (side() < largest) {
         fail_at(largest_place, "this reaches to " + std::to_string(largest) + "; the largest world ends at " +
@@ -327,7 +320,7 @@ class TextScene final : public SceneSource {
         fail_at(model.part->place, "the model's voxels from " + corner_text(box.low) + " to " +
                                        corner_text(box.high) + " leave the world of " +
                                        std::to_string(side()) + " voxels a side (depth " +
-                                       std::to_string(level_) + "); crop cuts them off");
+                                       std::to_string(facts_.level) + "); crop cuts them off");
       }
       take(kept, model.model->voxels);
     }
@@ -339,7 +332,7 @@ class TextScene final : public SceneSource {
       const VoxelBox box = cut(box_of(part), side());
       if (box.empty()) {
         fail_at(part.place, "all of this lies outside the world of " + std::to_string(side()) +
-                                " voxels a side (depth " + std::to_string(level_) + ")");
+                                " voxels a side (depth " + std::to_string(facts_.level) + ")");
       }
       const std::uint64_t volume = std::uint64_t{1} * static_cast<std::uint64_t>(box.high.x - box.low.x) *
                                    static_cast<std::uint64_t>(box.high.y - box.low.y) *
@@ -354,16 +347,18 @@ class TextScene final : public SceneSource {
   }
 
   void take(const VoxelBox& box, std::uint64_t voxels) {
-    voxels_ += voxels;
+    facts_.points += voxels;
     for (int axis = 0; axis < 3 && !box.empty(); ++axis) {
-      extent_[axis] = std::max(extent_[axis], box.high[axis]);
+      std::int32_t& end = (*facts_.extent)[static_cast<std::size_t>(axis)];
+      end = std::max(end, box.high[axis]);
     }
   }
 
   // What only the world's size decides.
   void check_numbers() {
     const auto in_reach = [this](std::int32_t raw) {
-      return raw >= kMinOriginWorlds * (Q8::kOne << level_) && raw <= kMaxOriginWorlds * (Q8::kOne << level_);
+      return raw >= kMinOriginWorlds * (Q8::kOne << facts_.level) &&
+             raw <= kMaxOriginWorlds * (Q8::kOne << facts_.level);
     };
     const std::string limits = std::to_string(kMinOriginWorlds * side()) + " to " +
                                std::to_string(kMaxOriginWorlds * side()) + " (-4 to 5 world sizes)";
@@ -379,7 +374,7 @@ class TextScene final : public SceneSource {
         fail_at(text_.camera_place, "the eye of the camera is outside the accepted " + limits);
       }
       Camera camera;
-      if (set_camera(*text_.camera, 1, 1, level_, &camera) == Status::kBadArgument) {
+      if (set_camera(*text_.camera, 1, 1, facts_.level, &camera) == Status::kBadArgument) {
         fail_at(text_.camera_place, "up of the camera is parallel to the direction of view");
       }
     }
@@ -388,7 +383,7 @@ class TextScene final : public SceneSource {
       const bool fits = !water.from_to || ((*water.from_to)[2] <= side() && (*water.from_to)[3] <= side());
       if (!fits || water.level_q8 > side() * Q8::kOne) {
         fail_at(water.place, "the water leaves the world of " + std::to_string(side()) +
-                                 " voxels a side (depth " + std::to_string(level_) + ")");
+                                 " voxels a side (depth " + std::to_string(facts_.level) + ")");
       }
     }
   }
@@ -397,12 +392,12 @@ class TextScene final : public SceneSource {
   std::uint8_t named_material(const SceneText::NamedSurface& named, const Surface& surface,
                               const TextPlace& place) {
     const std::uint8_t material = world_material(surface, place);
-    lit_.material_names.emplace(material, named.name);
+    facts_.lighting->material_names.emplace(material, named.name);
     return material;
   }
 
   std::uint8_t world_material(const Surface& surface, const TextPlace& place) {
-    const auto begin = lit_.surfaces.begin();
+    const auto begin = facts_.lighting->surfaces.begin();
     const auto end = begin + static_cast<std::ptrdiff_t>(materials_);
     const auto found = std::find(begin, end, surface);
     if (found == end) {
@@ -410,8 +405,8 @@ class TextScene final : public SceneSource {
         fail_at(place, "with this the scene has more than the limit of " + std::to_string(kMaxSurfaces) +
                            " different materials");
       }
-      lit_.surfaces[materials_] = surface;
-      palette_[materials_] = material_of(surface);
+      facts_.lighting->surfaces[materials_] = surface;
+      facts_.palette[materials_] = material_of(surface);
       return static_cast<std::uint8_t>(materials_++);
     }
     return static_cast<std::uint8_t>(found - begin);
@@ -450,31 +445,27 @@ class TextScene final : public SceneSource {
 
   void make_lighting() {
     for (const SceneText::PlacedLight& each : text_.lights) {
-      lit_.lights.push_back(each.light);
+      facts_.lighting->lights.push_back(each.light);
     }
-    lit_.rest = text_.rest;
-    lit_.has_own_ambient = text_.has_ambient;
-    lit_.on = text_.on | (text_.has_ambient ? Effect::kDirectLight & ~text_.off : Effect::kNone);
-    lit_.off = text_.off;
+    facts_.lighting->rest = text_.rest;
+    facts_.lighting->has_own_ambient = text_.has_ambient;
+    facts_.lighting->on = text_.on | (text_.has_ambient ? Effect::kDirectLight & ~text_.off : Effect::kNone);
+    facts_.lighting->off = text_.off;
     if (text_.water) {
       const SceneText::WaterArea& water = *text_.water;
       const std::array<std::int32_t, 4> plan = water.from_to.value_or(std::array{0, 0, side(), side()});
-      lit_.rest.has_water = true;
-      lit_.rest.water = still_water({plan[0], plan[1], water.floor}, plan[2] - plan[0], plan[3] - plan[1],
-                                    water.level_q8 - water.floor * Q8::kOne);
+      facts_.lighting->rest.has_water = true;
+      facts_.lighting->rest.water = still_water({plan[0], plan[1], water.floor}, plan[2] - plan[0],
+                                                plan[3] - plan[1], water.level_q8 - water.floor * Q8::kOne);
     }
   }
 
   SceneText text_;
   std::vector<Placement> models_;  // in the order of the parts
   std::vector<std::uint8_t> part_material_;
-  Palette palette_{};
-  LitDescription lit_;
+  SourceFacts facts_;
   std::size_t materials_ = 0;
-  std::size_t placements_;      // parts, those of scenes within this one counted each time
   std::uint64_t surveyed_ = 0;  // voxels of models
-  std::uint64_t voxels_ = 0;
-  Vec3i extent_{1, 1, 1};
 };
 
 }  // namespace
@@ -492,9 +483,21 @@ std::unique_ptr<SceneSource> open_text_scene(const SceneText& text, const SceneA
                      std::to_string(kMostNestedScenes));
   }
   all->path.push_back(path);
-  auto result = std::make_unique<TextScene>(text, arguments, all, progress);
+  const auto scene = std::make_shared<const TextScene>(text, arguments, all, progress);
   all->path.pop_back();
-  return result;
+  auto source = std::make_unique<SceneSource>(
+      scene->facts(),
+      [scene](const VoxelSink& sink, const Progress& report) {
+        scene->stream_blocks(
+            [&](const Vec3i& at, int level, std::uint8_t material) {
+              for_voxels(at, level,
+                         [&](std::int32_t x, std::int32_t y, std::int32_t z) { sink(x, y, z, material); });
+            },
+            report);
+      },
+      [scene](const VisitBlock& visit, const Progress& report) { scene->stream_blocks(visit, report); });
+  scene->add_models_to(source.get());
+  return source;
 }
 
 }  // namespace thimble::tools
