@@ -1,6 +1,5 @@
 // thimble bake: a scene as bytes for flash.
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdio>
 #include <memory>
@@ -106,13 +105,10 @@ void report(const BakeCommand& command, const BakingOptions& options, const Bake
   if (!note.empty()) {
     text += "note: " + note + "\n";
   }
-  std::array<char, 64> ratio{};
-  if (tree.voxel_count() != 0) {
-    std::snprintf(ratio.data(), ratio.size(), ", %.2f bytes a voxel",
-                  static_cast<double>(bytes) / static_cast<double>(tree.voxel_count()));
-  }
+  const double a_voxel = static_cast<double>(bytes) / static_cast<double>(tree.voxel_count());
   text += grouped(tree.voxel_count()) + (tree.voxel_count() == 1 ? " voxel" : " voxels") + " in " +
-          grouped(bytes) + " bytes (depth " + std::to_string(tree.level()) + ratio.data() + ")\n";
+          grouped(bytes) + " bytes (depth " + std::to_string(tree.level()) +
+          (tree.voxel_count() == 0 ? "" : ", " + fixed(a_voxel, 2) + " bytes a voxel") + ")\n";
   if (baked.effects != Effect::kNone) {
     text += "for the effects " + effects_text(baked.effects) + "\n";
   }

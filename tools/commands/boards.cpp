@@ -1,7 +1,5 @@
 // thimble boards: what the boards are, and what of a scene fits on each.
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <map>
 #include <memory>
 
@@ -199,10 +197,8 @@ std::string boards_text() {
       "instruction a cycle.\n\n";
   rows = {{"board", "MHz", "instructions", "frames a second"}};
   for (const BoardFacts& board : platform::boards()) {
-    std::array<char, 32> rate{};
-    std::snprintf(rate.data(), rate.size(), "%.1f", frames_per_second(board));
-    rows.push_back(
-        {board.name, std::to_string(board.core_mhz), grouped(board.frame_instructions), rate.data()});
+    rows.push_back({board.name, std::to_string(board.core_mhz), grouped(board.frame_instructions),
+                    fixed(frames_per_second(board), 1)});
   }
   return text + columns_of(rows, 1);
 }
@@ -218,16 +214,12 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
     const std::uint64_t flash = scene_flash_bytes(board, sizes.effects);
     const std::uint64_t building = building_ram_bytes(sizes, board);
     const auto yes = [](bool fits) { return fits ? "yes" : "no"; };
-    std::array<char, 32> share{"no"};
-    if (sizes.baked_bytes <= flash) {
-      std::snprintf(share.data(), share.size(), "%.1f %%",
-                    100 * static_cast<double>(sizes.baked_bytes) / static_cast<double>(flash));
-    }
+    const double share = 100 * static_cast<double>(sizes.baked_bytes) / static_cast<double>(flash);
     const int depth = deepest(sizes, board);
     const bool open_end = sizes.is_scalable && depth == sizes.most_depth && depth < kMaxLevel;
-    rows.push_back({board.name, grouped(flash), share.data(), grouped(drawing_ram_bytes(board)),
-                    yes(drawing_ram_bytes(board) <= board.ram_bytes), grouped(building),
-                    yes(building <= board.ram_bytes),
+    rows.push_back({board.name, grouped(flash), sizes.baked_bytes <= flash ? fixed(share, 1) + " %" : "no",
+                    grouped(drawing_ram_bytes(board)), yes(drawing_ram_bytes(board) <= board.ram_bytes),
+                    grouped(building), yes(building <= board.ram_bytes),
                     depth == 0 ? "-" : (open_end ? ">= " : "") + std::to_string(depth)});
   }
   text += columns_of(rows, 1);

@@ -1,7 +1,6 @@
 // thimble info: what a scene is, and what it takes.
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 
 #include "commands/arguments.h"
@@ -151,8 +150,7 @@ void run(const SceneOptions& options) {
   const auto source = options.open();
   const BuiltScene built = options.build(*source);
   const VoxelBox box = built.bounds();
-  const double bytes_per_voxel =
-      built.voxels() == 0 ? 0 : static_cast<double>(built.tree_bytes()) / static_cast<double>(built.voxels());
+  const double a_voxel = static_cast<double>(built.tree_bytes()) / static_cast<double>(built.voxels());
 
   row("scene", printable(options.arguments.scene));
   row("kind", source->kind());
@@ -179,11 +177,8 @@ void run(const SceneOptions& options) {
   if (built.nodes() != 0) {
     row("nodes", grouped(built.nodes()));
   }
-  std::array<char, 64> ratio{};
-  if (built.voxels() != 0) {
-    std::snprintf(ratio.data(), ratio.size(), " (%.2f a voxel)", bytes_per_voxel);
-  }
-  row("structure bytes", grouped(built.tree_bytes()) + ratio.data());
+  row("structure bytes",
+      grouped(built.tree_bytes()) + (built.voxels() == 0 ? "" : " (" + fixed(a_voxel, 2) + " a voxel)"));
   row("most bytes in use", grouped(built.high_water_bytes()));
   if (built.solid_added() != 0) {
     row("solid added",

@@ -89,6 +89,16 @@ JsonRow optional_of(const std::optional<double>& value) {
 
 // --- rows for machines -------------------------------------------------------------------------------------
 
+void add_error(const std::string& prefix, const PictureError* error, JsonRow* object) {
+  const bool is_there = error != nullptr;
+  (*object)[prefix + "wrong_px"] = is_there ? JsonRow(error->wrong_px) : JsonRow(nullptr);
+  (*object)[prefix + "silhouette_px"] = is_there ? JsonRow(error->silhouette_px) : JsonRow(nullptr);
+  (*object)[prefix + "depth_error_mean_voxels"] =
+      is_there ? JsonRow(error->depth_mean_voxels) : JsonRow(nullptr);
+  (*object)[prefix + "depth_error_max_voxels"] =
+      is_there ? JsonRow(error->depth_max_voxels) : JsonRow(nullptr);
+}
+
 JsonRow depth_object(const MemoryStudy& study, const DepthRow& row) {
   const auto name = [](std::size_t structure) {
     return std::string(structure_name(static_cast<MemoryStructure>(structure)));
@@ -125,10 +135,7 @@ JsonRow depth_object(const MemoryStudy& study, const DepthRow& row) {
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     object[name(i) + "_visits_per_ray"] = optional_of(row.structures[i].visits_per_ray);
   }
-  object["wrong_px"] = row.error.wrong_px;
-  object["silhouette_px"] = row.error.silhouette_px;
-  object["depth_error_mean_voxels"] = row.error.depth_mean_voxels;
-  object["depth_error_max_voxels"] = row.error.depth_max_voxels;
+  add_error("", &row.error, &object);
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     object[name(i) + "_boards"] = boards_that_fit(study, row, i);
   }
@@ -172,23 +179,15 @@ JsonRow budget_objects(const MemoryStudy& study) {
     for (std::size_t i = 0; i < kMemoryStructures; ++i) {
       object[std::string(structure_name(static_cast<MemoryStructure>(i))) + "_depth"] = row.depth[i];
     }
-    const auto error = [&](const std::string& prefix, const PictureError* given) {
-      object[prefix + "_wrong_px"] = given == nullptr ? JsonRow(nullptr) : JsonRow(given->wrong_px);
-      object[prefix + "_silhouette_px"] = given == nullptr ? JsonRow(nullptr) : JsonRow(given->silhouette_px);
-      object[prefix + "_depth_error_mean_voxels"] =
-          given == nullptr ? JsonRow(nullptr) : JsonRow(given->depth_mean_voxels);
-      object[prefix + "_depth_error_max_voxels"] =
-          given == nullptr ? JsonRow(nullptr) : JsonRow(given->depth_max_voxels);
-    };
     const auto error_at = [&](int depth) {
       return depth == 0 ? nullptr : &study.depths[static_cast<std::size_t>(depth) - 1].error;
     };
-    error("compact", error_at(row.depth[kCompact]));
-    error("dag", error_at(row.depth[kShared]));
+    add_error("compact_", error_at(row.depth[kCompact]), &object);
+    add_error("dag_", error_at(row.depth[kShared]), &object);
     object["coarsened_bytes"] = row.coarsened_bytes ? JsonRow(*row.coarsened_bytes) : JsonRow(nullptr);
     object["coarsened_solid_added_voxels"] =
         row.coarsened_bytes ? JsonRow(row.solid_added) : JsonRow(nullptr);
-    error("coarsened", row.coarsened_bytes ? &row.coarsened_error : nullptr);
+    add_error("coarsened_", row.coarsened_bytes ? &row.coarsened_error : nullptr, &object);
     rows.push_back(object);
   }
   return rows;

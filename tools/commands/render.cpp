@@ -1,5 +1,4 @@
 // thimble render: a scene as a picture.
-#include <zlib.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -180,11 +179,8 @@ Subject subject_of(const RenderCommand& command, const SceneSource& source, Buil
   subject.fine = command.quality.across == 1
                      ? subject.framing.camera
                      : frame_scene(finer(command.view, command.quality.across), source, shape).camera;
-  subject.shading.mode = command.look.shade;
-  subject.shading.palette = Span<const Rgb8>(built->palette().data(), built->palette().size());
-  const DepthRange range = depth_range(subject.camera(), built->bounds());
-  subject.shading.near_q8 = range.near_q8;
-  subject.shading.far_q8 = range.far_q8;
+  subject.shading = scene_shading(command.look.shade, {built->palette().data(), built->palette().size()},
+                                  subject.camera(), built->bounds());
   return subject;
 }
 
@@ -266,23 +262,11 @@ Painting paint_lit(const Subject& subject, const Light& light, const Progress& p
   return painting;
 }
 
-std::string crc_of(const std::vector<std::uint8_t>& bytes) {
-  return crc_text(static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size())));
-}
-
 Stats stats_of(const Subject& subject, const SceneSource& source, const Light& light,
                const Painting& painting) {
   const RenderCommand& command = subject.command;
   Stats stats(command.scene.arguments.scene, source, subject.built);
-  stats.build_seconds += painting.preparation_seconds;
-  stats.frame_seconds = painting.seconds;
-  stats.rays = painting.counts.all.rays;
-  stats.hits = painting.counts.all.hits;
-  stats.node_visits = painting.counts.all.node_visits;
-  stats.engine = painting.engine;
-  stats.threads = painting.threads;
-  stats.box_tests = painting.counts.wide.candidates;
-  stats.exact_tests = painting.counts.wide.exact;
+  stats.take(painting);
   stats.effects = light.effects;
   if (light.effects != Effect::kNone) {
     stats.bounces = light.scene().bounces;
@@ -385,12 +369,32 @@ void run(const RenderCommand& given) {
   }
   Stats stats = stats_of(subject, *source, light, painting);
   stats.frame_crc32 = crc_of(file_pixels(shown, kind));
-  if (outputs[kStats] != nullptr) {
-    outputs[kStats]->write(stats_text(stats));
+  finish(command, stats, subject.framing.note, outputs);
+}
+
+// For a person: what the scene takes, and what came of it.
+void print_summary(const Stats& stats, const std::string& note) {
+  if (!note.empty()) {
+    std::fprintf(stderr, "note: %s\n", note.c_str());
   }
-  outputs.commit();
-  if (!command.scene.quiet) {
-    print_summary(stats, subject.framing.note);
+  std::fprintf(stderr,
+               "%s %s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
+               grouped(stats.voxels).c_str(), stats.voxels == 1 ? "voxel" : "voxels",
+               grouped(stats.tree_bytes).c_str(), stats.depth, grouped(stats.high_water_bytes).c_str(),
+               stats.frame_seconds, grouped(stats.hits).c_str(), grouped(stats.rays).c_str());
+  if (stats.lit_counts) {
+    std::string rays;
+    for (int kind = 0; kind < kLitRayKinds; ++kind) {
+      if (stats.lit_counts->rays[kind] != 0) {
+        rays += (rays.empty() ? "" : ", ") + grouped(stats.lit_counts->rays[kind]) + " " +
+                ray_kind_name(static_cast<LitRayKind>(kind));
+      }
+    }
+    std::fprintf(stderr, "lit: %s; rays: %s\n", effects_text(*stats.effects).c_str(), rays.c_str());
+  }
+  if (stats.solid_added != 0) {
+    std::fprintf(stderr, "coarsened to fit: %s %s of solid volume added\n",
+                 grouped(stats.solid_added).c_str(), stats.solid_added == 1 ? "voxel" : "voxels");
   }
 }
 
@@ -428,28 +432,13 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
 
 }  // namespace
 
-void print_summary(const Stats& stats, const std::string& note) {
-  if (!note.empty()) {
-    std::fprintf(stderr, "note: %s\n", note.c_str());
+void finish(const RenderCommand& command, const Stats& stats, const std::string& note, OutputSet& outputs) {
+  if (outputs[kStats] != nullptr) {
+    outputs[kStats]->write(stats_text(stats));
   }
-  std::fprintf(stderr,
-               "%s %s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
-               grouped(stats.voxels).c_str(), stats.voxels == 1 ? "voxel" : "voxels",
-               grouped(stats.tree_bytes).c_str(), stats.depth, grouped(stats.high_water_bytes).c_str(),
-               stats.frame_seconds, grouped(stats.hits).c_str(), grouped(stats.rays).c_str());
-  if (stats.lit_counts) {
-    std::string rays;
-    for (int kind = 0; kind < kLitRayKinds; ++kind) {
-      if (stats.lit_counts->rays[kind] != 0) {
-        rays += (rays.empty() ? "" : ", ") + grouped(stats.lit_counts->rays[kind]) + " " +
-                ray_kind_name(static_cast<LitRayKind>(kind));
-      }
-    }
-    std::fprintf(stderr, "lit: %s; rays: %s\n", effects_text(*stats.effects).c_str(), rays.c_str());
-  }
-  if (stats.solid_added != 0) {
-    std::fprintf(stderr, "coarsened to fit: %s %s of solid volume added\n",
-                 grouped(stats.solid_added).c_str(), stats.solid_added == 1 ? "voxel" : "voxels");
+  outputs.commit();
+  if (!command.scene.quiet) {
+    print_summary(stats, note);
   }
 }
 
@@ -497,10 +486,7 @@ void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngi
         append_hit(&text, ray, hit, command.scene.structure != StructureKind::kDense);
       }
       if (pfm != nullptr) {
-        const double length =
-            std::hypot(static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
-                       static_cast<double>(ray.direction.z));
-        distances.push_back(hit.kind == HitKind::kHit ? static_cast<float>(hit_t(hit) * length)
+        distances.push_back(hit.kind == HitKind::kHit ? static_cast<float>(hit_distance(ray, hit))
                                                       : std::numeric_limits<float>::infinity());
       }
     }

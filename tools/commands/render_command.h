@@ -50,8 +50,8 @@ std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std:
 void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngine* gpu, const Camera& camera,
                 OutputFile* csv, OutputFile* pfm);
 
-/// For a person: what the scene takes, and what came of it.
-void print_summary(const Stats& stats, const std::string& note);
+/// Writes --stats, gives the files their names and tells a person what the scene takes and what came of it.
+void finish(const RenderCommand& command, const Stats& stats, const std::string& note, OutputSet& outputs);
 
 /// Whether the scene's own look is drawn: nobody said how to shade, and nothing that was said forbids light.
 bool takes_look(const RenderCommand& command);

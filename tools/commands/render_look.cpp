@@ -1,7 +1,5 @@
 // thimble render without a word on how: the scene's own look, as a picture or all around it as a film.
-#include <zlib.h>
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <memory>
 #include <vector>
@@ -155,22 +153,16 @@ class LookStudio {
 
 void print_look(const RenderCommand& command, const LookStudio& studio) {
   if (command.look.verbose) {
-    std::array<char, 32> exposure{};
-    std::snprintf(exposure.data(), exposure.size(), "%.2f", studio.exposure() / 256.0);
-    std::fprintf(stderr, "look: %s; exposure %s\n", studio.look().text.c_str(), exposure.data());
+    std::fprintf(stderr, "look: %s; exposure %s\n", studio.look().text.c_str(),
+                 fixed(studio.exposure() / 256.0, 2).c_str());
   }
 }
 
 Stats stats_of(const RenderCommand& command, const SceneSource& source, LookStudio& studio,
                const Painting& painting) {
   Stats stats(command.scene.arguments.scene, source, studio.built());
+  stats.take(painting);
   stats.build_seconds += studio.preparation_seconds();
-  stats.frame_seconds = painting.seconds;
-  stats.rays = painting.counts.all.rays;
-  stats.hits = painting.counts.all.hits;
-  stats.node_visits = painting.counts.all.node_visits;
-  stats.engine = painting.engine;
-  stats.threads = painting.threads;
   if (studio.look().kind == LookKind::kLit) {
     stats.effects = studio.look().effects;
     stats.bounces = studio.look().lit_scene().bounces;
@@ -181,20 +173,6 @@ Stats stats_of(const RenderCommand& command, const SceneSource& source, LookStud
     stats.effects = Effect::kNone;
   }
   return stats;
-}
-
-std::uint32_t add_crc(std::uint32_t crc, const std::vector<std::uint8_t>& bytes) {
-  return static_cast<std::uint32_t>(crc32_z(crc, bytes.data(), bytes.size()));
-}
-
-void end(const RenderCommand& command, const Stats& stats, const std::string& note, OutputSet& outputs) {
-  if (outputs[kStats] != nullptr) {
-    outputs[kStats]->write(stats_text(stats));
-  }
-  outputs.commit();
-  if (!command.scene.quiet) {
-    print_summary(stats, note);
-  }
 }
 
 // The part of a picture or of a film that is drawn, but for what it holds. The look and the exposure are those of the
@@ -233,9 +211,9 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
     write_hits(command, frame, nullptr, camera, outputs[kHits], outputs[kDepths]);
   }
   Stats stats = stats_of(command, source, studio, painting);
-  stats.frame_crc32 = crc_text(add_crc(0, file_pixels(shown, kind)));
+  stats.frame_crc32 = crc_of(file_pixels(shown, kind));
   print_look(command, studio);
-  end(command, stats, studio.framing().note, outputs);
+  finish(command, stats, studio.framing().note, outputs);
 }
 
 // A film's frames, each drawn on demand.
@@ -255,12 +233,12 @@ class Filming {
   // The same for one that counts.
   const Image& shoot(std::size_t number) {
     draw(number);
-    crc_ = add_crc(crc_, last_.image.pixels);
+    crc_.add(last_.image.pixels);
     seconds_ += last_.seconds;
     ++shot_;
     return last_.image;
   }
-  std::uint32_t crc() const { return crc_; }
+  std::uint32_t crc() const { return crc_.value(); }
   // The last one, with the mean time of all.
   Painting end() {
     bar_.clear();
@@ -273,7 +251,7 @@ class Filming {
   std::vector<Framing> framings_;
   ProgressBar bar_;
   Painting last_;
-  std::uint32_t crc_ = 0;
+  CrcSum crc_;
   double seconds_ = 0;
   int shot_ = 0;
 };
@@ -315,7 +293,7 @@ void render_film(const RenderCommand& command, const SceneSource& source, LookSt
   Stats stats = stats_of(command, source, studio, last);
   stats.frame_crc32 = crc_text(filming.crc());
   print_look(command, studio);
-  end(command, stats, note, outputs);
+  finish(command, stats, note, outputs);
 }
 
 }  // namespace

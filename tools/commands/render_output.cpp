@@ -202,6 +202,12 @@ void CrcSum::add(std::int64_t number) {
   add(bytes);
 }
 
+std::string crc_of(std::span<const std::uint8_t> bytes) {
+  CrcSum sum;
+  sum.add(bytes);
+  return crc_text(sum.value());
+}
+
 std::uint32_t scene_crc32(const SceneSource& source, const BuiltScene& built) {
   const Structure& traced = built.traced();
   CrcSum sum;

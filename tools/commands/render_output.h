@@ -71,6 +71,9 @@ class CrcSum {
   std::uint32_t crc_ = 0;
 };
 
+/// Of these bytes alone, as 8 hex digits.
+std::string crc_of(std::span<const std::uint8_t> bytes);
+
 /// Of what was built: its voxels with their materials, the palette, and the light that the scene itself states.
 std::uint32_t scene_crc32(const SceneSource& source, const BuiltScene& built);
 

@@ -196,11 +196,10 @@ void report(const SimCommand& command, const SessionResult& result, const std::s
   if (command.scene.quiet) {
     return;
   }
-  std::array<char, 64> time{};
-  if (result.mean_frame_seconds != 0) {
-    std::snprintf(time.data(), time.size(), ", %.2f ms each on this machine",
-                  1000 * result.mean_frame_seconds);
-  }
+  const std::string time =
+      result.mean_frame_seconds == 0
+          ? ""
+          : ", " + fixed(1000 * result.mean_frame_seconds, 2) + " ms each on this machine";
   // Where something was left as it was.
   const std::string rows = result.rows_kept == 0 ? std::string()
                                                  : "rows drawn " + grouped(result.rows_sent) +
@@ -208,7 +207,7 @@ void report(const SimCommand& command, const SessionResult& result, const std::s
   const std::string by = engine.empty() ? std::string() : ", engine " + engine;
   std::fprintf(stderr, "%s on %s: %s %s%s%s\n%s%s\n", command.session.application->name,
                command.session.board->name, grouped(result.pictures).c_str(),
-               result.pictures == 1 ? "frame" : "frames", time.data(), by.c_str(), rows.c_str(),
+               result.pictures == 1 ? "frame" : "frames", time.c_str(), by.c_str(), rows.c_str(),
                memory_text(result.use, "\n").c_str());
 }
 

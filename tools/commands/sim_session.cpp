@@ -276,14 +276,12 @@ void SimSession::update_status() {
   status_at_ = now;
   shown_seconds_ = shown_seconds_ == 0 ? simulation_.frame_seconds()
                                        : 0.75 * shown_seconds_ + 0.25 * simulation_.frame_seconds();
-  std::array<char, 32> time{};
-  std::snprintf(time.data(), time.size(), "%.2f", 1000 * shown_seconds_);
   const std::string line = last_line(output_);
   use_ = simulation_.use();
   screen_->set_status(
       std::string(options_.board->name) + "  " + options_.application->name + "  frame " +
-      grouped(pictures_) + "  " + time.data() + " ms a frame on this machine\n" + memory_text(use_, "\n") +
-      "\n" +
+      grouped(pictures_) + "  " + fixed(1000 * shown_seconds_, 2) + " ms a frame on this machine\n" +
+      memory_text(use_, "\n") + "\n" +
       (line.empty() || !uart_in_pane_
            ? (options_.application->takes_pointer ? "mouse: touch, drop   arrows or WASD, space   Esc ends"
                                                   : "buttons: arrows or WASD, space   Esc ends")

@@ -4,6 +4,7 @@
 
 #include "output/tables.h"
 #include "scene/lit_description.h"
+#include "scene/painter.h"
 
 namespace thimble::tools {
 
@@ -18,6 +19,18 @@ Stats::Stats(const std::string& scene_name, const SceneSource& source, const Bui
       high_water_bytes(built.high_water_bytes()),
       solid_added(built.solid_added()),
       build_seconds(built.build_seconds()) {}
+
+void Stats::take(const Painting& painting) {
+  build_seconds += painting.preparation_seconds;
+  frame_seconds = painting.seconds;
+  rays = painting.counts.all.rays;
+  hits = painting.counts.all.hits;
+  node_visits = painting.counts.all.node_visits;
+  box_tests = painting.counts.wide.candidates;
+  exact_tests = painting.counts.wide.exact;
+  engine = painting.engine;
+  threads = painting.threads;
+}
 
 std::string stats_text(const Stats& stats) {
   nlohmann::ordered_json json;

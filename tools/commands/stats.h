@@ -16,6 +16,8 @@
 
 namespace thimble::tools {
 
+struct Painting;
+
 struct Stats {
   std::string scene;
   int depth = 0;
@@ -53,6 +55,8 @@ struct Stats {
 
   Stats() = default;
   Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built);
+  /// What drawing took and counted; what it wanted made first counts as building.
+  void take(const Painting& painting);
 };
 
 /// All of them as one JSON object with the members' names.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "output/plot.h"
 #include "output/units.h"
@@ -21,20 +20,6 @@ std::string decibels(double psnr_db) {
   return std::isfinite(psnr_db) ? fixed(psnr_db, 2) : "equal";
 }
 
-// Half the distance of the quartiles, of the median.
-std::string spread(const AccuracyRow& row) {
-  return row.ms_median <= 0 ? "-" : fixed(50 * (row.ms_three_quarters - row.ms_quarter) / row.ms_median, 0);
-}
-
-// Columns that a row of settings has nothing for.
-constexpr std::array kEarlyAndLight{"visits_given",     "inexact_px",     "error_bound_grays",
-                                    "mean_error_grays", "occlusion_rays", "roughness_rays",
-                                    "bounces"};
-
-JsonRow finite(double value) {
-  return std::isfinite(value) ? JsonRow(value) : JsonRow(nullptr);
-}
-
 std::string options_of(const AccuracyRow& row) {
   if (row.light != LightSetting{}) {
     return row.light.text();
@@ -47,18 +32,32 @@ JsonRow known(int value) {
   return value < 0 ? JsonRow(nullptr) : JsonRow(value);
 }
 
-// What all rows have.
-void add_measured(const AccuracyRow& row, JsonRow* object) {
-  (*object)["wrong_px"] = row.wrong_px;
-  (*object)["visible_px"] = row.visible_px;
-  (*object)["rms_error"] = rms_of(row.psnr_db);
-  (*object)["psnr_db"] = finite(row.psnr_db);
-  (*object)["ms_median"] = row.ms_median;
-  (*object)["ms_quarter"] = row.ms_quarter;
-  (*object)["ms_three_quarters"] = row.ms_three_quarters;
-  (*object)["rays"] = row.counts.rays;
-  (*object)["hits"] = row.counts.hits;
-  (*object)["node_visits"] = row.counts.node_visits;
+// All columns, with what each row has in them; the others are null.
+JsonRow object_of(const char* kind, const AccuracyRow& row) {
+  const Setting& setting = row.trial.setting;
+  JsonRow object;
+  object["row"] = kind;
+  object["group"] = row.trial.group;
+  object["options"] = nullptr;
+  object["front"] = row.front ? 1 : 0;
+  object["max_depth"] = setting.quality.max_depth;
+  object["cutoff_px"] = static_cast<double>(setting.quality.cutoff.raw) / Q16::kOne;
+  object["direction_bits"] = setting.direction_bits;
+  object["samples"] = setting.quality.samples();
+  object["wrong_px"] = row.wrong_px;
+  object["visible_px"] = row.visible_px;
+  object["rms_error"] = rms_of(row.psnr_db);
+  object["psnr_db"] = std::isfinite(row.psnr_db) ? JsonRow(row.psnr_db) : JsonRow(nullptr);
+  row.add_to(&object);
+  object["rays"] = row.counts.rays;
+  object["hits"] = row.counts.hits;
+  object["node_visits"] = row.counts.node_visits;
+  for (const char* name : {"silhouette_px", "depth_error_mean_voxels", "depth_error_max_voxels",
+                           "lm3s6965evb_instructions", "visits_given", "inexact_px", "error_bound_grays",
+                           "mean_error_grays", "occlusion_rays", "roughness_rays", "bounces"}) {
+    object[name] = nullptr;
+  }
+  return object;
 }
 
 std::string settings_table(const AccuracyStudy& study) {
@@ -77,7 +76,7 @@ std::string settings_table(const AccuracyStudy& study) {
     }
     const std::array measured{
         brief_ms(row.ms_median),
-        spread(row),
+        row.spread(),
         decibels(row.psnr_db),
         fixed(rms_of(row.psnr_db), 2),
         percent(row.wrong_px, study.pixels),
@@ -97,7 +96,7 @@ std::string work_table(const AccuracyStudy& study) {
   std::vector<Cells> rows{
       {"visits given", "ms", "+-%", "exact %", "bound", "error", "PSNR", "RMS", "wrong %"}};
   for (const WorkRow& row : study.work) {
-    rows.push_back({grouped(row.given_visits), brief_ms(row.picture.ms_median), spread(row.picture),
+    rows.push_back({grouped(row.given_visits), brief_ms(row.picture.ms_median), row.picture.spread(),
                     percent(study.pixels - row.inexact_px, study.pixels), fixed(row.error_bound_grays, 2),
                     fixed(row.mean_error_grays, 2), decibels(row.picture.psnr_db),
                     fixed(rms_of(row.picture.psnr_db), 2), percent(row.picture.wrong_px, study.pixels)});
@@ -118,7 +117,7 @@ std::string light_table(const AccuracyStudy& study) {
     const double pixels = static_cast<double>(study.pixels);
     rows.push_back({row.front ? "*" : "", rays_of(row.light.occlusion_rays),
                     rays_of(row.light.roughness_rays), rays_of(row.light.bounces), brief_ms(row.ms_median),
-                    spread(row), decibels(row.psnr_db), fixed(rms_of(row.psnr_db), 2),
+                    row.spread(), decibels(row.psnr_db), fixed(rms_of(row.psnr_db), 2),
                     percent(row.wrong_px, study.pixels),
                     fixed(static_cast<double>(row.counts.rays) / pixels, 2),
                     fixed(static_cast<double>(row.counts.node_visits) / pixels, 2)});
@@ -130,6 +129,24 @@ std::string light_table(const AccuracyStudy& study) {
          columns_of(rows, 1);
 }
 
+// The rows of each group as a cloud of that name, error against cost.
+std::vector<Cloud> clouds_of(const std::vector<AccuracyRow>& rows, CostAxis axis,
+                             const std::vector<std::pair<const char*, const char*>>& groups) {
+  std::vector<Cloud> clouds;
+  for (const auto& [group, name] : groups) {
+    Cloud cloud{name, {}, false};
+    for (const AccuracyRow& row : rows) {
+      if (row.trial.group == group && cost_of(row, axis) > 0) {
+        cloud.points.emplace_back(cost_of(row, axis), row.psnr_db);
+      }
+    }
+    if (!cloud.points.empty()) {
+      clouds.push_back(cloud);
+    }
+  }
+  return clouds;
+}
+
 // Error against cost of lit pictures; a knob alone a colour.
 Scatter light_scatter(const AccuracyStudy& study, CostAxis axis) {
   Scatter scatter;
@@ -137,22 +154,13 @@ Scatter light_scatter(const AccuracyStudy& study, CostAxis axis) {
   scatter.y_label = "PSNR against the best light, dB";
   scatter.infinite_name = "upper edge: equal to the best light";
   scatter.front_name = "The front: no other light that is as cheap comes nearer";
-  for (const auto& [group, name] : {std::pair<const char*, const char*>{"together", "knobs together"},
-                                    {"occlusion_rays", "occlusion rays alone"},
-                                    {"roughness_rays", "roughness rays alone"},
-                                    {"bounces", "bounces alone"},
-                                    {"best", "the reference"},
-                                    {"default", "as the scene asks"}}) {
-    Cloud cloud{name, {}, false};
-    for (const AccuracyRow& row : study.light) {
-      if (row.trial.group == group && cost_of(row, axis) > 0) {
-        cloud.points.emplace_back(cost_of(row, axis), row.psnr_db);
-      }
-    }
-    if (!cloud.points.empty()) {
-      scatter.clouds.push_back(cloud);
-    }
-  }
+  scatter.clouds = clouds_of(study.light, axis,
+                             {{"together", "knobs together"},
+                              {"occlusion_rays", "occlusion rays alone"},
+                              {"roughness_rays", "roughness rays alone"},
+                              {"bounces", "bounces alone"},
+                              {"best", "the reference"},
+                              {"default", "as the scene asks"}});
   return scatter;
 }
 
@@ -207,64 +215,24 @@ std::string light_answer(const AccuracyRow* row) {
 JsonRow accuracy_objects(const AccuracyStudy& study) {
   JsonRow rows = JsonRow::array();
   for (const AccuracyRow& row : study.rows) {
-    JsonRow object;
-    object["row"] = "setting";
-    object["group"] = row.trial.group;
+    JsonRow object = object_of("setting", row);
     object["options"] = row.trial.setting.options();
-    object["front"] = row.front ? 1 : 0;
-    object["max_depth"] = row.trial.setting.quality.max_depth;
-    object["cutoff_px"] = static_cast<double>(row.trial.setting.quality.cutoff.raw) / Q16::kOne;
-    object["direction_bits"] = row.trial.setting.direction_bits;
-    object["samples"] = row.trial.setting.quality.samples();
-    add_measured(row, &object);
     object["silhouette_px"] = row.silhouette_px;
     object["depth_error_mean_voxels"] = row.depth_mean_voxels;
     object["depth_error_max_voxels"] = row.depth_max_voxels;
     object["lm3s6965evb_instructions"] = row.lm3s_instructions;
-    for (const char* name : kEarlyAndLight) {
-      object[name] = nullptr;
-    }
     rows.push_back(object);
   }
   for (const WorkRow& row : study.work) {
-    JsonRow object;
-    object["row"] = "anytime";
-    object["group"] = "anytime";
-    object["options"] = nullptr;
-    object["front"] = 0;
-    object["max_depth"] = 0;
-    object["cutoff_px"] = 0.0;
-    object["direction_bits"] = 0;
-    object["samples"] = 1;
-    add_measured(row.picture, &object);
-    object["silhouette_px"] = nullptr;
-    object["depth_error_mean_voxels"] = nullptr;
-    object["depth_error_max_voxels"] = nullptr;
-    object["lm3s6965evb_instructions"] = nullptr;
+    JsonRow object = object_of("anytime", row.picture);
     object["visits_given"] = row.given_visits;
     object["inexact_px"] = row.inexact_px;
     object["error_bound_grays"] = row.error_bound_grays;
     object["mean_error_grays"] = row.mean_error_grays;
-    object["occlusion_rays"] = nullptr;
-    object["roughness_rays"] = nullptr;
-    object["bounces"] = nullptr;
     rows.push_back(object);
   }
   for (const AccuracyRow& row : study.light) {
-    JsonRow object = rows.front();
-    object["row"] = "light";
-    object["group"] = row.trial.group;
-    object["options"] = nullptr;
-    object["front"] = row.front ? 1 : 0;
-    object["max_depth"] = 0;
-    object["cutoff_px"] = 0.0;
-    object["direction_bits"] = 0;
-    object["samples"] = 1;
-    add_measured(row, &object);
-    for (const char* name :
-         {"silhouette_px", "depth_error_mean_voxels", "depth_error_max_voxels", "lm3s6965evb_instructions"}) {
-      object[name] = nullptr;
-    }
+    JsonRow object = object_of("light", row);
     object["occlusion_rays"] = known(row.light.occlusion_rays);
     object["roughness_rays"] = known(row.light.roughness_rays);
     object["bounces"] = known(row.light.bounces);
@@ -293,23 +261,14 @@ std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::
           ? "The front: no options of thimble render in at most 3 per cent more time come nearer"
           : "The front: no other options of thimble render are both cheaper and nearer";
   // The defaults last, over all others.
-  for (const auto& [group, name] : {std::pair<const char*, const char*>{"together", "knobs together"},
-                                    {"depth", "depth alone"},
-                                    {"cutoff", "cut-off alone"},
-                                    {"direction_bits", "direction bits alone"},
-                                    {"samples", "samples alone"},
-                                    {"best", "the reference"},
-                                    {"default", "defaults"}}) {
-    Cloud cloud{name, {}, false};
-    for (const AccuracyRow& row : study.rows) {
-      if (row.trial.group == group && cost_of(row, axis) > 0) {
-        cloud.points.emplace_back(cost_of(row, axis), row.psnr_db);
-      }
-    }
-    if (!cloud.points.empty()) {
-      scatter.clouds.push_back(cloud);
-    }
-  }
+  scatter.clouds = clouds_of(study.rows, axis,
+                             {{"together", "knobs together"},
+                              {"depth", "depth alone"},
+                              {"cutoff", "cut-off alone"},
+                              {"direction_bits", "direction bits alone"},
+                              {"samples", "samples alone"},
+                              {"best", "the reference"},
+                              {"default", "defaults"}});
   // No estimate of instructions is made for frames that stop early.
   if (axis != CostAxis::kInstructions && !study.work.empty()) {
     Cloud cloud{"defaults, stopped early", {}, true};

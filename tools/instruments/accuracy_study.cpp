@@ -26,12 +26,9 @@ class AccuracyStudio {
  public:
   AccuracyStudio(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options)
       : source_(source), built_(*built), options_(options) {
-    shading_.mode = options.shade;
-    shading_.palette = Span<const Rgb8>(built->palette().data(), built->palette().size());
     camera_ = frame_scene(options.view, source, built->level(), built->bounds()).camera;
-    const DepthRange range = depth_range(camera_, built->bounds());
-    shading_.near_q8 = range.near_q8;
-    shading_.far_q8 = range.far_q8;
+    shading_ = scene_shading(options.shade, {built->palette().data(), built->palette().size()}, camera_,
+                             built->bounds());
     Quality cutting;
     cutting.max_depth = 1;
     colors_ = take_node_colors(built, cutting, shading_);
@@ -104,10 +101,7 @@ class AccuracyStudio {
         if (prepared.frame.closest_hit(ray, &hit, options()) != Status::kOk) {
           throw InputError("internal error: a ray cannot be traced");
         }
-        const double length =
-            std::hypot(static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
-                       static_cast<double>(ray.direction.z));
-        result.push_back(hit.kind == HitKind::kHit ? hit_t(hit) * length : -1);
+        result.push_back(hit.kind == HitKind::kHit ? hit_distance(ray, hit) : -1);
       }
     }
     return result;
@@ -136,23 +130,6 @@ void compare_pictures(const std::vector<std::uint8_t>& picture, const std::vecto
     row->visible_px += most > kVisibleDifference ? 1U : 0U;
   }
   row->psnr_db = psnr_db(picture, reference);
-}
-
-void compare_distances(const std::vector<double>& distances, const std::vector<double>& reference,
-                       AccuracyRow* row) {
-  double sum = 0;
-  std::uint64_t both = 0;
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    if ((distances[i] < 0) != (reference[i] < 0)) {
-      ++row->silhouette_px;
-    } else if (distances[i] >= 0) {
-      const double error = std::abs(distances[i] - reference[i]);
-      sum += error;
-      row->depth_max_voxels = std::max(row->depth_max_voxels, error);
-      ++both;
-    }
-  }
-  row->depth_mean_voxels = both == 0 ? 0 : sum / static_cast<double>(both);
 }
 
 // The mean absolute difference of what a display shows in greys.
@@ -288,7 +265,7 @@ struct Comparison {
         row.counts = counts;
         row.lm3s_instructions = chip_instructions(counts, quality.cuts(), quality.samples());
         compare_pictures(picture, reference, &row);
-        compare_distances(studio.distances(prepared[i]), reference_distances, &row);
+        row.compare_distances(studio.distances(prepared[i]), reference_distances);
       }
       advance(quality.samples());
     }
@@ -325,10 +302,7 @@ struct Comparison {
 
   void set_times() const {
     for (std::size_t i = 0; i < milliseconds.size(); ++i) {
-      AccuracyRow& row = row_of(study, i);
-      row.ms_median = quantile(milliseconds[i], 0.5);
-      row.ms_quarter = quantile(milliseconds[i], 0.25);
-      row.ms_three_quarters = quantile(milliseconds[i], 0.75);
+      row_of(study, i).set_times(milliseconds[i]);
     }
   }
 
@@ -674,11 +648,7 @@ void LightStudio::draw(const LightSetting& setting, std::vector<std::uint8_t>* p
       Status::kOk) {
     throw InputError("its light cannot be drawn: too many lights, or rays of this camera that are too long");
   }
-  for (int kind = 0; kind < kLitRayKinds; ++kind) {
-    counts->rays += lit_counts.rays[kind];
-    counts->hits += lit_counts.hits[kind];
-    counts->node_visits += lit_counts.node_visits[kind];
-  }
+  *counts = totals_of(lit_counts);
 }
 
 }  // namespace thimble::tools

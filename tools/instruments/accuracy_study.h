@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "instruments/timed_frames.h"
 #include "output/tables.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
@@ -88,7 +89,7 @@ class LightStudio {
   /// All that the study tries, each once; none where no effect has a knob.
   std::vector<LightTrial> trials() const;
   /// Draws the whole picture into `pixels`, rows of kRgb888 without gaps, which are that large.
-  /// `counts->step_limited` stays as it is. Throws InputError when the scene cannot be drawn.
+  /// Throws InputError when the scene cannot be drawn.
   void draw(const LightSetting& setting, std::vector<std::uint8_t>* pixels, RenderCounts* counts) const;
 
  private:
@@ -144,21 +145,13 @@ std::vector<Trial> trials(int depth, int most_across);
 /// A pixel is visibly wrong when a channel is off by more than this, of 255.
 inline constexpr int kVisibleDifference = 8;
 
-struct AccuracyRow {
+struct AccuracyRow : DepthError, MedianTime {
   Trial trial;
   LightSetting light;  ///< of a lit picture
-  // Against the reference.
-  std::uint64_t wrong_px = 0;       ///< of another colour, by however little
-  std::uint64_t visible_px = 0;     ///< with a channel off by more than kVisibleDifference
-  std::uint64_t silhouette_px = 0;  ///< whose centre's ray hits in one and misses in the other
-  /// Distances along the rays of pixels' centres that hit in both.
-  double depth_mean_voxels = 0;
-  double depth_max_voxels = 0;
-  double psnr_db = 0;  ///< over all pixels and channels; infinite for equal pictures
-  // One frame: median and quartiles, in milliseconds of the processor.
-  double ms_median = 0;
-  double ms_quarter = 0;
-  double ms_three_quarters = 0;
+  // Against the reference; distances are those of the rays of pixels' centres.
+  std::uint64_t wrong_px = 0;    ///< of another colour, by however little
+  std::uint64_t visible_px = 0;  ///< with a channel off by more than kVisibleDifference
+  double psnr_db = 0;            ///< over all pixels and channels; infinite for equal pictures
   // The same on every machine.
   RenderCounts counts;
   double lm3s_instructions = 0;  ///< an estimate: `ChipCost`

@@ -70,11 +70,8 @@ class EffectsStudio {
         camera_(framing_.camera) {
     lit_.find_glow(built.compact());
     *note = framing_.note;
-    shading_.mode = ShadeMode::kColor;
-    shading_.palette = Span<const Rgb8>(built.palette().data(), built.palette().size());
-    const DepthRange range = depth_range(camera_, built.bounds());
-    shading_.near_q8 = range.near_q8;
-    shading_.far_q8 = range.far_q8;
+    shading_ = scene_shading(ShadeMode::kColor, {built.palette().data(), built.palette().size()}, camera_,
+                             built.bounds());
     pixels_.resize(band_bytes(PixelFormat::kRgb888, camera_.width_px(), camera_.height_px()));
   }
 

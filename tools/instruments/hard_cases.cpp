@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdio>
 #include <numeric>
-#include <random>
 #include <stdexcept>
 #include <utility>
 
@@ -18,20 +17,6 @@ namespace thimble::tools {
 namespace {
 
 using Components = std::array<std::int64_t, 3>;
-
-// A random number generator whose numbers are the same in every library.
-class HardDraw {
- public:
-  explicit HardDraw(std::uint64_t seed) : random_(seed) {}
-  /// low .. high, both included.
-  std::int64_t from(std::int64_t low, std::int64_t high) {
-    return low + static_cast<std::int64_t>(random_() % (static_cast<std::uint64_t>(high - low) + 1));
-  }
-  std::int64_t sign() { return from(0, 1) == 0 ? -1 : 1; }
-
- private:
-  std::mt19937_64 random_;
-};
 
 // A world of random voxels, for the core, the reference and the textbooks.
 struct CaseWorld {
@@ -71,7 +56,7 @@ struct CaseWorld {
   static reference::BitGrid filled(int level, int one_in, std::uint64_t seed) {
     const int side = 1 << level;
     reference::BitGrid grid({side, side, side});
-    HardDraw draw(seed);
+    Draw draw(seed);
     for (int z = 0; z < side; ++z) {
       for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
@@ -89,7 +74,7 @@ struct CaseWorld {
 
 constexpr std::int64_t kOneQ8 = 256;
 
-Components any_direction(HardDraw& draw) {
+Components any_direction(Draw& draw) {
   Components direction{};
   while (direction == Components{}) {
     for (std::int64_t& component : direction) {
@@ -101,7 +86,7 @@ Components any_direction(HardDraw& draw) {
 
 // Back from a point along a direction, so that the ray goes exactly through the point: as far as keeps it
 // near the world.
-Components before(HardDraw& draw, const Components& point, const Components& direction, std::int64_t side) {
+Components before(Draw& draw, const Components& point, const Components& direction, std::int64_t side) {
   std::int64_t most = 1;  // a direction is not zero
   for (const std::int64_t component : direction) {
     most = std::max(most, component < 0 ? -component : component);
@@ -114,7 +99,7 @@ Components before(HardDraw& draw, const Components& point, const Components& dir
   return origin;
 }
 
-Components short_direction(HardDraw& draw) {
+Components short_direction(Draw& draw) {
   Components direction{};
   for (std::int64_t& component : direction) {
     component = draw.sign() * draw.from(1, 300);
@@ -138,17 +123,17 @@ std::int64_t inverse(std::int64_t value, std::int64_t modulus) {
   return x < 0 ? x + modulus : x;
 }
 
-Components corner(HardDraw& draw, std::int64_t side) {
+Components corner(Draw& draw, std::int64_t side) {
   return {kOneQ8 * draw.from(0, side), kOneQ8 * draw.from(0, side), kOneQ8 * draw.from(0, side)};
 }
-Components inside(HardDraw& draw, std::int64_t side) {
+Components inside(Draw& draw, std::int64_t side) {
   return {draw.from(0, kOneQ8 * side - 1), draw.from(0, kOneQ8 * side - 1), draw.from(0, kOneQ8 * side - 1)};
 }
 
 struct HardCase {
   const char* name;
   int level;
-  reference::Ray (*make)(HardDraw& draw, std::int64_t side);
+  reference::Ray (*make)(Draw& draw, std::int64_t side);
 };
 
 constexpr int kSmall = 6;
@@ -156,11 +141,11 @@ constexpr int kLarge = 8;
 
 const HardCase kCases[] = {
     {"any ray", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        return reference::Ray{inside(draw, side), any_direction(draw)};
      }},
     {"through an edge", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        Components point = corner(draw, side);
        point[static_cast<std::size_t>(draw.from(0, 2))] = draw.from(0, kOneQ8 * side);
        const Components direction = short_direction(draw);
@@ -168,21 +153,21 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"through a corner", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        const Components point = corner(draw, side);
        const Components direction = short_direction(draw);
        const Components origin = before(draw, point, direction, side);
        return reference::Ray{origin, direction};
      }},
     {"through a row of corners", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        const Components point = corner(draw, side);
        const std::int64_t size = draw.from(1, 32767);
        const Components direction{draw.sign() * size, draw.sign() * size, draw.sign() * size};
        return reference::Ray{point, direction};
      }},
     {"in a face", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = inside(draw, side);
        origin[axis] = kOneQ8 * draw.from(0, side - 1);
@@ -192,7 +177,7 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"in an edge", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = corner(draw, side);
        origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
@@ -201,20 +186,20 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"starts on a face", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        Components origin = inside(draw, side);
        origin[static_cast<std::size_t>(draw.from(0, 2))] = kOneQ8 * draw.from(0, side);
        const Components direction = any_direction(draw);
        return reference::Ray{origin, direction};
      }},
     {"starts in a corner", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        const Components origin = corner(draw, side);
        const Components direction = any_direction(draw);
        return reference::Ray{origin, direction};
      }},
     {"starts a hair off a face", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        Components origin = inside(draw, side);
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        origin[axis] = kOneQ8 * draw.from(0, side);
@@ -223,7 +208,7 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"almost along an axis", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        Components origin = corner(draw, side);
        origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
@@ -235,7 +220,7 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"an edge, missed by the least", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        // The order of two planes, s_a * d_b - s_b * d_a, is 1: no ray with such directions comes closer to an
        // edge without touching it.
        std::int64_t d_a = 0;
@@ -261,7 +246,7 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"from four worlds away", kSmall,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        Components origin{};
        for (std::int64_t& component : origin) {
          component = draw.sign() < 0 ? draw.from(-4 * kOneQ8 * side, -3 * kOneQ8 * side)
@@ -275,11 +260,11 @@ const HardCase kCases[] = {
        return reference::Ray{origin, direction};
      }},
     {"a large world, any ray", kLarge,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        return reference::Ray{inside(draw, side), any_direction(draw)};
      }},
     {"a large world, corners", kLarge,
-     [](HardDraw& draw, std::int64_t side) {
+     [](Draw& draw, std::int64_t side) {
        const Components point = corner(draw, side);
        const Components direction = short_direction(draw);
        const Components origin = before(draw, point, direction, side);
@@ -379,7 +364,7 @@ std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed,
   for (std::size_t i = 0; i < count; ++i) {
     const HardCase& hard = kCases[i];
     const CaseWorld& world = hard.level == kSmall ? small : large;
-    HardDraw draw(seed * 1000003 + i);
+    Draw draw(seed * 1000003 + i);
     HardCaseRow row;
     row.name = hard.name;
     row.level = hard.level;
@@ -457,10 +442,7 @@ void add_case(const HardCaseRow& row, JsonRow* rows) {
 }
 
 std::string of_rays(std::uint64_t part, std::uint64_t rays) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.3f",
-                rays == 0 ? 0.0 : 100 * static_cast<double>(part) / static_cast<double>(rays));
-  return text.data();
+  return fixed(rays == 0 ? 0.0 : 100 * static_cast<double>(part) / static_cast<double>(rays), 3);
 }
 
 std::string totals_table(const HardCaseRow& all) {

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "instruments/timed_frames.h"
 #include "output/hit_csv.h"
 #include "readers/oct.h"
 #include "readers/source.h"
@@ -34,10 +33,8 @@ SceneCamera scaled(const SceneCamera& camera, int levels) {
 }
 
 // Frames of all structures by turns, so that whatever else the machine does meets all of them.
-void draw(const DepthScene& scene, const Camera& camera, Shading shading, int frames, DepthRow* row) {
-  const DepthRange range = depth_range(camera, scene.compact().bounds());
-  shading.near_q8 = range.near_q8;
-  shading.far_q8 = range.far_q8;
+void draw(const DepthScene& scene, const Camera& camera, const Shading& given, int frames, DepthRow* row) {
+  const Shading shading = scene_shading(given.mode, given.palette, camera, scene.compact().bounds());
   std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kRgb888, camera.width_px(), camera.height_px()));
   Band band;
   band.pixels = Bytes(pixels.data(), pixels.size());
@@ -187,12 +184,8 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
   study.note = framing.note;
   study.pixels =
       static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(camera.height_px());
-  Shading shading;
-  shading.mode = options.shade;
-  shading.palette = Span<const Rgb8>(palette.data(), palette.size());
-  const DepthRange range = depth_range(camera, own.compact().bounds());
-  shading.near_q8 = range.near_q8;
-  shading.far_q8 = range.far_q8;
+  const Shading shading =
+      scene_shading(options.shade, {palette.data(), palette.size()}, camera, own.compact().bounds());
   const TracedPicture reference = trace_picture(own.compact(), camera, shading);
   const std::string kept_name = scene_name(name).substr(0, kMaxNameBytes);
   BakedParts parts;
@@ -273,10 +266,7 @@ TracedPicture trace_picture(const CompactTree& tree, const Camera& camera, const
         throw InputError("the rays of this camera cannot be traced");
       }
       picture.colors.push_back(shade(hit, ray, camera, shading));
-      const double length =
-          std::hypot(static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
-                     static_cast<double>(ray.direction.z));
-      picture.distances.push_back(hit.kind == HitKind::kHit ? hit_t(hit) * length : -1);
+      picture.distances.push_back(hit.kind == HitKind::kHit ? hit_distance(ray, hit) : -1);
     }
   }
   return picture;
@@ -284,23 +274,13 @@ TracedPicture trace_picture(const CompactTree& tree, const Camera& camera, const
 
 PictureError picture_error(const TracedPicture& picture, const TracedPicture& reference) {
   PictureError error;
-  std::uint64_t both = 0;
-  double sum = 0;
+  error.compare_distances(picture.distances, reference.distances);
   for (std::size_t i = 0; i < picture.colors.size(); ++i) {
     const Rgb8& a = picture.colors[i];
     const Rgb8& b = reference.colors[i];
-    const bool hit = picture.distances[i] >= 0;
-    const bool expected = reference.distances[i] >= 0;
-    error.wrong_px += hit != expected || a.r != b.r || a.g != b.g || a.b != b.b ? 1U : 0U;
-    error.silhouette_px += hit != expected ? 1U : 0U;
-    if (hit && expected) {
-      const double difference = std::abs(picture.distances[i] - reference.distances[i]);
-      ++both;
-      sum += difference;
-      error.depth_max_voxels = std::max(error.depth_max_voxels, difference);
-    }
+    const bool same_hit = (picture.distances[i] < 0) == (reference.distances[i] < 0);
+    error.wrong_px += !same_hit || a.r != b.r || a.g != b.g || a.b != b.b ? 1U : 0U;
   }
-  error.depth_mean_voxels = both == 0 ? 0 : sum / static_cast<double>(both);
   return error;
 }
 
@@ -374,14 +354,7 @@ DepthScene::DepthScene(const std::vector<SolidBlock>& blocks, int world_level, i
       throw InputError("the scene does not go into a shared tree");
     }
   }
-  const VoxelBox& box = compact_.bounds();
-  dense_size_ = {std::max(box.high.x, 1), std::max(box.high.y, 1), std::max(box.high.z, 1)};
-  // The grid's world, which decides how rays are quantised, must be this one.
-  int longest = 0;
-  for (int axis = 1; axis < 3; ++axis) {
-    longest = dense_size_[axis] > dense_size_[longest] ? axis : longest;
-  }
-  dense_size_[longest] = std::max(dense_size_[longest], (std::int32_t{1} << (world_level - 1)) + 1);
+  dense_size_ = grid_size(compact_.bounds().high, world_level);
 }
 
 std::uint64_t DepthScene::bytes(MemoryStructure structure) const {

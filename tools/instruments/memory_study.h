@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "instruments/timed_frames.h"
 #include "scene/framing.h"
 #include "scene/host_memory.h"
 #include "scene/scene_source.h"
@@ -91,8 +92,6 @@ class DepthScene {
   bool dense_made_ = false;
 };
 
-// How far one picture is from another of the same rays.
-
 /// What each pixel's ray met: its colour, and the distance in voxels along the unit ray, negative for a miss.
 struct TracedPicture {
   std::vector<Rgb8> colors;
@@ -102,11 +101,8 @@ struct TracedPicture {
 /// Traces every pixel. The camera is one for the tree's level.
 TracedPicture trace_picture(const CompactTree& tree, const Camera& camera, const Shading& shading);
 
-struct PictureError {
-  std::uint64_t wrong_px = 0;       ///< of another colour
-  std::uint64_t silhouette_px = 0;  ///< hit in one and missed in the other
-  double depth_mean_voxels = 0;  ///< distances' difference, over pixels hit in both; 0 where there are none
-  double depth_max_voxels = 0;
+struct PictureError : DepthError {
+  std::uint64_t wrong_px = 0;  ///< of another colour
 };
 
 PictureError picture_error(const TracedPicture& picture, const TracedPicture& reference);

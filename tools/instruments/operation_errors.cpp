@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <random>
 #include <type_traits>
 #include <vector>
 
@@ -29,24 +28,6 @@ using Real = long double;
 using Exact3 = std::array<Real, 3>;  // with the products of readers/real3.h
 
 constexpr Real kPi = 3.14159265358979323846264338327950288L;
-
-/// Random integers that are the same in every library.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : random_(seed) {}
-  std::int64_t from(std::int64_t low, std::int64_t high) {
-    return low + static_cast<std::int64_t>(random_() % (static_cast<std::uint64_t>(high - low) + 1));
-  }
-  std::int32_t from32(std::int64_t low, std::int64_t high) {
-    return static_cast<std::int32_t>(from(low, high));
-  }
-  /// With as many large as small ones: 1 .. 2^bits - 1.
-  std::int32_t any_size(int bits) { return from32(1, (std::int64_t{1} << from(1, bits)) - 1); }
-  std::uint8_t byte() { return static_cast<std::uint8_t>(random_()); }
-
- private:
-  std::mt19937_64 random_;
-};
 
 /// What a sweep has found.
 struct Found {
@@ -80,7 +61,7 @@ Vec3i any_vector(Draw& draw, int bits) {
   Vec3i vector;
   while (vector == Vec3i{}) {
     for (int axis = 0; axis < 3; ++axis) {
-      vector[axis] = draw.from(0, 7) == 0 ? 0 : (draw.from(0, 1) == 0 ? -1 : 1) * draw.any_size(bits);
+      vector[axis] = draw.from(0, 7) == 0 ? 0 : static_cast<std::int32_t>(draw.sign()) * draw.any_size(bits);
     }
   }
   return vector;

@@ -9,10 +9,31 @@
 
 #include <cstdint>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
 namespace thimble::tools {
+
+/// Random integers that are the same in every library.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_(seed) {}
+  /// low .. high, both included.
+  std::int64_t from(std::int64_t low, std::int64_t high) {
+    return low + static_cast<std::int64_t>(random_() % (static_cast<std::uint64_t>(high - low) + 1));
+  }
+  std::int32_t from32(std::int64_t low, std::int64_t high) {
+    return static_cast<std::int32_t>(from(low, high));
+  }
+  std::int64_t sign() { return from(0, 1) == 0 ? -1 : 1; }
+  /// With as many large as small ones: 1 .. 2^bits - 1.
+  std::int32_t any_size(int bits) { return from32(1, (std::int64_t{1} << from(1, bits)) - 1); }
+  std::uint8_t byte() { return static_cast<std::uint8_t>(random_()); }
+
+ private:
+  std::mt19937_64 random_;
+};
 
 struct OperationError {
   std::string operation;   ///< "camera, perspective ray"

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <optional>
 
-#include "instruments/timed_frames.h"
 #include "output/plot.h"
 #include "output/units.h"
 #include "particles/populated_world.h"
@@ -201,9 +200,7 @@ std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds,
     }
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i].ms_median = quantile(milliseconds[i], 0.5);
-    rows[i].ms_quarter = quantile(milliseconds[i], 0.25);
-    rows[i].ms_three_quarters = quantile(milliseconds[i], 0.75);
+    rows[i].set_times(milliseconds[i]);
   }
   for (SimulationRow& row : rows) {
     const double error = counted_error(world, row);
@@ -229,9 +226,7 @@ JsonRow simulation_objects(SimulationWorld world, const std::vector<SimulationRo
     object["wave_speed_q6"] = only(is_water, row.wave_speed_q6);
     object["steps"] = row.steps;
     object["work"] = row.work;
-    object["ms_median"] = row.ms_median;
-    object["ms_quarter"] = row.ms_quarter;
-    object["ms_three_quarters"] = row.ms_three_quarters;
+    row.add_to(&object);
     object["unit"] = is_water ? "voxels" : "cells";
     object["error_rms"] = row.error_rms;
     object["error_median"] = row.error_median;
@@ -248,12 +243,10 @@ std::string simulation_table(SimulationWorld world, const std::vector<Simulation
                             is_water ? "columns updated" : "moves", "ms", "+-%", "error RMS", "median",
                             "most"}};
   for (const SimulationRow& row : rows) {
-    table.push_back(
-        {row.front ? "*" : "", std::to_string(is_water ? row.columns : row.substeps),
-         is_water ? fixed(row.wave_speed_q6 / 64.0, 3) : std::to_string(row.subpixel_bits),
-         std::to_string(row.steps), grouped(row.work), fixed(row.ms_median, 3),
-         row.ms_median <= 0 ? "-" : fixed(50 * (row.ms_three_quarters - row.ms_quarter) / row.ms_median, 0),
-         fixed(row.error_rms, 4), fixed(row.error_median, 4), fixed(row.error_most, 3)});
+    table.push_back({row.front ? "*" : "", std::to_string(is_water ? row.columns : row.substeps),
+                     is_water ? fixed(row.wave_speed_q6 / 64.0, 3) : std::to_string(row.subpixel_bits),
+                     std::to_string(row.steps), grouped(row.work), fixed(row.ms_median, 3), row.spread(),
+                     fixed(row.error_rms, 4), fixed(row.error_median, 4), fixed(row.error_most, 3)});
   }
   const std::string head =
       is_water

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "instruments/timed_frames.h"
 #include "output/tables.h"
 
 namespace thimble::tools {
@@ -28,16 +29,13 @@ enum class SimulationWorld : std::uint8_t { kParticles, kWater };
 inline constexpr int kParticleSteps = 10;
 inline constexpr int kWaterReference = 256;
 
-struct SimulationRow {
-  int substeps = 0;  ///< particles
+struct SimulationRow : MedianTime {  ///< times: of all steps together
+  int substeps = 0;                  ///< particles
   int subpixel_bits = 0;
   int columns = 0;        ///< water: a side
   int wave_speed_q6 = 0;  ///< columns a step: half of it takes twice the steps
   int steps = 0;
   std::uint64_t work = 0;  ///< displacements made, or columns worked out
-  double ms_median = 0;    ///< all steps together, processor time
-  double ms_quarter = 0;
-  double ms_three_quarters = 0;
   double error_rms = 0;
   double error_median = 0;
   double error_most = 0;

@@ -13,8 +13,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
+#include <string>
 #include <vector>
 
+#include "output/tables.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/shading.h"
 
@@ -73,6 +75,31 @@ inline double quantile(std::vector<double> values, double part) {
   const std::size_t high = std::min(low + 1, values.size() - 1);
   return values[low] + (values[high] - values[low]) * (at - static_cast<double>(low));
 }
+
+/// Median and quartiles of the times of one thing, in milliseconds of the processor.
+struct MedianTime {
+  double ms_median = 0;
+  double ms_quarter = 0;
+  double ms_three_quarters = 0;
+
+  /// At least one time.
+  void set_times(const std::vector<double>& ms);
+  /// Half the distance of the quartiles in per cent of the median; "-" where that is 0.
+  std::string spread() const;
+  /// The three columns.
+  void add_to(JsonRow* object) const;
+};
+
+// How far one picture is from another of the same rays.
+
+struct DepthError {
+  std::uint64_t silhouette_px = 0;  ///< hit in one and missed in the other
+  double depth_mean_voxels = 0;  ///< distances' difference, over pixels hit in both; 0 where there are none
+  double depth_max_voxels = 0;
+
+  /// Of the distances of all pixels, negative for a miss.
+  void compare_distances(const std::vector<double>& distances, const std::vector<double>& reference);
+};
 
 }  // namespace thimble::tools
 

@@ -3,6 +3,7 @@
 #ifndef THIMBLE_TOOLS_OUTPUT_HIT_CSV_H
 #define THIMBLE_TOOLS_OUTPUT_HIT_CSV_H
 
+#include <cmath>
 #include <string>
 
 #include "thimble/trace/ray.h"
@@ -22,6 +23,12 @@ void append_hit(std::string* text, const Ray& ray, const Hit& hit, bool has_mate
 /// t as the nearest double: numerator and denominator are exact, so the division is the only rounding.
 inline double hit_t(const Hit& hit) {
   return static_cast<double>(hit.t_numerator) / hit.t_denominator;
+}
+
+/// How far away it is, in voxels along the unit ray.
+inline double hit_distance(const Ray& ray, const Hit& hit) {
+  return hit_t(hit) * std::hypot(static_cast<double>(ray.direction.x), static_cast<double>(ray.direction.y),
+                                 static_cast<double>(ray.direction.z));
 }
 
 }  // namespace thimble::tools

@@ -84,9 +84,6 @@ class PartFile {
 
   const std::string& path() const { return path_; }
   const PartHeader& header() const { return header_; }
-  bool holds(std::uint32_t unit) const {
-    return unit >= header_.first && unit - header_.first < header_.count;
-  }
   /// The bytes of a row or frame that it holds, by its place in the whole. Throws InputError when the file went
   /// away meanwhile.
   std::vector<std::uint8_t> read(std::uint32_t unit) const;

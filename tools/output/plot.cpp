@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <cstdlib>
 
 #include "output/units.h"
@@ -23,6 +22,22 @@ std::string svg_begin(double width, double height, const std::string& more, cons
          "\n@media (prefers-color-scheme: dark) { .ground { fill: #15181c } text { fill: #e6e6e6 } .grid { "
          "stroke: #3a3f45 } " +
          dark + " }\n</style>\n<rect width=\"100%\" height=\"100%\" class=\"ground\"/>\n";
+}
+
+// Okabe and Ito's colours, which stay apart for most kinds of colour vision and on both grounds; a grey, and a brown.
+constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                             "#e69f00", "#56b4e9", "#8a8a8a", "#a0522d"};
+constexpr std::size_t kLineColors = 6;
+
+// A line from point to point, each where `place` says.
+template <class Points, class Place>
+std::string polyline(const std::string& style, const Points& points, const Place& place) {
+  std::string svg = "<polyline " + style + " points=\"";
+  for (const auto& point : points) {
+    const auto [x, y] = place(point);
+    svg += number(x) + "," + number(y) + " ";
+  }
+  return svg + "\"/>\n";
 }
 
 constexpr double kPlotWidth = 760;
@@ -66,9 +81,6 @@ std::string decade_text(int decade) {
 }  // namespace
 
 std::string log_plot_text(const Plot& plot) {
-  // Okabe and Ito's colours, which stay apart for most kinds of colour vision and on both grounds.
-  constexpr std::array<const char*, 6> kColors{"#0072b2", "#d55e00", "#009e73",
-                                               "#cc79a7", "#e69f00", "#56b4e9"};
   Decades x_range;
   Decades y_range;
   bool first = true;
@@ -133,13 +145,12 @@ std::string log_plot_text(const Plot& plot) {
   }
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& series = plot.series[i];
-    const std::string color = kColors[i % kColors.size()];
+    const std::string color = kColors[i % kLineColors];
     const std::string dash = series.dashed ? " stroke-dasharray=\"6 4\"" : "";
-    svg += "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + " points=\"";
-    for (const auto& [x, y] : series.points) {
-      svg += number(x_at(x)) + "," + number(y_at(y)) + " ";
-    }
-    svg += "\"/>\n";
+    svg += polyline("fill=\"none\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash, series.points,
+                    [&](const auto& point) {
+                      return std::pair{x_at(point.first), y_at(point.second)};
+                    });
     for (const auto& [x, y] : series.points) {
       svg += "<circle cx=\"" + number(x_at(x)) + "\" cy=\"" + number(y_at(y)) + "\" r=\"3\" fill=\"" + color +
              "\"/>\n";
@@ -172,10 +183,8 @@ double tick_of(double range) {
 }
 
 std::string tick_text(double value, double tick) {
-  std::array<char, 32> text{};
   const int digits = tick < 1 ? static_cast<int>(std::ceil(-std::log10(tick) - 1e-9)) : 0;
-  std::snprintf(text.data(), text.size(), "%.*f", std::clamp(digits, 0, 9), value);
-  return text.data();
+  return fixed(value, std::clamp(digits, 0, 9));
 }
 
 }  // namespace
@@ -347,10 +356,6 @@ class Numbers {
 }  // namespace
 
 std::string scatter_text(const Scatter& scatter) {
-  // Okabe and Ito's colours, which stay apart for most kinds of colour vision and on both grounds, and a
-  // grey.
-  constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                               "#e69f00", "#56b4e9", "#8a8a8a", "#a0522d"};
   std::vector<std::pair<double, double>> points;
   for (const Cloud& cloud : scatter.clouds) {
     points.insert(points.end(), cloud.points.begin(), cloud.points.end());
@@ -392,20 +397,17 @@ std::string scatter_text(const Scatter& scatter) {
   svg += label(20, middle, "middle", scatter.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
 
   if (!scatter.front.empty()) {
-    svg += "<polyline class=\"front\" points=\"";
-    for (const FrontPoint& point : scatter.front) {
-      svg += number(scales.x_at(point.x)) + "," + number(scales.y_at(point.y)) + " ";
-    }
-    svg += "\"/>\n";
+    svg += polyline("class=\"front\"", scatter.front, [&](const FrontPoint& point) {
+      return std::pair{scales.x_at(point.x), scales.y_at(point.y)};
+    });
   }
   for (std::size_t i = 0; i < scatter.clouds.size(); ++i) {
     const std::string fill = std::string("fill=\"") + kColors[i % kColors.size()] + "\"";
     if (scatter.clouds[i].joined) {
-      svg += "<polyline fill=\"none\" stroke=\"" + std::string(kColors[i % kColors.size()]) + "\" points=\"";
-      for (const auto& [x, y] : scatter.clouds[i].points) {
-        svg += number(scales.x_at(x)) + "," + number(scales.y_at(y)) + " ";
-      }
-      svg += "\"/>\n";
+      svg += polyline("fill=\"none\" stroke=\"" + std::string(kColors[i % kColors.size()]) + "\"",
+                      scatter.clouds[i].points, [&](const auto& point) {
+                        return std::pair{scales.x_at(point.first), scales.y_at(point.second)};
+                      });
     }
     for (const auto& [x, y] : scatter.clouds[i].points) {
       svg += dot(scales.x_at(x), scales.y_at(y), 4, fill);
@@ -455,9 +457,7 @@ std::string stacked(const std::vector<std::string>& plots) {
 }
 
 std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
+  return fixed(value, 1);
 }
 
 std::string xml_text(const std::string& plain) {

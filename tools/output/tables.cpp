@@ -1,8 +1,6 @@
 #include "output/tables.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace thimble::tools {
 namespace {
@@ -60,16 +58,6 @@ std::string columns_of(const std::vector<Cells>& rows, std::size_t left) {
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }
   return text;
-}
-
-std::string fixed(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
-
-std::string percent(std::uint64_t part, std::uint64_t whole) {
-  return fixed(whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole), 2);
 }
 
 }  // namespace thimble::tools

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "output/units.h"
+
 namespace thimble::tools {
 
 using JsonRow = nlohmann::ordered_json;
@@ -20,11 +22,6 @@ std::string csv_of(const JsonRow& rows);
 using Cells = std::vector<std::string>;
 /// Columns two blanks apart, as wide as their widest cell; the first `left` of them begin at their left edge.
 std::string columns_of(const std::vector<Cells>& rows, std::size_t left);
-
-/// A number with so many digits behind the point.
-std::string fixed(double value, int digits);
-/// How many per cent of `whole` a part is, with two digits behind the point; of nothing "0.00".
-std::string percent(std::uint64_t part, std::uint64_t whole);
 
 }  // namespace thimble::tools
 

@@ -90,6 +90,16 @@ std::string shortest(double number) {
   return error == std::errc{} ? std::string(text.data(), end) : std::string();
 }
 
+std::string fixed(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  return fixed(whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole), 2);
+}
+
 std::string crc_text(std::uint32_t crc) {
   std::array<char, 9> text{};
   std::snprintf(text.data(), text.size(), "%08x", static_cast<unsigned>(crc));

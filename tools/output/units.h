@@ -20,6 +20,11 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text);
 /// A double with the fewest digits up to 17 significant ones that read back as the same double.
 std::string shortest(double number);
 
+/// A number with so many digits behind the point.
+std::string fixed(double value, int digits);
+/// How many per cent of `whole` a part is, with two digits behind the point; of nothing "0.00".
+std::string percent(std::uint64_t part, std::uint64_t whole);
+
 /// A CRC-32 as 8 hex digits.
 std::string crc_text(std::uint32_t crc);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -62,12 +61,6 @@ Vec2i nearest_ball(const ParticleWorld& world, Vec2i at, std::int32_t reach) {
     }
   }
   return best;
-}
-
-std::string with_decimals(int decimals, double number) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, number);
-  return text.data();
 }
 
 }  // namespace
@@ -300,16 +293,15 @@ void Player::command(char key) {
 std::string Player::figures(double eps) const {
   return "Min Size: " + std::to_string(settings_.least_diameter) +
          "\nMax Size: " + std::to_string(settings_.most_diameter) +
-         "\nBounciness: " + with_decimals(6, settings_.bounciness) +
-         "\n\nTotal Colliders: " + std::to_string(world_->world().count()) +
-         "\nEps: " + with_decimals(6, eps);
+         "\nBounciness: " + fixed(settings_.bounciness, 6) +
+         "\n\nTotal Colliders: " + std::to_string(world_->world().count()) + "\nEps: " + fixed(eps, 6);
 }
 
 std::string Player::figures_line(double eps) const {
   return "Min Size: " + std::to_string(settings_.least_diameter) +
          "  Max Size: " + std::to_string(settings_.most_diameter) +
-         "  Bounciness: " + with_decimals(2, settings_.bounciness) +
-         "  Total Colliders: " + std::to_string(world_->world().count()) + "  Eps: " + with_decimals(1, eps);
+         "  Bounciness: " + fixed(settings_.bounciness, 2) +
+         "  Total Colliders: " + std::to_string(world_->world().count()) + "  Eps: " + fixed(eps, 1);
 }
 
 std::string Player::tool_text() const {

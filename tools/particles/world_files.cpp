@@ -54,13 +54,8 @@ std::string particle_stats(const PopulatedWorld& populated, const PlayedCounts& 
 std::string particle_summary(const PopulatedWorld& populated, const PlayedCounts& counts,
                              double step_seconds) {
   const ParticleWorld& world = populated.world();
-  std::string time;
-  if (counts.steps != 0) {
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), ", %.2f us a step",
-                  1e6 * step_seconds / static_cast<double>(counts.steps));
-    time = text.data();
-  }
+  const double step_us = 1e6 * step_seconds / static_cast<double>(counts.steps);
+  const std::string time = counts.steps == 0 ? "" : ", " + fixed(step_us, 2) + " us a step";
   return grouped(world.count()) + (world.count() == 1 ? " ball, " : " balls, ") + grouped(counts.steps) +
          (counts.steps == 1 ? " step" : " steps") + time + "; asleep " + grouped(world.asleep()) +
          ", collisions " + grouped(counts.ball_hits + counts.wall_hits) + "; " + grouped(world.used_bytes()) +

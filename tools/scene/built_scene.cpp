@@ -22,6 +22,11 @@ std::uint64_t used_before_structure(std::uint64_t state_bytes, std::uint64_t ban
   return band_bytes == 0 ? 0 : up(up(state_bytes) + band_bytes);
 }
 
+Vec3i extent_of(const SceneSource& source) {
+  const auto extent = source.extent();
+  return {extent[0], extent[1], extent[2]};
+}
+
 // What building writes in any case, if that is known before: a key of each point. Few points are left out, whose
 // places may be fewer than points.
 std::size_t bytes_to_be_written(const SceneSource& source, std::size_t most) {
@@ -62,7 +67,7 @@ std::string shortage_text(const SceneSource& source, const BuildOptions& options
   std::string part;
   if (dense) {
     // Known without building it.
-    const Vec3i size = dense_size(source);
+    const Vec3i size = grid_size(extent_of(source), source.level());
     needed =
         used_before_structure(options.render_state_bytes, options.least_band_bytes) + dense_grid_bytes(size);
     part = " (" + grouped(dense_grid_bytes(size)) + " of them the grid of " + std::to_string(size.x) + " x " +
@@ -168,17 +173,13 @@ constexpr std::size_t most_after_tidying(std::size_t capacity) {
 
 }  // namespace
 
-// A grid's world is the least that holds the grid, and the world
-// decides how rays are quantised: where --depth asks for a larger one, the longest side grows until it is
-// that.
-Vec3i dense_size(const SceneSource& source) {
-  const auto extent = source.extent();
-  Vec3i size{std::max(extent[0], 1), std::max(extent[1], 1), std::max(extent[2], 1)};
+Vec3i grid_size(Vec3i size, int level) {
   int longest = 0;
-  for (int axis = 1; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis) {
+    size[axis] = std::max(size[axis], 1);
     longest = size[axis] > size[longest] ? axis : longest;
   }
-  size[longest] = std::max(size[longest], (std::int32_t{1} << (source.level() - 1)) + 1);
+  size[longest] = std::max(size[longest], (std::int32_t{1} << (level - 1)) + 1);
   return size;
 }
 
@@ -210,7 +211,7 @@ Structure StructureBuilder::build(StructureKind kind, bool coarsen) {
 }
 
 void StructureBuilder::build_dense() {
-  const Vec3i size = dense_size(source_);
+  const Vec3i size = grid_size(extent_of(source_), source_.level());
   const Bytes bytes = arena_.take(dense_grid_bytes(size));
   if (bytes.empty() || DenseGrid::make(size, bytes, &built_.dense) != Status::kOk) {
     throw Shortage{};

@@ -63,8 +63,9 @@ struct Structure {
 
 class SceneSource;
 
-/// What a dense grid of the scene must hold.
-Vec3i dense_size(const SceneSource& source);
+/// The least grid that holds `size` and whose world is that of 2^level: the world, the least that holds the grid,
+/// decides how rays are quantised, so the longest side grows until it is that.
+Vec3i grid_size(Vec3i size, int level);
 
 /// Builds behind what the arena holds; its layout, front to back:
 ///

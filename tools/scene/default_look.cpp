@@ -77,15 +77,9 @@ Vec3i short_vector(const Real3& v) {
           static_cast<std::int32_t>(std::lround(v[2] * scale))};
 }
 
-Real3 real(const Vec3i& v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
-
 ViewAxes axes_of(const SceneCamera& camera) {
-  const Vec3i forward = camera.forward == Vec3i{} ? look_at(camera.eye, camera.target) : camera.forward;
-  const Vec3i up = camera.up == Vec3i{} ? default_up(forward) : camera.up;
-  const Real3 right = cross(real(forward), real(up));
-  return {short_vector(right), short_vector(cross(right, real(forward))), short_vector(real(forward))};
+  const PictureAxes axes(camera);
+  return {short_vector(axes.right), short_vector(axes.up), short_vector(axes.forward)};
 }
 
 // Whether of the two upright sides of the box that are seen the one on the right takes more than twice the

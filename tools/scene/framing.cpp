@@ -12,7 +12,6 @@
 #include "readers/source.h"
 #include "scene/scene_source.h"
 #include "scene/workers.h"
-#include "thimble/picture/shading.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble::tools {
@@ -41,8 +40,7 @@ Vec3i to_integers(const Real3& vector) {
 
 // The other way, components within -1 .. 1.
 Real3 to_reals(const Vec3i& vector) {
-  return scaled({static_cast<double>(vector.x), static_cast<double>(vector.y), static_cast<double>(vector.z)},
-                1.0 / kMaxViewComponent);
+  return scaled(real_of(vector), 1.0 / kMaxViewComponent);
 }
 
 Real3 to_reals(const Vec3Q8& point) {
@@ -185,6 +183,10 @@ Room room_for(const Corners& corners, const Sight& sight, const Lens& lens, doub
   return room;
 }
 
+bool is_reachable(const Real3& eye, const Reach& reach) {
+  return std::all_of(eye.begin(), eye.end(), [&](double coordinate) { return reach.holds(coordinate); });
+}
+
 // The eye at `wanted` from the target, or, where a narrow view would want to stand farther back than rays may
 // start, as far as they may.
 Real3 eye_at(const Sight& sight, double wanted, const Reach& reach) {
@@ -198,9 +200,7 @@ Real3 eye_at(const Sight& sight, double wanted, const Reach& reach) {
     }
   }
   Real3 eye = minus(sight.target, scaled(forward, distance));
-  const bool reachable = std::all_of(sight.target.begin(), sight.target.end(),
-                                     [&](double coordinate) { return reach.holds(coordinate); });
-  if (reachable && distance < wanted) {
+  if (is_reachable(sight.target, reach) && distance < wanted) {
     for (double& coordinate : eye) {  // what rounding may have added
       coordinate = std::clamp(coordinate, reach.low, reach.high);
     }
@@ -325,9 +325,7 @@ class SeenExtent {
  public:
   SeenExtent(const std::vector<Vec3i>& corners, const Real3& middle, const SightAxes& axes) {
     for (const Vec3i& corner : corners) {
-      const Real3 offset =
-          minus({static_cast<double>(corner.x), static_cast<double>(corner.y), static_cast<double>(corner.z)},
-                middle);
+      const Real3 offset = minus(real_of(corner), middle);
       points_.push_back({dot(offset, axes.right), dot(offset, axes.up), dot(offset, axes.forward)});
     }
   }
@@ -376,10 +374,6 @@ Real3 middle_of(const VoxelBox& bounds) {
           (bounds.low.z + bounds.high.z) / 2.0};
 }
 
-bool is_reachable(const Real3& eye, const Reach& reach) {
-  return std::all_of(eye.begin(), eye.end(), [&](double coordinate) { return reach.holds(coordinate); });
-}
-
 // From the middle of `bounds` by that much along the axes.
 Real3 placed(const VoxelBox& bounds, const SightAxes& axes, double right, double up, double forward) {
   return plus(plus(middle_of(bounds), scaled(axes.right, right)),
@@ -407,8 +401,7 @@ bool shows_all(const Framing& framing, const SceneShape& shape, const Sight& sig
   const Real3 eye = to_reals(framing.kept.eye);
   const double half = voxels_of(framing.kept.span) / 2;
   return std::none_of(shape.corners.begin(), shape.corners.end(), [&](const Vec3i& corner) {
-    const Real3 offset = minus(
-        {static_cast<double>(corner.x), static_cast<double>(corner.y), static_cast<double>(corner.z)}, eye);
+    const Real3 offset = minus(real_of(corner), eye);
     const double depth = dot(offset, sight.axes.forward);
     const double reach_x = framing.kept.is_perspective ? depth * lens.tan_y * lens.aspect : half;
     return depth <= 0 || std::abs(dot(offset, sight.axes.right)) > reach_x ||
@@ -518,6 +511,13 @@ class RoundExtent {
 };
 
 }  // namespace
+
+PictureAxes::PictureAxes(const SceneCamera& camera) {
+  const Vec3i ahead = camera.forward == Vec3i{} ? look_at(camera.eye, camera.target) : camera.forward;
+  forward = real_of(ahead);
+  right = cross(forward, real_of(camera.up == Vec3i{} ? default_up(ahead) : camera.up));
+  up = cross(right, forward);
+}
 
 ViewAngles angles_of(NamedView view) {
   constexpr double kIsometric = 35.264389682754654;  // the angle of a cube's diagonal and its faces
@@ -690,6 +690,17 @@ std::vector<Framing> frame_turns(const ViewWishes& given, const SceneShape& shap
     framings.push_back(frame_box(view, shape.level, shape.bounds));
   }
   return framings;
+}
+
+Shading scene_shading(ShadeMode mode, Span<const Rgb8> palette, const Camera& camera,
+                      const VoxelBox& bounds) {
+  Shading shading;
+  shading.mode = mode;
+  shading.palette = palette;
+  const DepthRange range = depth_range(camera, bounds);
+  shading.near_q8 = range.near_q8;
+  shading.far_q8 = range.far_q8;
+  return shading;
 }
 
 ViewWishes finer(const ViewWishes& wishes, int across) {

@@ -13,6 +13,7 @@
 #include "scene/scene_shape.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/picture/camera.h"
+#include "thimble/picture/shading.h"
 
 namespace thimble::tools {
 
@@ -72,6 +73,18 @@ struct ViewWishes {
   int direction_bits = 0;      ///< kMinDirectionBits .. kMaxDirectionBits; 0: as many as are needed
 };
 
+inline Real3 real_of(const Vec3i& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// A camera's axes in the picture, at right angles and of any length.
+struct PictureAxes {
+  explicit PictureAxes(const SceneCamera& camera);
+  Real3 right;
+  Real3 up;
+  Real3 forward;
+};
+
 /// A view as it came out.
 struct Framing {
   Camera camera;
@@ -101,6 +114,9 @@ Framing frame_round(const ViewWishes& wishes, const SceneSource& source, const S
 /// Pictures all around, `count` of them: the view above turned by a whole turn, clockwise, in equal steps, about
 /// the upright through the middle of the scene, from as far away as the widest of them wants.
 std::vector<Framing> frame_turns(const ViewWishes& wishes, const SceneShape& shape, int count);
+
+/// Shading in that mode, by depth between the planes that bound the scene.
+Shading scene_shading(ShadeMode mode, Span<const Rgb8> palette, const Camera& camera, const VoxelBox& bounds);
 
 /// The same view in a picture `across` times as wide and high. Throws InputError beyond the largest size.
 ViewWishes finer(const ViewWishes& wishes, int across);

@@ -15,12 +15,9 @@ namespace thimble::tools {
 namespace {
 
 Shading shading_of(const LookCanvas& canvas, const Camera& camera) {
-  Shading shading;
-  shading.mode = ShadeMode::kColor;
-  shading.palette = {canvas.look->palette.data(), canvas.look->palette.size()};
-  const DepthRange range = depth_range(camera, canvas.tree->bounds());
-  shading.near_q8 = range.near_q8;
-  shading.far_q8 = range.far_q8;
+  const std::vector<Rgb8>& palette = canvas.look->palette;
+  Shading shading =
+      scene_shading(ShadeMode::kColor, {palette.data(), palette.size()}, camera, canvas.tree->bounds());
   for (std::uint16_t& light : shading.face_light) {
     light = static_cast<std::uint16_t>(2U * light / 3);
   }

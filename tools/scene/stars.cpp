@@ -30,10 +30,6 @@ Axis axis_of(const Real3& v) {
   return {std::llround(v[0] * scale), std::llround(v[1] * scale), std::llround(v[2] * scale)};
 }
 
-Real3 real(const Vec3i& v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
-
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
   return a / b - (a % b < 0 ? 1 : 0);
 }
@@ -44,12 +40,10 @@ class Sky {
   Sky(const LookCanvas& canvas, std::uint64_t points)
       : canvas_(canvas), camera_(canvas.framing->camera), eye_(canvas.framing->kept.eye) {
     const SceneCamera& kept = canvas.framing->kept;
-    const Vec3i forward = kept.forward == Vec3i{} ? look_at(kept.eye, kept.target) : kept.forward;
-    const Vec3i up = kept.up == Vec3i{} ? default_up(forward) : kept.up;
-    const Real3 right = cross(real(forward), real(up));
-    forward_ = axis_of(real(forward));
-    right_ = axis_of(right);
-    down_ = axis_of(cross(real(forward), right));
+    const PictureAxes axes(kept);
+    forward_ = axis_of(axes.forward);
+    right_ = axis_of(axes.right);
+    down_ = axis_of(cross(axes.forward, axes.right));
     const double half = kept.fov_degrees.raw / 65536.0 * 3.14159265358979323846 / 360;
     pixels_q8_ =
         kept.is_perspective
