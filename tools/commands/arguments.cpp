@@ -195,6 +195,21 @@ Option add_whole_option(CLI::App& app, const std::string& name, const std::strin
       help);
 }
 
+Option add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
+                       double high, const std::function<void(double)>& take, const std::string& help) {
+  return add_text_option(
+      app, name, type_name,
+      [=](const std::string& text) -> std::string {
+        const auto number = parse_real(text);
+        if (!number || *number < low || *number > high) {
+          return "is not a number from " + shortest(low) + " to " + shortest(high);
+        }
+        take(*number);
+        return {};
+      },
+      help);
+}
+
 Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                          std::function<void(std::size_t)> take, const std::string& help) {
   std::string type_name;

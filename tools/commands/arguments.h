@@ -91,6 +91,10 @@ Option add_whole_option(CLI::App& app, const std::string& name, const std::strin
   return add_whole_option(app, name, type_name, low, high, std::function<void(std::int64_t)>(take), help);
 }
 
+/// An option that is a finite number of low .. high.
+Option add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
+                       double high, const std::function<void(double)>& take, const std::string& help);
+
 /// An option that is one of a few words, in any case. `take` gets the index into `words`.
 Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                          std::function<void(std::size_t)> take, const std::string& help);

@@ -165,24 +165,6 @@ void run(const ParticlesCommand& given) {
   }
 }
 
-// An option that is a finite number of low .. high.
-void add_real_option(CLI::App& sub, const std::string& name, const std::string& type_name, double low,
-                     double high, const std::function<void(double)>& take, const std::string& help,
-                     const std::string& standard) {
-  add_text_option(
-      sub, name, type_name,
-      [=](const std::string& text) -> std::string {
-        const auto number = parse_real(text);
-        if (!number || *number < low || *number > high) {
-          return "is not a number from " + shortest(low) + " to " + shortest(high);
-        }
-        take(*number);
-        return {};
-      },
-      help)
-      .default_str(standard);
-}
-
 void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
   WorldOptions* const world = &command->world;
   add_text_option(
@@ -217,7 +199,8 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       .default_str("12");
   add_real_option(
       sub, "--bounciness", "B", 0, 1, [world](double value) { world->bounciness = value; },
-      "the part of its speed that a ball keeps when it bounces, 0 to 1", "0.8");
+      "the part of its speed that a ball keeps when it bounces, 0 to 1")
+      .default_str("0.8");
   add_text_option(
       sub, "--gravity", "X,Y",
       [command](const std::string& text) -> std::string {
@@ -237,7 +220,8 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       .default_str("0,0.1");
   add_real_option(
       sub, "--speed", "V", 0, 8192, [world](double value) { world->speed = value; },
-      "random balls start with up to V cells a step on each axis; of --bodies the fastest has V", "3");
+      "random balls start with up to V cells a step on each axis; of --bodies the fastest has V")
+      .default_str("3");
   add_whole_option(sub, "--seed", "S", 0, UINT32_MAX, &world->seed, "of random balls").default_str("1");
   add_path_option(
       sub, "--bodies", "FILE", &command->bodies_path,

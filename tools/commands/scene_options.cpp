@@ -245,6 +245,20 @@ void choose(const std::string& name, std::string* chosen) {
   *chosen = name;
 }
 
+// Draws, or traces: what the engine `does`.
+void add_engine(CLI::App& app, std::string* name, const std::vector<std::string>& names, const char* does,
+                const std::string& help) {
+  add_choice_option(
+      app, "--engine", names, [name, names](std::size_t index) { choose(names[index], name); }, help)
+      .default_str("auto");
+  also_check(app, [&app, name, does] {
+    const std::string structure = text_given(app, "--structure");
+    if ((*name == "wide" || *name == "gpu") && !structure.empty() && structure != "compact") {
+      refuse_usage("--engine " + *name + " " + does + " --structure compact only");
+    }
+  });
+}
+
 }  // namespace
 
 int all_cores() {
@@ -257,20 +271,12 @@ void add_threads(CLI::App& app, int* threads, const std::string& help) {
 }
 
 void EngineOptions::add_to(CLI::App& app, bool all_cores) {
-  static const std::vector<std::string> kNames{"auto", "wide", "gpu", "ray64", "ray32"};
-  add_choice_option(
-      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
+  add_engine(
+      app, &name, {"auto", "wide", "gpu", "ray64", "ray32"}, "draws",
       "wide: object order, with vectors and threads, for --structure compact where there is room; gpu: the "
       "best Vulkan device, without light, for --structure compact, without --memory and --board; ray64, "
       "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
-      "need more; auto: wide where it can be, but not with --board, else ray64")
-      .default_str("auto");
-  also_check(app, [&app, this] {
-    const std::string structure = text_given(app, "--structure");
-    if ((name == "wide" || name == "gpu") && !structure.empty() && structure != "compact") {
-      refuse_usage("--engine " + name + " draws --structure compact only");
-    }
-  });
+      "need more; auto: wide where it can be, but not with --board, else ray64");
   threads = all_cores ? tools::all_cores() : 1;
   add_whole_option(
       app, "--threads", "N", 1, wide::kMaxThreads,
@@ -283,9 +289,8 @@ void EngineOptions::add_to(CLI::App& app, bool all_cores) {
 }
 
 void EngineOptions::add_ray_engines_to(CLI::App& app) {
-  static const std::vector<std::string> kNames{"auto", "gpu", "ray64", "ray32"};
-  add_choice_option(
-      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
+  add_engine(
+      app, &name, {"auto", "gpu", "ray64", "ray32"}, "traces",
       "gpu: the best Vulkan device, for --structure compact, without --memory and --board (then nodes are "
       "its "
       "steps); ray64, ray32: products of that width; the answers are the same, but ray32 refuses rays that "
@@ -293,14 +298,7 @@ void EngineOptions::add_ray_engines_to(CLI::App& app) {
       "more; auto: "
       "with vectors from 100,000 rays on, where there is room and not with --board (then nodes are its "
       "steps, "
-      "else those of the tree), else ray64")
-      .default_str("auto");
-  also_check(app, [&app, this] {
-    const std::string structure = text_given(app, "--structure");
-    if (name == "gpu" && !structure.empty() && structure != "compact") {
-      refuse_usage("--engine gpu traces --structure compact only");
-    }
-  });
+      "else those of the tree), else ray64");
 }
 
 std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built) const {
@@ -350,16 +348,14 @@ int EngineOptions::lit_threads(BuiltScene* built, EffectSet effects) const {
 }
 
 void EngineOptions::add_board_engines_to(CLI::App& app) {
-  static const std::vector<std::string> kNames{"auto", "wide", "ray64"};
-  add_choice_option(
-      app, "--engine", kNames, [this](std::size_t index) { choose(kNames[index], &name); },
+  add_engine(
+      app, &name, {"auto", "wide", "ray64"}, "draws",
       "what draws demo's frames without light; the pictures are the same. wide: object order, with vectors "
       "and "
       "threads, in memory of this machine's own, and the first frame by the core too, for the stack, and "
       "compared; ray64: the core, as on the board (by bricks where the scene has a brick map); auto: wide "
       "where it can be, else ray64. Frames with light, those thinned or refined to hold a rate, and other "
-      "applications are always the core's")
-      .default_str("auto");
+      "applications are always the core's");
   add_threads(app, &threads, "threads that draw with the wide engine");
 }
 

@@ -102,13 +102,11 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
              "what it looks at, in voxels (default: the middle of the scene)");
   add_triple(app, "--up", &view->up, &view->placed,
              "what is up in the picture (default: 0,0,1, or 0,1,0 when looking along z)");
-  add_text_option(
-      app, "--fov", "DEG",
-      [view](const std::string& text) {
-        const auto degrees = parse_real(text);
-        view->fov_degrees = degrees.value_or(0);
+  add_real_option(
+      app, "--fov", "DEG", 1, 120,
+      [view](double degrees) {
+        view->fov_degrees = degrees;
         view->placed = true;
-        return view->fov_degrees >= 1 && view->fov_degrees <= 120 ? "" : "is not a number from 1 to 120";
       },
       "perspective: vertical field of view in degrees, 1 to 120")
       .default_str(shortest(view->fov_degrees));
@@ -150,15 +148,11 @@ void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits)
       "paper: where the instruments stand, which frame a box "
       "(default: the scene's own camera, else best)");
   const auto add_angle = [&](const char* name, double* angle, double most, const char* help) {
-    add_text_option(
-        app, name, "DEG",
-        [view, angle, most](const std::string& text) -> std::string {
-          const auto degrees = parse_real(text);
-          *angle = degrees.value_or(most + 1);
+    add_real_option(
+        app, name, "DEG", -most, most,
+        [view, angle](double degrees) {
+          *angle = degrees;
           view->placed = true;
-          return std::abs(*angle) <= most
-                     ? ""
-                     : "is not a number from " + shortest(-most) + " to " + shortest(most);
         },
         help);
   };
@@ -207,15 +201,10 @@ void add_quality(CLI::App& app, Quality* quality) {
   add_samples(app, &quality->across, &quality->at_edges, "on a regular grid in it, averaged",
               "those of the scene's own look, else 1");
   also_check(app, [&app, quality] { quality->is_sampled = is_given(app, "--samples"); });
-  add_text_option(
-      app, "--cutoff", "PX",
-      [quality](const std::string& text) -> std::string {
-        const auto pixels = parse_real(text);
-        if (!pixels || *pixels < 0 || *pixels > kMostCutoffPx) {
-          return "is not a number from 0 to " + std::to_string(kMostCutoffPx);
-        }
-        quality->cutoff = Q16::from_raw(static_cast<std::int32_t>(std::lround(*pixels * Q16::kOne)));
-        return {};
+  add_real_option(
+      app, "--cutoff", "PX", 0, kMostCutoffPx,
+      [quality](double pixels) {
+        quality->cutoff = Q16::from_raw(static_cast<std::int32_t>(std::lround(pixels * Q16::kOne)));
       },
       "stop at blocks of the tree that cover less than PX pixels, in their mean colour; 0 to 64, compact "
       "structure only")
