@@ -37,6 +37,13 @@ inline int check_reader(Source (*read)(const SharedBytes&, const Progress&),
   if (const auto* mesh = std::get_if<TriangleMesh>(&source)) {
     require(!mesh->positions.empty());
     require(mesh->colors.empty() || mesh->colors.size() == mesh->positions.size());
+    const auto& corners = mesh->texcoord_corners;
+    require(mesh->surface_of.size() == (mesh->surfaces.empty() ? 0 : mesh->triangles.size()));
+    require(corners.empty() || corners.size() == mesh->triangles.size());
+    require(mesh->surfaces.empty() || !corners.empty() || mesh->texcoords.size() == mesh->positions.size());
+    for (const std::uint32_t surface : mesh->surface_of) {
+      require(surface < mesh->surfaces.size());
+    }
     for (const auto& position : mesh->positions) {
       require(std::isfinite(position[0]) && std::isfinite(position[1]) && std::isfinite(position[2]));
     }

@@ -190,7 +190,8 @@ TEST_CASE(
   const std::string face =
       "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   CHECK(notes_of(source_of(read_ply, head + face)).empty());
-  CHECK(notes_hold(source_of(read_ply, head + "comment TextureFile a b.jpg\n" + face), "TextureFile"));
+  CHECK(notes_hold(source_of(read_ply, head + "comment TextureFile a b.jpg\n" + face),
+                   "'a b.jpg' is not drawn"));
 }
 
 TEST_CASE(
@@ -305,7 +306,7 @@ TEST_CASE("obj: materials beside it -> colours of faces; what is missing or not 
   CHECK(mesh.face_colors == Colors{Rgb{}, kRed, kBlue});
   CHECK(mesh.triangles.size() == 3);
   CHECK(notes_hold(source, "1 triangle is wholly clear"));
-  CHECK(notes_hold(source, "map_Kd"));
+  CHECK(notes_hold(source, "the picture 'p.jpg' is not drawn: it has no place"));
   CHECK(notes_hold(read("mtllib none.mtl\nusemtl red\n" + square + "f 1 2 3\n"), "'none.mtl'"));
   CHECK(notes_hold(read("usemtl red\n" + square + "f 1 2 3\n"), "no file is named"));
   CHECK(notes_hold(read("mtllib a b.mtl\nusemtl blue\n" + square + "f 1 2 3\n"),

@@ -1,12 +1,15 @@
 // Readers of point scans and meshes in binary forms: .pcd, .las, .stl, .gltf and .glb.
 #include <doctest/doctest.h>
 
+#include <sys/stat.h>
+
 #include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "readers/gltf.h"
+#include "readers/gltf_file.h"
 #include "readers/las.h"
 #include "readers/pcd.h"
 #include "readers/read_any.h"
@@ -107,6 +110,18 @@ std::string gltf_json(const std::string& buffer, const std::string& nodes, const
          R"({"bufferView":0,"byteOffset":36,"componentType":5123,"count":3,"type":"SCALAR"}],)"
          R"("bufferViews":[{"buffer":0,"byteLength":48}],"buffers":[{"byteLength":48)" +
          (buffer.empty() ? "" : ",\"uri\":\"" + buffer + "\"") + "}]}";
+}
+
+/// The same with accessors and views behind its own, and what belongs before the asset.
+std::string gltf_with(const std::string& head, const std::string& accessors, const std::string& views,
+                      const std::string& node) {
+  std::string json = gltf_json("", node);
+  const auto put_behind = [&](const std::string& place, const std::string& added) {
+    json.insert(json.find(place) + place.size(), added);
+  };
+  put_behind(R"("count":3,"type":"SCALAR"})", accessors);
+  put_behind(R"("byteLength":48})", views);
+  return json.insert(1, head);
 }
 
 std::string glb(std::string json, const std::string& binary) {
@@ -327,4 +342,97 @@ TEST_CASE("gltf: what leaves its place, is not there or comes round again -> a s
     rest += ",{\"mesh\":0}";
   }
   CHECK(outcome_of(read_alone, gltf_json(kTriangleData, many + "]}" + rest + "]")) == 450000);
+}
+
+TEST_CASE(
+    "gltf: an extension that is required and not known -> refused by its name; looks alone are no reason") {
+  const auto file = [](const std::string& names) {
+    return glb(gltf_with("\"extensionsRequired\":[" + names + "],", "", "", R"([{"mesh":0}])"),
+               triangle_buffer());
+  };
+  CHECK(
+      contains(error_of(read_alone, file(R"("KHR_texture_transform","EXT_none")")), "extension 'EXT_none'"));
+  CHECK(contains(error_of(read_alone, file("7")), "extension ''"));
+  CHECK(error_of(read_alone, file("\"" + std::string(5000, 'x') + "\"")).size() < 300);
+  const auto notes = [&](const std::string& names) {
+    const TriangleMesh mesh = read_mesh(read_alone, file(names));
+    CHECK(mesh.triangles.size() == 1);
+    return mesh.notes;
+  };
+  CHECK(notes(R"("KHR_materials_unlit","KHR_mesh_quantization")").empty());
+  CHECK(notes(R"("KHR_lights_punctual")") ==
+        Notes{"it requires looks that are not drawn: 'KHR_lights_punctual'"});
+  CHECK(notes(R"("EXT_texture_webp","KHR_materials_clearcoat","KHR_lights_punctual")") ==
+        Notes{"it requires looks that are not drawn: 'EXT_texture_webp' and 2 more"});
+}
+
+TEST_CASE("gltf: instances of a mesh -> all of them, each in its place") {
+  std::string binary = triangle_buffer();
+  for (const float number : {0.0F, 0.0F, 5.0F, 1.0F, 0.0F, 0.0F, 2.0F, 2.0F, 2.0F, 1.0F, 1.0F, 1.0F}) {
+    binary += little(number);
+  }
+  const std::string accessors =
+      R"(,{"bufferView":1,"componentType":5126,"count":2,"type":"VEC3"},)"
+      R"({"bufferView":1,"byteOffset":24,"componentType":5126,"count":2,"type":"VEC3"})";
+  const std::string views = R"(,{"buffer":0,"byteOffset":48,"byteLength":48})";
+  const auto node = [](const std::string& attributes) {
+    return R"([{"mesh":0,"translation":[10,0,0],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":)" +
+           attributes + "}}}]";
+  };
+  const auto file = [&](const std::string& attributes) {
+    return glb(
+        gltf_with(R"("extensionsRequired":["EXT_mesh_gpu_instancing"],)", accessors, views, node(attributes)),
+        binary);
+  };
+  const TriangleMesh mesh = read_mesh(read_alone, file(R"({"TRANSLATION":2,"SCALE":3})"));
+  REQUIRE(mesh.triangles.size() == 2);
+  CHECK(mesh.positions[1] == std::array<double, 3>{12, 0, 5});
+  CHECK(mesh.positions[2] == std::array<double, 3>{10, 4, 5});
+  CHECK(mesh.positions[4] == std::array<double, 3>{12, 0, 0});
+  CHECK(contains(error_of(read_alone, file(R"({"ROTATION":2})")),
+                 "ROTATION of its instances has 3 components"));
+  CHECK(contains(error_of(read_alone, file(R"({"TRANSLATION":0,"SCALE":3})")), "3 and 2 values"));
+}
+
+TEST_CASE("gltf: sparse accessors, and those without bytes -> their values; hostile ones -> a sentence") {
+  const std::string binary = triangle_buffer() + little(2, 2) + little(1, 2) + little(7.0F) + little(8.0F) +
+                             little(9.0F) + little(4.0F) + little(5.0F) + little(6.0F);
+  const auto file = [&](const std::string& base, const std::string& count, const std::string& changed = "2") {
+    std::string json = gltf_with(
+        "",
+        ",{" + base + R"("componentType":5126,"count":)" + count + R"(,"type":"VEC3","sparse":{"count":)" +
+            changed +
+            R"(,"indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":1,"byteOffset":4}}})",
+        R"(,{"buffer":0,"byteOffset":48,"byteLength":28})", R"([{"mesh":0}])");
+    json.replace(json.find(R"("POSITION":0)"), 12, R"("POSITION":2)");
+    return glb(json, binary);
+  };
+  using Place = std::array<double, 3>;
+  const TriangleMesh mesh = read_mesh(read_alone, file(R"("bufferView":0,)", "3"));
+  CHECK(mesh.positions == std::vector<Place>{{0, 0, 0}, {4, 5, 6}, {7, 8, 9}});
+  CHECK(read_mesh(read_alone, file("", "3")).positions == mesh.positions);  // of zeros
+  CHECK(contains(error_of(read_alone, file("", "2")), "sparse value 0 has the index 2"));
+  CHECK(contains(error_of(read_alone, file("", "3", "3")), "not in its buffer view"));
+  CHECK(contains(error_of(read_alone, file("", "999999999999")), "sparse values take more than the limit"));
+}
+
+TEST_CASE(
+    "gltf: a file that is named many times -> read and counted once; one that is none -> not waited for") {
+  const thimble::tests::TemporaryFolder folder;
+  folder.write("a.bin", std::string(1000, 'a'));
+  std::string json = R"({"asset":{},"bufferViews":[)";
+  for (int i = 0; i < 100; ++i) {
+    json += (i > 0 ? "," : "") + (R"({"buffer":)" + std::to_string(i) + R"(,"byteLength":1000})");
+  }
+  json += "],\"buffers\":[";
+  for (int i = 0; i < 100; ++i) {
+    json += std::string(i > 0 ? "," : "") + R"({"uri":")" + (i % 2 == 0 ? "a.bin" : "./a.bin") + "\"}";
+  }
+  GltfFile file(SharedBytes::own(json + "]}"), folder.path("x.gltf"));
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    CHECK(file.buffer_view(i).data() == file.buffer_view(0).data());
+  }
+  CHECK(file.bytes_read() == json.size() + 2 + 1000);
+  REQUIRE(mkfifo(folder.path("pipe").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH_AS(file.link("pipe", "buffer 0"), doctest::Contains("is no regular file"), InputError);
 }

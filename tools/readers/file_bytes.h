@@ -82,6 +82,10 @@ SharedBytes share(FileBytes bytes);
 FileBytes load_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes,
                     const FirstLook& look = {});
 
+/// The same of a file that another file names: nobody chose to wait for a pipe or a device there.
+/// @throws InputError  it is no regular file
+FileBytes load_regular_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes);
+
 /// What `inflate_bytes` takes: deflate with zlib's frame around it, with gzip's, or bare as in a .zip.
 enum class Deflated : std::uint8_t { kZlib, kGzip, kBare };
 

@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "readers/gltf_file.h"
-#include "readers/gltf_picture.h"
 #include "readers/mesh.h"
 #include "readers/text.h"
+#include "readers/texture.h"
 
 namespace thimble::tools {
 namespace {
@@ -33,6 +35,29 @@ Placing after(const Placing& parent, const Placing& child) {
   return both;
 }
 
+/// A placing as it is written apart.
+struct Standing {
+  std::array<double, 3> move{};
+  std::array<double, 3> scale{1, 1, 1};
+  std::array<double, 4> turn{0, 0, 0, 1};
+
+  Placing placing() const {
+    const auto [x, y, z, w] = turn;
+    const std::array<std::array<double, 3>, 3> rotation{
+        {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+         {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+         {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
+    Placing result{};
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 3; ++column) {
+        result[row][column] = rotation[row][column] * scale[column];
+      }
+      result[row][3] = move[row];
+    }
+    return result;
+  }
+};
+
 Placing placing_of(const json& node, const std::string& place) {
   Placing result = kAsItIs;
   if (gltf_member(node, "matrix") != nullptr) {
@@ -45,39 +70,24 @@ Placing placing_of(const json& node, const std::string& place) {
     }
     return result;
   }
-  std::array<double, 3> move{};
-  std::array<double, 3> scale{1, 1, 1};
-  std::array<double, 4> turn{0, 0, 0, 1};
-  gltf_reals(node, "translation", move, place);
-  gltf_reals(node, "scale", scale, place);
-  gltf_reals(node, "rotation", turn, place);
-  const auto [x, y, z, w] = turn;
-  const std::array<std::array<double, 3>, 3> rotation{
-      {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-       {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-       {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column) {
-      result[row][column] = rotation[row][column] * scale[column];
-    }
-    result[row][3] = move[row];
-  }
-  return result;
-}
-
-/// Colours are light in the file and bytes as screens take them here.
-std::uint8_t screen_byte(double light) {
-  if (!(light > 0)) {
-    return 0;
-  }
-  return unit_to_byte(light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
-}
-double light_of(std::uint8_t byte) {
-  const double value = byte / 255.0;
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+  Standing standing;
+  gltf_reals(node, "translation", standing.move, place);
+  gltf_reals(node, "scale", standing.scale, place);
+  gltf_reals(node, "rotation", standing.turn, place);
+  return standing.placing();
 }
 
 enum : std::uint64_t { kPoints = 0, kTriangles = 4, kStrip = 5, kFan = 6 };
+
+/// What a material says of the colour of its triangles.
+struct Look {
+  std::array<double, 4> factor{1, 1, 1, 1};
+  double cutoff = 0;          ///< of alpha, or 0
+  std::uint32_t surface = 0;  ///< of the mesh; 0: it has no picture
+  std::string texcoord;       ///< the attribute's name
+  /// From coordinates as they are written to those on the picture: rows of a matrix.
+  std::array<std::array<double, 3>, 2> moved{{{1, 0, 0}, {0, 1, 0}}};
+};
 
 /// A primitive at a node.
 struct Part {
@@ -92,9 +102,10 @@ struct Part {
 class Scene {
  public:
   Scene(const SharedBytes& file, const std::string& path, const Progress& progress)
-      : file_(file, path), progress_(progress) {}
+      : file_(file, path), progress_(progress), textures_(path) {}
 
   Source read() {
+    check_extensions();
     find_parts();
     const bool has_faces =
         std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.mode != kPoints; });
@@ -111,8 +122,15 @@ class Scene {
       mesh_.colors = {};
     }
     if (has_faces && mesh_.triangles.empty()) {
-      throw InputError("the scene holds no triangles");
+      throw InputError(is_clear_ ? "all triangles of the scene are clear" : "the scene holds no triangles");
     }
+    if (mesh_.texcoords.empty()) {
+      mesh_.surfaces = {};
+    } else {
+      mesh_.texcoords.resize(mesh_.positions.size());
+      mesh_.surface_of.resize(mesh_.triangles.size());
+    }
+    add_notes();
     return mesh_or_points(std::move(mesh_), has_faces ? 1 : 0);
   }
 
@@ -150,9 +168,78 @@ class Scene {
       const json& node = file_.entry("nodes", visit.node);
       const Placing placing = after(visit.placing, placing_of(node, place));
       if (const auto mesh = gltf_number(node, "mesh", place)) {
-        add_mesh(*mesh, placing);
+        add_instances(node, *mesh, placing, place);
       }
       enter(gltf_member(node, "children"), placing, place);
+    }
+  }
+
+  /// Refuses a file that says it means nothing without what is not read here; of looks that is a note.
+  void check_extensions() {
+    static constexpr std::array<std::string_view, 5> kRead{"EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
+                                                           "KHR_texture_transform", "KHR_materials_unlit",
+                                                           "KHR_materials_pbrSpecularGlossiness"};
+    const json* required = gltf_member(file_.root(), "extensionsRequired");
+    std::string first;
+    std::size_t looks = 0;
+    for (std::size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
+      const std::string name = (*required)[i].is_string() ? (*required)[i].get<std::string>() : "";
+      if (std::find(kRead.begin(), kRead.end(), name) != kRead.end()) {
+        continue;
+      }
+      if (name != "KHR_lights_punctual" && !name.starts_with("KHR_materials_") &&
+          name.find("_texture_") == std::string::npos) {
+        throw InputError("the file requires the extension " + tools::quoted(name) + ", which is not read");
+      }
+      first = looks++ == 0 ? tools::quoted(name) : first;
+    }
+    if (looks != 0) {
+      mesh_.notes.push_back("it requires looks that are not drawn: " + first +
+                            (looks == 1 ? "" : " and " + std::to_string(looks - 1) + " more"));
+    }
+  }
+
+  /// A mesh as often as its node says (EXT_mesh_gpu_instancing), which mostly is once.
+  void add_instances(const json& node, std::uint64_t mesh, const Placing& placing, const std::string& place) {
+    const json* extensions = gltf_member(node, "extensions");
+    const json* instances =
+        extensions == nullptr ? nullptr : gltf_member(*extensions, "EXT_mesh_gpu_instancing");
+    const json* attributes = instances == nullptr ? nullptr : gltf_member(*instances, "attributes");
+    if (attributes == nullptr) {
+      add_mesh(mesh, placing);
+      return;
+    }
+    const auto values = [&](const char* name, std::uint32_t components) {
+      const auto number = gltf_number(*attributes, name, place);
+      const GltfAccessor accessor = number ? file_.accessor(*number) : GltfAccessor{};
+      if (number && accessor.components != components) {
+        throw InputError(place + ": " + name + " of its instances has " +
+                         std::to_string(accessor.components) + " components, not " +
+                         std::to_string(components));
+      }
+      return accessor;
+    };
+    const GltfAccessor moves = values("TRANSLATION", 3);
+    const GltfAccessor scales = values("SCALE", 3);
+    const GltfAccessor turns = values("ROTATION", 4);
+    const std::uint64_t count = std::max({moves.count, scales.count, turns.count});
+    for (const GltfAccessor& accessor : {moves, scales, turns}) {
+      if (accessor.components != 0 && accessor.count != count) {
+        throw InputError(place + ": its instances have " + std::to_string(count) + " and " +
+                         std::to_string(accessor.count) + " values");
+      }
+    }
+    const auto take = [](const GltfAccessor& accessor, std::uint64_t i, std::span<double> to) {
+      for (std::uint32_t component = 0; component < accessor.components; ++component) {
+        to[component] = accessor.real(i, component);
+      }
+    };
+    for (std::uint64_t i = 0; i < count; ++i) {
+      Standing standing;
+      take(moves, i, standing.move);
+      take(scales, i, standing.scale);
+      take(turns, i, standing.turn);
+      add_mesh(mesh, after(placing, standing.placing()));
     }
   }
 
@@ -199,9 +286,9 @@ class Scene {
       const auto indices = gltf_number(*part.primitive, "indices", part.place);
       part.corners = part.mode == kPoints ? 0 : (indices ? file_.accessor(*indices).count : part.vertices);
       bytes_ += kPartBytes + part.vertices * kVertexBytes + triangles_of(part) * kTriangleBytes;
-      const std::uint64_t most = 3 * file_.bytes_read() + (std::uint64_t{64} << 20);
-      if (bytes_ > most) {
-        throw InputError("the scene places meshes that take more than the limit of " + std::to_string(most) +
+      if (bytes_ + file_.bytes_made() > file_.most_bytes()) {
+        throw InputError("the scene places meshes that take more than the limit of " +
+                         std::to_string(file_.most_bytes()) +
                          " bytes, three times what the file holds and 64 MB");
       }
       parts_.push_back(std::move(part));
@@ -248,10 +335,37 @@ class Scene {
       }
       mesh_.positions.push_back(world);
     }
-    add_colors(part, attributes);
-    if (part.mode != kPoints) {
-      add_corners(part, first);
+    const Look look = look_of(part);
+    const std::vector<float> alphas = add_colors(part, attributes, look);
+    const bool has_picture = add_texcoords(part, attributes, look);
+    if (part.mode == kPoints) {
+      return;
     }
+    const std::size_t first_triangle = mesh_.triangles.size();
+    add_corners(part, first);
+    if (look.cutoff > 0) {
+      leave_out_clear(look, alphas, first, first_triangle);
+    }
+    if (has_picture) {
+      mesh_.surface_of.resize(first_triangle);
+      mesh_.surface_of.resize(mesh_.triangles.size(), look.surface);
+    }
+  }
+
+  /// Triangles that are clear whatever their picture says.
+  void leave_out_clear(const Look& look, const std::vector<float>& alphas, std::uint32_t first,
+                       std::size_t first_triangle) {
+    const auto is_clear = [&](const std::array<std::uint32_t, 3>& triangle) {
+      double alpha = alphas.empty() ? 3 : 0;
+      for (std::size_t i = 0; !alphas.empty() && i < 3; ++i) {
+        alpha += static_cast<double>(alphas[triangle[i] - first]);
+      }
+      return look.factor[3] * alpha / 3 < look.cutoff;
+    };
+    const auto begin = mesh_.triangles.begin() + static_cast<std::ptrdiff_t>(first_triangle);
+    const auto end = std::remove_if(begin, mesh_.triangles.end(), is_clear);
+    is_clear_ = is_clear_ || end != mesh_.triangles.end();
+    mesh_.triangles.erase(end, mesh_.triangles.end());
   }
 
   void add_corners(const Part& part, std::uint32_t first) {
@@ -284,86 +398,161 @@ class Scene {
     }
   }
 
-  void add_colors(const Part& part, const json& attributes) {
-    std::array<double, 4> factor{1, 1, 1, 1};
-    find_material(part, factor);
-    const auto texture = gltf_number(attributes, uv_name_.c_str(), part.place);
+  /// @return the alpha of each vertex where that counts and vertices have one, else nothing
+  std::vector<float> add_colors(const Part& part, const json& attributes, const Look& look) {
     const auto color = gltf_number(attributes, "COLOR_0", part.place);
-    GltfAccessor corners;
-    GltfAccessor colors;
-    if (!picture_.is_empty() && texture) {
-      corners = file_.accessor(*texture);
-    }
-    if (color) {
-      colors = file_.accessor(*color);
-    }
-    const bool has_picture = corners.components == 2 && corners.count >= part.vertices;
+    const GltfAccessor colors = color ? file_.accessor(*color) : GltfAccessor{};
     const bool has_colors = colors.components >= 3 && colors.count >= part.vertices;
+    std::vector<float> alphas;
     is_colored_ =
-        is_colored_ || has_picture || has_colors || factor[0] != 1 || factor[1] != 1 || factor[2] != 1;
+        is_colored_ || has_colors || look.factor[0] != 1 || look.factor[1] != 1 || look.factor[2] != 1;
     for (std::uint64_t i = 0; i < part.vertices; ++i) {
-      std::array<double, 3> light{factor[0], factor[1], factor[2]};
-      if (has_picture) {
-        const Rgb pixel = picture_.at(corners.real(i, 0), corners.real(i, 1));
-        light = {light[0] * light_of(pixel.r), light[1] * light_of(pixel.g), light[2] * light_of(pixel.b)};
-      }
+      std::array<double, 3> light{look.factor[0], look.factor[1], look.factor[2]};
       for (std::uint32_t channel = 0; has_colors && channel < 3; ++channel) {
         light[channel] *= colors.real(i, channel);
       }
       mesh_.colors.push_back({screen_byte(light[0]), screen_byte(light[1]), screen_byte(light[2])});
-    }
-  }
-
-  /// The base colour of a part, and its picture where there is one; the last picture is kept, since parts of
-  /// one material mostly follow each other.
-  void find_material(const Part& part, std::array<double, 4>& factor) {
-    const auto material = gltf_number(*part.primitive, "material", part.place);
-    const json* surface =
-        material ? gltf_member(file_.entry("materials", *material), "pbrMetallicRoughness") : nullptr;
-    std::optional<std::uint64_t> image;
-    if (surface != nullptr) {
-      const std::string place = "material " + std::to_string(*material);
-      gltf_reals(*surface, "baseColorFactor", factor, place);
-      const json* texture = gltf_member(*surface, "baseColorTexture");
-      if (texture != nullptr && gltf_member(*texture, "index") != nullptr) {
-        uv_name_ = "TEXCOORD_" + std::to_string(gltf_number(*texture, "texCoord", place).value_or(0));
-        image = gltf_number(file_.entry("textures", *gltf_number(*texture, "index", place)), "source", place);
+      if (has_colors && look.cutoff > 0 && colors.components == 4) {
+        alphas.push_back(static_cast<float>(colors.real(i, 3)));
       }
     }
-    if (image != image_) {
-      image_ = image;
-      picture_ = image ? read_picture(*image) : GltfPicture();
+    return alphas;
+  }
+
+  /// @return whether the part has a picture and says where
+  bool add_texcoords(const Part& part, const json& attributes, const Look& look) {
+    const auto texcoord =
+        look.surface == 0 ? std::nullopt : gltf_number(attributes, look.texcoord.c_str(), part.place);
+    const GltfAccessor corners = texcoord ? file_.accessor(*texcoord) : GltfAccessor{};
+    if (corners.components != 2 || corners.count < part.vertices) {
+      return false;
+    }
+    mesh_.texcoords.reserve(mesh_.positions.capacity());
+    mesh_.texcoords.resize(mesh_.positions.size() - static_cast<std::size_t>(part.vertices));
+    for (std::uint64_t i = 0; i < part.vertices; ++i) {
+      const double u = corners.real(i, 0);
+      const double v = corners.real(i, 1);
+      const auto moved = [&](const std::array<double, 3>& row) {
+        return static_cast<float>(row[0] * u + row[1] * v + row[2]);
+      };
+      mesh_.texcoords.push_back({moved(look.moved[0]), moved(look.moved[1])});
+    }
+    return true;
+  }
+
+  /// The look of a part's material; that of the last one is kept.
+  const Look& look_of(const Part& part) {
+    const auto material = gltf_number(*part.primitive, "material", part.place);
+    if (!material) {
+      static const Look kPlain;
+      return kPlain;
+    }
+    const auto known = looks_.find(*material);
+    if (known != looks_.end()) {
+      return known->second;
+    }
+    Look& look = looks_[*material];
+    const std::string place = "material " + std::to_string(*material);
+    const json& entry = file_.entry("materials", *material);
+    const json* extensions = gltf_member(entry, "extensions");
+    const json* glossy =
+        extensions == nullptr ? nullptr : gltf_member(*extensions, "KHR_materials_pbrSpecularGlossiness");
+    const json* surface = glossy != nullptr ? glossy : gltf_member(entry, "pbrMetallicRoughness");
+    const json* texture = nullptr;
+    if (surface != nullptr) {
+      gltf_reals(*surface, glossy != nullptr ? "diffuseFactor" : "baseColorFactor", look.factor, place);
+      texture = gltf_member(*surface, glossy != nullptr ? "diffuseTexture" : "baseColorTexture");
+    }
+    const json* mode = gltf_member(entry, "alphaMode");
+    if (mode != nullptr && *mode == "MASK") {
+      look.cutoff = 0.5;
+      gltf_real(entry, "alphaCutoff", look.cutoff, place);
+    } else if (mode != nullptr && *mode == "BLEND") {
+      look.cutoff = kNearlyClear;
+    }
+    if (texture != nullptr && gltf_member(*texture, "index") != nullptr) {
+      add_texture(*texture, look, place);
+    }
+    return look;
+  }
+
+  void add_texture(const json& info, Look& look, const std::string& place) {
+    std::uint64_t texcoord = gltf_number(info, "texCoord", place).value_or(0);
+    const json* extensions = gltf_member(info, "extensions");
+    const json* transform =
+        extensions == nullptr ? nullptr : gltf_member(*extensions, "KHR_texture_transform");
+    if (transform != nullptr) {
+      std::array<double, 2> offset{};
+      std::array<double, 2> scale{1, 1};
+      double turn = 0;
+      gltf_reals(*transform, "offset", offset, place);
+      gltf_reals(*transform, "scale", scale, place);
+      gltf_real(*transform, "rotation", turn, place);
+      texcoord = gltf_number(*transform, "texCoord", place).value_or(texcoord);
+      const double c = std::cos(turn);
+      const double s = std::sin(turn);
+      look.moved = {{{c * scale[0], s * scale[1], offset[0]}, {-s * scale[0], c * scale[1], offset[1]}}};
+    }
+    look.texcoord = "TEXCOORD_" + std::to_string(texcoord);
+    const json& texture = file_.entry("textures", *gltf_number(info, "index", place));
+    MeshSurface surface;
+    surface.color = picture_of(texture, place);
+    surface.alpha = look.factor[3];
+    surface.cutoff = look.cutoff;
+    if (const auto sampler = gltf_number(texture, "sampler", place)) {
+      const auto wrap = [&](const char* name) {
+        const std::uint64_t mode =
+            gltf_number(file_.entry("samplers", *sampler), name, place).value_or(kRepeat);
+        return mode == kMirror ? Wrap::kMirror : (mode == kClamp ? Wrap::kClamp : Wrap::kRepeat);
+      };
+      surface.wrap_u = wrap("wrapS");
+      surface.wrap_v = wrap("wrapT");
+    }
+    if (surface.color != nullptr) {
+      mesh_.surfaces.resize(std::max<std::size_t>(mesh_.surfaces.size(), 1));  // the first has no picture
+      look.surface = static_cast<std::uint32_t>(mesh_.surfaces.size());
+      mesh_.surfaces.push_back(std::move(surface));
     }
   }
 
-  GltfPicture read_picture(std::uint64_t image) {
-    const std::string place = "image " + std::to_string(image);
-    // So many that decoding takes long are left out with the large ones.
-    constexpr int kMostPictures = 256;
-    const std::uint64_t limit = 2 * file_.bytes_read() + (std::uint64_t{48} << 20);
-    if (++pictures_ > kMostPictures) {
-      return {};
+  std::shared_ptr<const Texture> picture_of(const json& texture, const std::string& place) {
+    const auto image = gltf_number(texture, "source", place);
+    if (!image) {
+      textures_.miss("of " + place, "is of a kind that is not read (KTX2, WebP)");
+      return nullptr;
     }
-    const json& entry = file_.entry("images", image);
-    if (const auto view = gltf_number(entry, "bufferView", place)) {
-      return GltfPicture(file_.buffer_view(*view), limit);
+    const std::string key = "image " + std::to_string(*image);
+    const json& entry = file_.entry("images", *image);
+    if (const auto view = gltf_number(entry, "bufferView", key)) {
+      return textures_.inside("in buffer view " + std::to_string(*view), file_.buffer_view(*view));
     }
     const json* uri = gltf_member(entry, "uri");
     if (uri == nullptr || !uri->is_string()) {
-      return {};
+      return nullptr;
     }
+    const auto& link = uri->get_ref<const std::string&>();
     try {
-      return GltfPicture(file_.link(uri->get_ref<const std::string&>(), place).bytes, limit);
+      return textures_.inside(link.starts_with("data:") ? key : link, file_.link(link, key).bytes);
     } catch (const ShortageError&) {
       throw;
-    } catch (const InputError&) {
-      return {};  // shapes without their pictures are worth having
+    } catch (const InputError& error) {
+      textures_.fault(error.what());  // shapes without their pictures are worth having
+      return nullptr;
     }
   }
 
+  void add_notes() {
+    textures_.add_notes(mesh_.notes);
+    if (file_.count("animations") != 0 || file_.count("skins") != 0) {
+      mesh_.notes.push_back("its animations and skins are not drawn: all stands as it does at rest");
+    }
+  }
+
+  enum : std::uint64_t { kRepeat = 10497, kClamp = 33071, kMirror = 33648 };
+  static constexpr double kNearlyClear = 0.1;
   static constexpr std::uint64_t kPartBytes = 256;
-  static constexpr std::uint64_t kVertexBytes = 27;
-  static constexpr std::uint64_t kTriangleBytes = 12;
+  static constexpr std::uint64_t kVertexBytes = 35;
+  static constexpr std::uint64_t kTriangleBytes = 16;
 
   GltfFile file_;
   const Progress& progress_;
@@ -371,10 +560,9 @@ class Scene {
   std::uint64_t bytes_ = 0;
   TriangleMesh mesh_;
   bool is_colored_ = false;
-  std::optional<std::uint64_t> image_;
-  GltfPicture picture_;
-  std::string uv_name_ = "TEXCOORD_0";
-  int pictures_ = 0;
+  bool is_clear_ = false;  ///< some triangles are
+  Textures textures_;
+  std::map<std::uint64_t, Look> looks_;  ///< by material
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "readers/gltf_file.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -35,6 +36,11 @@ std::uint32_t bytes_of(std::uint32_t component_type) {
     default:
       return 0;
   }
+}
+
+std::uint32_t component_type_of(const json& object, const std::string& place) {
+  const std::uint64_t type = gltf_number(object, "componentType", place).value_or(0);
+  return type <= kF32 ? static_cast<std::uint32_t>(type) : 0;
 }
 
 /// Counts what a parser would make of the text, so that no text is parsed that makes too much.
@@ -165,6 +171,21 @@ void gltf_reals(const json& object, const char* name, std::span<double> values, 
   }
 }
 
+void gltf_real(const json& object, const char* name, double& value, const std::string& place) {
+  const json* member = gltf_member(object, name);
+  if (member == nullptr) {
+    return;
+  }
+  if (!member->is_number()) {
+    throw InputError(place + ": " + name + " is no number");
+  }
+  value = member->get<double>();
+}
+
+std::uint64_t GltfAccessor::element_bytes() const {
+  return std::uint64_t{components} * bytes_of(component_type);
+}
+
 double GltfAccessor::real(std::uint64_t i, std::uint32_t component) const {
   const std::uint32_t size = bytes_of(component_type);
   ByteReader reader(
@@ -195,7 +216,8 @@ std::uint32_t GltfAccessor::index(std::uint64_t i) const {
   return size == 1 ? reader.u8() : (size == 2 ? reader.u16() : reader.u32());
 }
 
-GltfFile::GltfFile(const SharedBytes& file, const std::string& path) : file_(file), path_(path) {
+GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
+    : file_(file), path_(path), bytes_read_(file.bytes.size()) {
   if (!looks_like_gltf(file.bytes)) {
     throw InputError(
         "is no glTF file: it begins neither with \"glTF\" nor with a JSON object that names its asset");
@@ -250,15 +272,17 @@ const json& GltfFile::entry(const char* name, std::uint64_t i) const {
   return found;
 }
 
-SharedBytes GltfFile::link(const std::string& uri, const std::string& place) const {
+SharedBytes GltfFile::link(const std::string& uri, const std::string& place) {
   if (uri.starts_with("data:")) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string::npos || uri.substr(0, comma).find(";base64") == std::string::npos) {
       throw InputError(place + ": its data link is not base64");
     }
-    return SharedBytes::own(decode_base64(std::string_view(uri).substr(comma + 1), place));
+    SharedBytes bytes = SharedBytes::own(decode_base64(std::string_view(uri).substr(comma + 1), place));
+    bytes_read_ += bytes.bytes.size();
+    return bytes;
   }
-  const std::filesystem::path relative = decode_percent(uri);
+  const std::filesystem::path relative = std::filesystem::path(decode_percent(uri)).lexically_normal();
   bool leaves = relative.empty() || relative.is_absolute() || uri.find("://") != std::string::npos ||
                 path_.empty() || uri.find('\0') != std::string::npos;
   for (const std::filesystem::path& part : relative) {
@@ -267,21 +291,20 @@ SharedBytes GltfFile::link(const std::string& uri, const std::string& place) con
   if (leaves) {
     throw InputError(place + ": its link " + tools::quoted(uri) + " is no file in the folder of this one");
   }
+  const auto found = beside_.find(relative.string());
+  if (found != beside_.end()) {
+    return found->second;
+  }
   try {
-    return share(load_file((std::filesystem::path(path_).parent_path() / relative).string()));
+    SharedBytes bytes =
+        share(load_regular_file((std::filesystem::path(path_).parent_path() / relative).string()));
+    bytes_read_ += bytes.bytes.size();
+    return beside_.emplace(relative.string(), std::move(bytes)).first->second;
   } catch (const ShortageError& error) {
     throw ShortageError(place + ": the file " + tools::quoted(uri) + " beside this one " + error.what());
   } catch (const InputError& error) {
     throw InputError(place + ": the file " + tools::quoted(uri) + " beside this one " + error.what());
   }
-}
-
-std::uint64_t GltfFile::bytes_read() const {
-  std::uint64_t sum = file_.bytes.size();
-  for (const auto& [i, bytes] : buffers_) {
-    sum += bytes.bytes.size();
-  }
-  return sum;
 }
 
 std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
@@ -321,34 +344,11 @@ std::span<const std::uint8_t> GltfFile::buffer_view(std::uint64_t i) {
   return whole.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
 
-GltfAccessor GltfFile::accessor(std::uint64_t i) {
-  const std::string place = "accessor " + std::to_string(i);
-  const json& entry = this->entry("accessors", i);
-  const auto view = gltf_number(entry, "bufferView", place);
-  if (!view || gltf_member(entry, "sparse") != nullptr) {
-    throw InputError(place + ": it is sparse, compressed or empty, which is not read");
-  }
-  static constexpr std::array<std::pair<std::string_view, std::uint32_t>, 4> kTypes{
-      {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}}};
-  GltfAccessor accessor;
-  const json* type = gltf_member(entry, "type");
-  for (const auto& [name, components] : kTypes) {
-    if (type != nullptr && type->is_string() && type->get_ref<const std::string&>() == name) {
-      accessor.components = components;
-    }
-  }
-  const std::uint64_t component_type = gltf_number(entry, "componentType", place).value_or(0);
-  accessor.component_type = component_type <= kF32 ? static_cast<std::uint32_t>(component_type) : 0;
-  const std::uint64_t element = std::uint64_t{accessor.components} * bytes_of(accessor.component_type);
-  if (element == 0) {
-    throw InputError(place + ": its type or componentType is missing or none of numbers and vectors");
-  }
-  const json* normalized = gltf_member(entry, "normalized");
-  accessor.normalized = normalized != nullptr && normalized->is_boolean() && normalized->get<bool>();
-  accessor.count = gltf_number(entry, "count", place).value_or(0);
-  accessor.stride = gltf_number(this->entry("bufferViews", *view), "byteStride", place).value_or(element);
-  const std::uint64_t offset = gltf_number(entry, "byteOffset", place).value_or(0);
-  const auto bytes = buffer_view(*view);
+void GltfFile::lay(GltfAccessor& accessor, std::uint64_t view, std::uint64_t offset,
+                   const std::string& place) {
+  const std::uint64_t element = accessor.element_bytes();
+  accessor.stride = gltf_number(entry("bufferViews", view), "byteStride", place).value_or(element);
+  const auto bytes = buffer_view(view);
   const bool fits =
       offset <= bytes.size() && accessor.stride >= element && accessor.stride <= 65535 &&
       (accessor.count == 0 || (element <= bytes.size() - offset &&
@@ -360,6 +360,89 @@ GltfAccessor GltfFile::accessor(std::uint64_t i) {
                      std::to_string(bytes.size()));
   }
   accessor.bytes = bytes.subspan(static_cast<std::size_t>(offset));
+}
+
+std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor& accessor,
+                                             const json* sparse) {
+  const auto known = made_.find(i);
+  if (known != made_.end()) {
+    return known->second;
+  }
+  const std::string place = "accessor " + std::to_string(i);
+  const auto element = static_cast<std::size_t>(accessor.element_bytes());
+  if (accessor.count > (most_bytes() - std::min(most_bytes(), bytes_made_)) / element) {
+    throw InputError(place + ": " + std::to_string(accessor.count) +
+                     " sparse values take more than the limit of " + std::to_string(most_bytes()) +
+                     " bytes, three times what the file holds and 64 MB");
+  }
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(accessor.count) * element);
+  const auto set = [&](std::uint64_t to, const GltfAccessor& from, std::uint64_t k) {
+    std::copy_n(from.bytes.begin() + static_cast<std::ptrdiff_t>(k * from.stride), element,
+                bytes.begin() + static_cast<std::ptrdiff_t>(to * element));
+  };
+  for (std::uint64_t k = 0; !accessor.bytes.empty() && k < accessor.count; ++k) {
+    set(k, accessor, k);
+  }
+  if (sparse != nullptr) {
+    const json* where = gltf_member(*sparse, "indices");
+    const json* what = gltf_member(*sparse, "values");
+    const auto index_view = where == nullptr ? std::nullopt : gltf_number(*where, "bufferView", place);
+    const auto value_view = what == nullptr ? std::nullopt : gltf_number(*what, "bufferView", place);
+    GltfAccessor indices;
+    indices.components = 1;
+    indices.count = gltf_number(*sparse, "count", place).value_or(0);
+    indices.component_type = where == nullptr ? 0 : component_type_of(*where, place);
+    const bool is_unsigned =
+        indices.component_type == kU8 || indices.component_type == kU16 || indices.component_type == kU32;
+    if (!index_view || !value_view || !is_unsigned) {
+      throw InputError(place + ": its sparse values lack their indices or themselves");
+    }
+    GltfAccessor values = accessor;
+    values.count = indices.count;
+    lay(indices, *index_view, gltf_number(*where, "byteOffset", place).value_or(0), place);
+    lay(values, *value_view, gltf_number(*what, "byteOffset", place).value_or(0), place);
+    for (std::uint64_t k = 0; k < indices.count; ++k) {
+      const std::uint32_t index = indices.index(k);
+      if (index >= accessor.count) {
+        throw InputError(place + ": its sparse value " + std::to_string(k) + " has the index " +
+                         std::to_string(index) + ", which is not one of its " +
+                         std::to_string(accessor.count));
+      }
+      set(index, values, k);
+    }
+  }
+  bytes_made_ += bytes.size();
+  return made_.emplace(i, std::move(bytes)).first->second;
+}
+
+GltfAccessor GltfFile::accessor(std::uint64_t i) {
+  const std::string place = "accessor " + std::to_string(i);
+  const json& entry = this->entry("accessors", i);
+  static constexpr std::array<std::pair<std::string_view, std::uint32_t>, 4> kTypes{
+      {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}}};
+  GltfAccessor accessor;
+  const json* type = gltf_member(entry, "type");
+  for (const auto& [name, components] : kTypes) {
+    if (type != nullptr && type->is_string() && type->get_ref<const std::string&>() == name) {
+      accessor.components = components;
+    }
+  }
+  accessor.component_type = component_type_of(entry, place);
+  if (accessor.element_bytes() == 0) {
+    throw InputError(place + ": its type or componentType is missing or none of numbers and vectors");
+  }
+  const json* normalized = gltf_member(entry, "normalized");
+  accessor.normalized = normalized != nullptr && normalized->is_boolean() && normalized->get<bool>();
+  accessor.count = gltf_number(entry, "count", place).value_or(0);
+  const auto view = gltf_number(entry, "bufferView", place);
+  const json* sparse = gltf_member(entry, "sparse");
+  if (view) {
+    lay(accessor, *view, gltf_number(entry, "byteOffset", place).value_or(0), place);
+  }
+  if (sparse != nullptr || !view) {  // without a view: zeros
+    accessor.bytes = make(i, accessor, sparse);
+    accessor.stride = accessor.element_bytes();
+  }
   return accessor;
 }
 

@@ -24,6 +24,8 @@ struct GltfAccessor {
   std::uint32_t components = 0;
   bool normalized = false;
 
+  /// Of one vector; 0 where the type is none.
+  std::uint64_t element_bytes() const;
   /// A component as a number; normalised integers become 0 to 1 or -1 to 1.
   double real(std::uint64_t i, std::uint32_t component) const;
   /// A component of an unsigned type.
@@ -43,19 +45,31 @@ class GltfFile {
 
   GltfAccessor accessor(std::uint64_t i);
   std::span<const std::uint8_t> buffer_view(std::uint64_t i);
-  /// The bytes behind a link: `data:` or a file beside this one.
-  SharedBytes link(const std::string& uri, const std::string& place) const;
+  /// The bytes behind a link: `data:` or a file beside this one, which is read once however often it is named.
+  SharedBytes link(const std::string& uri, const std::string& place);
   /// The file and what it loaded.
-  std::uint64_t bytes_read() const;
+  std::uint64_t bytes_read() const { return bytes_read_; }
+  /// What accessors take that no buffer holds as they are: sparse ones.
+  std::uint64_t bytes_made() const { return bytes_made_; }
+  /// What all that is made of the file may take: three times what was read, and 64 MB.
+  std::uint64_t most_bytes() const { return 3 * bytes_read_ + (std::uint64_t{64} << 20); }
 
  private:
   std::span<const std::uint8_t> buffer(std::uint64_t i);
+  /// Sets stride and bytes of `accessor` to those of a view from `offset` on.
+  void lay(GltfAccessor& accessor, std::uint64_t view, std::uint64_t offset, const std::string& place);
+  /// The values of a sparse accessor written out; `accessor` is laid on those that it changes, or on nothing.
+  std::span<const std::uint8_t> make(std::uint64_t i, const GltfAccessor& accessor,
+                                     const nlohmann::json* sparse);
 
   SharedBytes file_;
   std::string path_;
   nlohmann::json json_;
   std::optional<SharedBytes> binary_;  ///< of a .glb
   std::map<std::uint64_t, SharedBytes> buffers_;
+  std::map<std::string, SharedBytes> beside_;                ///< by name
+  std::map<std::uint64_t, std::vector<std::uint8_t>> made_;  ///< by accessor
+  std::uint64_t bytes_read_ = 0, bytes_made_ = 0;
 };
 
 /// The member `name` of `object` as a whole number; nothing where there is none.
@@ -64,6 +78,8 @@ std::optional<std::uint64_t> gltf_number(const nlohmann::json& object, const cha
 /// As reals; `values` stays as it is where there is no such member. @throws InputError  not that many numbers
 void gltf_reals(const nlohmann::json& object, const char* name, std::span<double> values,
                 const std::string& place);
+/// One of them.
+void gltf_real(const nlohmann::json& object, const char* name, double& value, const std::string& place);
 /// The member `name`, or null.
 const nlohmann::json* gltf_member(const nlohmann::json& object, const char* name);
 

@@ -331,6 +331,14 @@ SharedBytes share(FileBytes bytes) {
   return {kept->bytes(), kept};
 }
 
+FileBytes load_regular_file(const std::string& path, std::uint64_t limit_bytes) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
+    throw InputError("is no regular file");
+  }
+  return load_file(path, limit_bytes);
+}
+
 FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
   limit_bytes = std::clamp<std::uint64_t>(limit_bytes, 1, SIZE_MAX - 1);
   const Descriptor file(path);

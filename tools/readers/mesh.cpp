@@ -46,6 +46,7 @@ double turn(const Point2& a, const Point2& b, const Point2& c) {
 /// One polygon, seen along the longest component of its normal so that it runs to the left.
 struct FlatPolygon {
   std::vector<std::uint32_t> corners;
+  std::vector<std::uint32_t> texcoords;  ///< one a corner, or empty
   std::vector<Point2> points;
 
   void see(const std::vector<std::array<double, 3>>& positions) {
@@ -92,20 +93,29 @@ struct FlatPolygon {
   }
   void remove(std::size_t i) {
     corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!texcoords.empty()) {
+      texcoords.erase(texcoords.begin() + static_cast<std::ptrdiff_t>(i));
+    }
     points.erase(points.begin() + static_cast<std::ptrdiff_t>(i));
   }
 };
 
 }  // namespace
 
-void Polygons::add(std::uint32_t corner) {
+void Polygons::add(std::uint32_t corner, std::uint32_t texcoord) {
   if (corners_ >= 2) {
     continues_.resize(mesh_.triangles.size());
     continues_.push_back(corners_ > 2);
+    if (texcoord != kNoTexcoord || !mesh_.texcoord_corners.empty()) {
+      mesh_.texcoord_corners.resize(mesh_.triangles.size(), {kNoTexcoord, kNoTexcoord, kNoTexcoord});
+      mesh_.texcoord_corners.push_back({first_texcoord_, last_texcoord_, texcoord});
+    }
     mesh_.triangles.push_back({first_, last_, corner});
   }
   first_ = corners_ == 0 ? corner : first_;
+  first_texcoord_ = corners_ == 0 ? texcoord : first_texcoord_;
   last_ = corner;
+  last_texcoord_ = texcoord;
   ++corners_;
 }
 
@@ -123,6 +133,13 @@ void Polygons::cut_ears() {
     for (std::size_t i = first; i < end; ++i) {
       polygon.corners.push_back(mesh_.triangles[i][2]);
     }
+    polygon.texcoords.clear();
+    if (end <= mesh_.texcoord_corners.size()) {
+      polygon.texcoords = {mesh_.texcoord_corners[first][0], mesh_.texcoord_corners[first][1]};
+      for (std::size_t i = first; i < end; ++i) {
+        polygon.texcoords.push_back(mesh_.texcoord_corners[i][2]);
+      }
+    }
     polygon.see(mesh_.positions);
     if (polygon.is_convex()) {
       continue;
@@ -136,11 +153,40 @@ void Polygons::cut_ears() {
           break;
         }
       }
-      mesh_.triangles[at] = {polygon.corners[ear == 0 ? count - 1 : ear - 1], polygon.corners[ear],
-                             polygon.corners[ear + 1 == count ? 0 : ear + 1]};
+      const std::array<std::size_t, 3> kept{ear == 0 ? count - 1 : ear - 1, ear,
+                                            ear + 1 == count ? 0 : ear + 1};
+      for (std::size_t i = 0; i < 3; ++i) {
+        mesh_.triangles[at][i] = polygon.corners[kept[i]];
+        if (!polygon.texcoords.empty()) {
+          mesh_.texcoord_corners[at][i] = polygon.texcoords[kept[i]];
+        }
+      }
       polygon.remove(ear);
     }
   }
+}
+
+void check_texcoords(TriangleMesh& mesh) {
+  const bool has_picture = std::any_of(
+      mesh.surfaces.begin(), mesh.surfaces.end(),
+      [](const MeshSurface& surface) { return surface.color != nullptr || surface.opacity != nullptr; });
+  if (!has_picture || mesh.texcoords.empty()) {
+    mesh.surfaces = {};
+    mesh.surface_of = {};
+    mesh.texcoords = {};
+    mesh.texcoord_corners = {};
+    return;
+  }
+  if (!mesh.texcoord_corners.empty()) {
+    mesh.texcoord_corners.resize(mesh.triangles.size(), {kNoTexcoord, kNoTexcoord, kNoTexcoord});
+  }
+  for (auto& corners : mesh.texcoord_corners) {
+    if (std::any_of(corners.begin(), corners.end(),
+                    [&](std::uint32_t number) { return number >= mesh.texcoords.size(); })) {
+      corners.fill(kNoTexcoord);
+    }
+  }
+  mesh.surface_of.resize(mesh.triangles.size());
 }
 
 void TriangleStrip::add(std::uint32_t corner) {

@@ -22,7 +22,7 @@ class Polygons {
  public:
   explicit Polygons(TriangleMesh& mesh) : mesh_(mesh) {}
   void begin() { corners_ = 0; }
-  void add(std::uint32_t corner);
+  void add(std::uint32_t corner, std::uint32_t texcoord = kNoTexcoord);
   /// Once all positions are there: cuts the polygons that are not convex by their ears. Polygons of more than
   /// `kMostEarCorners` corners stay fans, and so does what has no ear, for it crosses itself.
   void cut_ears();
@@ -32,7 +32,11 @@ class Polygons {
   std::vector<bool> continues_;  ///< of a triangle: it belongs to the polygon of the one before
   std::uint64_t corners_ = 0;
   std::uint32_t first_ = 0, last_ = 0;
+  std::uint32_t first_texcoord_ = 0, last_texcoord_ = 0;
 };
+/// Takes the texture coordinates from triangles that have some and not others, or numbers of none; and the pictures
+/// from a mesh that has no coordinates or of whose pictures none is there.
+void check_texcoords(TriangleMesh& mesh);
 /// An ear is found among so many corners by trying all of them.
 inline constexpr std::size_t kMostEarCorners = 512;
 

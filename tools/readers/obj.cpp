@@ -12,6 +12,7 @@
 #include <system_error>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "readers/mesh.h"
 #include "readers/obj_materials.h"
@@ -28,8 +29,10 @@ static_assert(std::is_same_v<tinyobj::real_t, double>, "link tinyobjloader::tiny
 /// back from the parser can ask which statement it is about.
 class StatementBuffer final : public std::streambuf {
  public:
-  StatementBuffer(std::string_view text, const Progress& progress, ObjMaterials& materials)
-      : lines_(text), meter_(progress, text.size()), materials_(materials) {}
+  /// @param texcoords  is given what `vt` statements say
+  StatementBuffer(std::string_view text, const Progress& progress, ObjMaterials& materials,
+                  std::vector<std::array<float, 2>>& texcoords)
+      : lines_(text), meter_(progress, text.size()), materials_(materials), texcoords_(texcoords) {}
 
   /// The current statement's words after `v` or `f`.
   std::string_view arguments() const { return std::string_view(statement_).substr(1, statement_.size() - 2); }
@@ -51,6 +54,12 @@ class StatementBuffer final : public std::streambuf {
         materials_.use(rest);
       } else if (keyword == "mtllib") {
         materials_.add_library(rest);
+      } else if (keyword == "vt") {
+        std::array<double, 2> place{};
+        for (double& coordinate : place) {
+          parse_number(take_word(rest), coordinate);  // stays 0 where it is none
+        }
+        texcoords_.push_back({static_cast<float>(place[0]), static_cast<float>(1 - place[1])});
       }
       if (is_wanted) {
         statement_.assign(keyword);
@@ -88,6 +97,7 @@ class StatementBuffer final : public std::streambuf {
   LineReader lines_;
   ProgressMeter meter_;
   ObjMaterials& materials_;
+  std::vector<std::array<float, 2>>& texcoords_;
   std::string statement_;
   std::uint64_t first_line_ = 0;
 };
@@ -108,7 +118,7 @@ std::array<std::size_t, 2> count_statements(std::string_view text) {
 class ObjParser {
  public:
   ObjParser(std::string_view text, const std::string& path, const Progress& progress)
-      : path_(path), buffer_(text, progress, materials_) {
+      : path_(path), buffer_(text, progress, materials_, mesh_.texcoords) {
     const auto [vertices, faces] = count_statements(text);
     mesh_.positions.reserve(vertices);
     mesh_.triangles.reserve(faces);
@@ -136,9 +146,11 @@ class ObjParser {
       mesh_.colors = {};
     }
     polygons_.cut_ears();
-    if (mesh_.colors.empty()) {
-      materials_.color_faces(path_, mesh_);
+    if (mesh_.texcoord_corners.empty()) {
+      mesh_.texcoords = {};  // no face has any
     }
+    materials_.color_faces(path_, mesh_);
+    check_texcoords(mesh_);
     return mesh_or_points(std::move(mesh_), face_count_);
   }
 
@@ -201,9 +213,16 @@ class ObjParser {
         highest_index_ = static_cast<std::uint64_t>(index);
         highest_line_ = buffer_.line();
       }
-      polygons_.add(static_cast<std::uint32_t>(index));
+      polygons_.add(static_cast<std::uint32_t>(index), texcoord_of(indices[i].texcoord_index));
     }
     materials_.take_triangles(first_triangle, mesh_.triangles.size());
+  }
+
+  /// The number of a texture coordinate that is written as `written`; there may be more of them behind the face.
+  std::uint32_t texcoord_of(std::int64_t written) const {
+    const auto count = static_cast<std::int64_t>(mesh_.texcoords.size());
+    const std::int64_t number = written > 0 ? written - 1 : count + written;
+    return written == 0 || number < 0 ? kNoTexcoord : static_cast<std::uint32_t>(number);
   }
 
   /// The parser takes "x" for 0 and 4294967297 for 1; holds the fields of all corners to be integers.
@@ -235,8 +254,8 @@ class ObjParser {
 
   const std::string& path_;
   ObjMaterials materials_;
-  StatementBuffer buffer_;
   TriangleMesh mesh_;
+  StatementBuffer buffer_;
   Polygons polygons_{mesh_};
   bool all_colored_ = true;
   std::uint64_t face_count_ = 0;

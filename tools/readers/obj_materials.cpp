@@ -8,32 +8,50 @@
 #include "readers/file_bytes.h"
 #include "readers/mesh.h"
 #include "readers/text.h"
+#include "readers/texture.h"
 
 namespace thimble::tools {
-namespace {
-
-/// With none. More names than a file's faces can tell apart would take many times its bytes.
-constexpr std::uint32_t kMostMaterials = 65536;
 
 struct ObjMaterial {
   bool is_described = false;
   std::optional<Rgb> color;
   double opacity = 1;
-  bool has_picture = false;
+  std::string picture, opacity_picture;  ///< names from the file's folder, or empty
+  bool clamps = false;
 };
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) {
-    text.remove_prefix(1);
+namespace {
+
+/// With none. More names than a file's faces can tell apart would take many times its bytes.
+constexpr std::uint32_t kMostMaterials = 65536;
+constexpr std::size_t kMostLibraries = 64;
+
+/// The picture of a `map_` statement: what is left behind its options is a name, which may hold blanks.
+std::string_view picture_name(std::string_view line, bool* clamps) {
+  for (;;) {
+    std::string_view rest = line;
+    const std::string_view option = take_word(rest);
+    if (!option.starts_with('-') || option.size() < 2) {
+      return trimmed(line);
+    }
+    const bool has_numbers = option == "-o" || option == "-s" || option == "-t";
+    for (int words = has_numbers ? 3 : (option == "-mm" ? 2 : 1); words > 0; --words) {
+      std::string_view behind = rest;
+      const std::string_view word = take_word(behind);
+      double number = 0;
+      if (has_numbers && parse_number(word, number) != NumberKind::kFinite) {
+        break;
+      }
+      *clamps = *clamps || (option == "-clamp" && word == "on");
+      rest = behind;
+    }
+    line = rest;
   }
-  while (!text.empty() && is_space(text.back())) {
-    text.remove_suffix(1);
-  }
-  return text;
 }
 
-/// Reads what `text` says of the materials that have a number.
-void read_library(std::string_view text, const std::unordered_map<std::string, std::uint32_t>& numbers,
+/// Reads what `text`, a library in `folder`, says of the materials that have a number.
+void read_library(std::string_view text, const std::string& folder,
+                  const std::unordered_map<std::string, std::uint32_t>& numbers,
                   std::vector<ObjMaterial>& materials) {
   LineReader lines(text);
   ObjMaterial unused;  // what stands before the first material, or is of one that no face has
@@ -45,8 +63,11 @@ void read_library(std::string_view text, const std::unordered_map<std::string, s
       const auto found = numbers.find(std::string(trimmed(line)));
       material = found == numbers.end() || found->second == 0 ? &unused : &materials[found->second];
       material->is_described = true;
-    } else if (word == "map_Kd") {
-      material->has_picture = true;
+    } else if (word == "map_Kd" || word == "map_d") {
+      const std::string_view name = picture_name(line, &material->clamps);
+      const bool is_whole = name.empty() || name.starts_with('/') || name.starts_with('\\');
+      (word == "map_d" ? material->opacity_picture : material->picture) =
+          (is_whole ? "" : folder) + std::string(name);
     } else if (word == "Kd") {
       std::array<double, 3> color{};
       bool is_color = true;
@@ -65,7 +86,6 @@ void read_library(std::string_view text, const std::unordered_map<std::string, s
 }  // namespace
 
 void ObjMaterials::add_library(std::string_view name) {
-  constexpr std::size_t kMostLibraries = 64;
   const std::string_view found = trimmed(name);
   if (!found.empty() && libraries_.size() < kMostLibraries &&
       std::find(libraries_.begin(), libraries_.end(), found) == libraries_.end()) {
@@ -91,68 +111,125 @@ void ObjMaterials::take_triangles(std::size_t first, std::size_t end) {
   }
 }
 
+struct ObjMaterials::Described {
+  std::vector<ObjMaterial> materials;
+  bool is_read = false;
+};
+
+void ObjMaterials::read_libraries(const std::string& path, const std::string& line, Described& described,
+                                  Notes& notes) const {
+  const auto read = [&](const std::string& name) {
+    std::string slashed = name;
+    std::replace(slashed.begin(), slashed.end(), '\\', '/');
+    try {
+      const FileBytes file = load_regular_file(
+          slashed.starts_with('/') ? slashed : path.substr(0, path.rfind('/') + 1) + slashed);
+      read_library(file.text(), slashed.substr(0, slashed.rfind('/') + 1), numbers_, described.materials);
+      described.is_read = true;
+      return std::string();
+    } catch (const ShortageError&) {
+      throw;
+    } catch (const InputError& error) {
+      return "the materials of " + tools::quoted(name) + " beside it are not drawn: it " + error.what();
+    }
+  };
+  constexpr std::string_view kBetween = ".mtl ";
+  std::string fault = read(line);
+  std::string_view rest = line;
+  for (std::size_t i = 0;
+       !fault.empty() && rest.find(kBetween) != std::string_view::npos && i < kMostLibraries; ++i) {
+    const std::size_t end = rest.find(kBetween) + kBetween.size();
+    if (std::string missing = read(std::string(trimmed(rest.substr(0, end)))); !missing.empty()) {
+      notes.push_back(std::move(missing));
+    }
+    rest = trimmed(rest.substr(end));
+    fault = rest.find(kBetween) == std::string_view::npos ? read(std::string(rest)) : fault;
+  }
+  if (!fault.empty()) {
+    notes.push_back(std::move(fault));
+  }
+}
+
 void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) const {
   if (of_triangle_.empty()) {
     return;
   }
-  std::vector<ObjMaterial> used(numbers_.size());
-  bool is_read = false;
+  Described described;
+  std::vector<ObjMaterial>& used = described.materials;
+  used.resize(numbers_.size());
   for (const std::string& name : path.empty() ? std::vector<std::string>() : libraries_) {
-    std::string slashed = name;
-    std::replace(slashed.begin(), slashed.end(), '\\', '/');
-    try {
-      const FileBytes file =
-          load_file(slashed.starts_with('/') ? slashed : path.substr(0, path.rfind('/') + 1) + slashed);
-      read_library(file.text(), numbers_, used);
-      is_read = true;
-    } catch (const ShortageError&) {
-      throw;
-    } catch (const InputError& error) {
-      mesh.notes.push_back("the materials of " + quoted(name) + " beside it are not drawn: it " +
-                           error.what());
-    }
-  }
-  std::size_t missing = 0;
-  std::size_t pictures = 0;
-  bool has_color = false;
-  for (std::size_t i = 1; i < used.size(); ++i) {
-    missing += used[i].is_described ? 0U : 1U;
-    pictures += used[i].has_picture ? 1U : 0U;
-    has_color = has_color || used[i].color;
+    read_libraries(path, name, described, mesh.notes);
   }
   const auto count = [](std::size_t number, const char* one, const char* more) {
     return std::to_string(number) + (number == 1 ? one : more);
   };
-  if (missing != 0 && is_read) {
+  Textures textures(path);
+  mesh.surfaces.resize(used.size());
+  std::size_t missing = 0;
+  bool has_picture = false;
+  bool has_color = false;
+  for (std::size_t i = 1; i < used.size(); ++i) {
+    missing += used[i].is_described ? 0U : 1U;
+    has_color = has_color || used[i].color;
+    MeshSurface& surface = mesh.surfaces[i];
+    surface.wrap_u = surface.wrap_v = used[i].clamps ? Wrap::kClamp : Wrap::kRepeat;
+    const auto picture = [&](const std::string& named, bool is_opacity) -> std::shared_ptr<const Texture> {
+      if (!named.empty() && mesh.texcoords.empty()) {
+        textures.miss(named, "has no place, for no face has texture coordinates");
+      }
+      return named.empty() || mesh.texcoords.empty() ? nullptr : textures.beside(named, is_opacity);
+    };
+    surface.color = picture(used[i].picture, false);
+    surface.opacity = picture(used[i].opacity_picture, true);
+    surface.cutoff = surface.opacity != nullptr ? 0.5 : 0;
+    has_picture = has_picture || surface.color != nullptr || surface.opacity != nullptr;
+    // Some programs write no light at all where a picture says it.
+    if (surface.color != nullptr && used[i].color == Rgb{0, 0, 0}) {
+      used[i].color = Rgb{};
+    }
+  }
+  textures.add_notes(mesh.notes);
+  const bool has_others = !mesh.colors.empty() && !has_picture;  // vertices' colours, which are drawn
+  if (missing != 0 && described.is_read && !has_others) {
     mesh.notes.push_back(count(missing, " material has", " materials have") + " no description and no color");
-  } else if (missing != 0 && libraries_.empty()) {
+  } else if (missing != 0 && libraries_.empty() && !has_others) {
     mesh.notes.push_back("its materials are not drawn: no file is named that describes them (mtllib)");
   }
   if (has_more_) {
     mesh.notes.push_back("materials behind the first " + std::to_string(kMostMaterials - 1) +
                          " are not drawn");
   }
-  if (pictures != 0) {
-    mesh.notes.push_back(
-        count(pictures, " material's picture (map_Kd) is", " materials' pictures (map_Kd) are") +
-        " not drawn");
+  if (has_picture) {
+    mesh.colors = {};
   }
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  triangles.reserve(mesh.triangles.size());
+  const bool colors_faces = has_picture || (has_color && mesh.colors.empty());
+  const bool has_corners = !mesh.texcoord_corners.empty();
+  if (has_corners) {
+    mesh.texcoord_corners.resize(mesh.triangles.size(), {kNoTexcoord, kNoTexcoord, kNoTexcoord});
+  }
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const ObjMaterial& material = used[i < of_triangle_.size() ? of_triangle_[i] : 0];
-    if (material.opacity <= 0) {
+    const std::uint32_t number = i < of_triangle_.size() ? of_triangle_[i] : 0;
+    if (used[number].opacity <= 0) {
       continue;
     }
-    triangles.push_back(mesh.triangles[i]);
-    if (has_color) {
-      mesh.face_colors.push_back(material.color.value_or(Rgb{}));
+    mesh.triangles[kept] = mesh.triangles[i];
+    if (has_corners) {
+      mesh.texcoord_corners[kept] = mesh.texcoord_corners[i];
     }
+    if (colors_faces) {
+      mesh.face_colors.push_back(used[number].color.value_or(Rgb{}));
+    }
+    if (has_picture) {
+      mesh.surface_of.push_back(number);
+    }
+    ++kept;
   }
-  if (triangles.size() < mesh.triangles.size()) {
-    mesh.notes.push_back(count(mesh.triangles.size() - triangles.size(), " triangle is", " triangles are") +
+  if (kept < mesh.triangles.size()) {
+    mesh.notes.push_back(count(mesh.triangles.size() - kept, " triangle is", " triangles are") +
                          " wholly clear (d 0) and left out");
-    mesh.triangles = std::move(triangles);
+    mesh.triangles.resize(kept);
+    mesh.texcoord_corners.resize(has_corners ? kept : 0);
   }
 }
 

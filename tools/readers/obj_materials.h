@@ -1,5 +1,5 @@
 /// @file obj_materials.h
-/// The materials of `.obj` files: `.mtl`, of which `Kd` and `d` are read. Internal to the `.obj` reader.
+/// The materials of `.obj` files: `.mtl`, of which `Kd`, `d`, `map_Kd` and `map_d` are read. Internal to the `.obj` reader.
 #ifndef THIMBLE_TOOLS_READERS_OBJ_MATERIALS_H
 #define THIMBLE_TOOLS_READERS_OBJ_MATERIALS_H
 
@@ -23,12 +23,18 @@ class ObjMaterials {
   /// Triangles `first` to `end` - 1 have the material in use.
   void take_triangles(std::size_t first, std::size_t end);
 
-  /// Opens the libraries beside `path` and colours the faces of `mesh`; faces that are clear are left out. Nothing
-  /// where no material has a colour. Adds the notes of what is missing and what is not drawn.
+  /// Opens the libraries beside `path` and colours the faces of `mesh`, which gets surfaces with pictures; faces that
+  /// are clear are left out. Nothing where no material has a colour. Where vertices have colours, these stay unless
+  /// there is a picture. Adds the notes of what is missing and what is not drawn.
   /// @throws ShortageError  no descriptors or memory left to open a library
   void color_faces(const std::string& path, TriangleMesh& mesh) const;
 
  private:
+  struct Described;
+  /// Reads the library that `line` names, or, where there is none, the several.
+  void read_libraries(const std::string& path, const std::string& line, Described& described,
+                      Notes& notes) const;
+
   std::vector<std::string> libraries_;
   std::unordered_map<std::string, std::uint32_t> numbers_{{"", 0}};  ///< of the materials used; 0 is none
   bool has_more_ = false;

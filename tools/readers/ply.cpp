@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,278 +14,23 @@
 
 #include "readers/color_scale.h"
 #include "readers/mesh.h"
+#include "readers/ply_header.h"
 #include "readers/text.h"
+#include "readers/texture.h"
 
 namespace thimble::tools {
 
 namespace {
 
-enum class PlyEncoding : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
-enum class Scalar : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-
-/// What a property is to us. The first seven are positions in an array of a vertex's values.
-enum class Role : std::uint8_t { kX, kY, kZ, kRed, kGreen, kBlue, kOpacity, kIndices, kUnused };
-constexpr std::size_t kVertexValues = 7;
-
-enum class ElementKind : std::uint8_t { kVertex, kFace, kStrips, kOther };
-
-struct Property {
-  Scalar type = Scalar::kInt8;
-  Scalar count_type = Scalar::kUint8;  ///< of a list
-  bool is_list = false;
-  Role role = Role::kUnused;
-  bool is_harmonic = false;  ///< a Gaussian splat's mean colour, as the first of its spherical harmonics
-};
-
-struct Element {
-  std::string name;
-  ElementKind kind = ElementKind::kOther;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-};
-
-struct PlyHeader {
-  PlyEncoding encoding = PlyEncoding::kAscii;
-  std::vector<Element> elements;
-  std::size_t body_offset = 0;
-  std::uint64_t body_line = 0;  ///< line number of the body's first byte
-  bool has_picture = false;     ///< a comment names one
-};
-
-constexpr std::size_t size_bytes(Scalar type) {
-  switch (type) {
-    case Scalar::kInt8:
-    case Scalar::kUint8:
-      return 1;
-    case Scalar::kInt16:
-    case Scalar::kUint16:
-      return 2;
-    case Scalar::kInt32:
-    case Scalar::kUint32:
-    case Scalar::kFloat:
-      return 4;
-    case Scalar::kDouble:
-      break;
-  }
-  return 8;
+bool has_color(const PlyElement& element) {
+  return has_role(element, PlyRole::kRed) && has_role(element, PlyRole::kGreen) &&
+         has_role(element, PlyRole::kBlue);
 }
 
-constexpr bool is_real(Scalar type) {
-  return type == Scalar::kFloat || type == Scalar::kDouble;
-}
-
-bool has_role(const Element& element, Role role) {
-  for (const Property& property : element.properties) {
-    if (property.role == role) {
-      return true;
-    }
-  }
-  return false;
-}
-
-bool has_color(const Element& element) {
-  return has_role(element, Role::kRed) && has_role(element, Role::kGreen) && has_role(element, Role::kBlue);
-}
-
-bool is_splat(const Element& element) {
+bool is_splat(const PlyElement& element) {
   return std::any_of(element.properties.begin(), element.properties.end(),
-                     [](const Property& property) { return property.is_harmonic; });
+                     [](const PlyProperty& property) { return property.is_harmonic; });
 }
-
-// --- Header ------------------------------------------------------------------------------------------------
-
-std::optional<Scalar> scalar_named(std::string_view name) {
-  struct Name {
-    std::string_view old_name, new_name;
-    Scalar type;
-  };
-  static constexpr std::array<Name, 8> kNames{{{"char", "int8", Scalar::kInt8},
-                                               {"uchar", "uint8", Scalar::kUint8},
-                                               {"short", "int16", Scalar::kInt16},
-                                               {"ushort", "uint16", Scalar::kUint16},
-                                               {"int", "int32", Scalar::kInt32},
-                                               {"uint", "uint32", Scalar::kUint32},
-                                               {"float", "float32", Scalar::kFloat},
-                                               {"double", "float64", Scalar::kDouble}}};
-  for (const Name& known : kNames) {
-    if (name == known.old_name || name == known.new_name) {
-      return known.type;
-    }
-  }
-  return std::nullopt;
-}
-
-Role role_of(ElementKind kind, std::string_view name, bool is_list) {
-  struct Name {
-    std::string_view name;
-    Role role;
-  };
-  static constexpr std::array<Name, 16> kScalars{{{"x", Role::kX},
-                                                  {"y", Role::kY},
-                                                  {"z", Role::kZ},
-                                                  {"red", Role::kRed},
-                                                  {"green", Role::kGreen},
-                                                  {"blue", Role::kBlue},
-                                                  {"diffuse_red", Role::kRed},
-                                                  {"diffuse_green", Role::kGreen},
-                                                  {"diffuse_blue", Role::kBlue},
-                                                  {"r", Role::kRed},
-                                                  {"g", Role::kGreen},
-                                                  {"b", Role::kBlue},
-                                                  {"f_dc_0", Role::kRed},
-                                                  {"f_dc_1", Role::kGreen},
-                                                  {"f_dc_2", Role::kBlue},
-                                                  {"opacity", Role::kOpacity}}};
-  if (kind == ElementKind::kVertex && !is_list) {
-    for (const Name& known : kScalars) {
-      if (name == known.name) {
-        return known.role;
-      }
-    }
-  }
-  const bool has_corners = kind == ElementKind::kFace || kind == ElementKind::kStrips;
-  if (has_corners && is_list && (name == "vertex_indices" || name == "vertex_index")) {
-    return Role::kIndices;
-  }
-  return Role::kUnused;
-}
-
-ElementKind kind_named(std::string_view name) {
-  if (name == "vertex") {
-    return ElementKind::kVertex;
-  }
-  if (name == "face") {
-    return ElementKind::kFace;
-  }
-  return name == "tristrips" ? ElementKind::kStrips : ElementKind::kOther;
-}
-
-class PlyHeaderParser {
- public:
-  explicit PlyHeaderParser(std::string_view text) : text_(text), lines_(text) {}
-
-  PlyHeader parse() {
-    if (!looks_like_ply({reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size()})) {
-      throw InputError("the first line is not 'ply'");
-    }
-    std::string_view line;
-    lines_.next(line);
-    for (;;) {
-      if (!lines_.next(line)) {
-        throw InputError("the header has no line 'end_header'");
-      }
-      const std::string_view word = take_word(line);
-      if (word == "end_header") {
-        break;
-      }
-      if (word == "format") {
-        format(line);
-      } else if (word == "element") {
-        element(line);
-      } else if (word == "property") {
-        property(line);
-      } else if (word == "comment") {
-        header_.has_picture = header_.has_picture || take_word(line) == "TextureFile";
-      }
-    }
-    if (!has_format_) {
-      throw InputError("the header has no line 'format'");
-    }
-    header_.body_offset = lines_.offset();
-    header_.body_line = lines_.line_number() + 1;
-    // A binary body may begin with a byte that looks like the second half of a CRLF; only a header written
-    // with CRLF throughout has one that belongs to the header.
-    const bool first_line_has_cr_alone = text_.substr(3, 1) == "\r" && text_.substr(4, 1) != "\n";
-    if (first_line_has_cr_alone && text_.substr(header_.body_offset - 2, 2) == "\r\n") {
-      --header_.body_offset;
-    }
-    return std::move(header_);
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(lines_.line_number(), sentence); }
-
-  void format(std::string_view line) {
-    const std::string_view word = take_word(line);
-    if (word == "ascii") {
-      header_.encoding = PlyEncoding::kAscii;
-    } else if (word == "binary_little_endian") {
-      header_.encoding = PlyEncoding::kLittleEndian;
-    } else if (word == "binary_big_endian") {
-      header_.encoding = PlyEncoding::kBigEndian;
-    } else {
-      fail("the format " + quoted(word) + " is not ascii, binary_little_endian or binary_big_endian");
-    }
-    has_format_ = true;
-  }
-
-  void element(std::string_view line) {
-    const std::string_view name = take_word(line);
-    const std::string_view count = take_word(line);
-    std::int64_t value = 0;
-    if (name.empty() || !parse_integer(count, value) || value < 0) {
-      fail("element " + quoted(name) + " has the count " + quoted(count) +
-           ", which is no number of elements");
-    }
-    Element added;
-    added.name = name;
-    added.kind = kind_named(name);
-    added.count = static_cast<std::uint64_t>(value);
-    if (added.kind != ElementKind::kOther) {
-      for (const Element& other : header_.elements) {
-        if (other.kind == added.kind) {
-          fail("element " + quoted(name) + " is declared twice");
-        }
-      }
-    }
-    header_.elements.push_back(std::move(added));
-  }
-
-  void property(std::string_view line) {
-    if (header_.elements.empty()) {
-      fail("a property comes before the first element");
-    }
-    Element& element = header_.elements.back();
-    Property added;
-    std::string_view word = take_word(line);
-    if (word == "list") {
-      added.is_list = true;
-      added.count_type = type(take_word(line));
-      if (is_real(added.count_type)) {
-        fail("the length of a list cannot be of type float or double");
-      }
-      word = take_word(line);
-    }
-    added.type = type(word);
-    const std::string_view name = take_word(line);
-    if (name.empty()) {
-      fail("a property has no name");
-    }
-    added.role = role_of(element.kind, name, added.is_list);
-    added.is_harmonic = name.starts_with("f_dc_");
-    if (added.role != Role::kUnused && has_role(element, added.role)) {
-      if (added.role <= Role::kZ || added.role == Role::kIndices) {
-        fail("property " + quoted(name) + " is declared twice");
-      }
-      added.is_harmonic = false;
-      added.role = Role::kUnused;  // A second set of colours; the first one counts.
-    }
-    element.properties.push_back(added);
-  }
-
-  Scalar type(std::string_view name) const {
-    const std::optional<Scalar> found = scalar_named(name);
-    if (!found) {
-      fail("the type " + quoted(name) + " is unknown");
-    }
-    return *found;
-  }
-
-  std::string_view text_;
-  LineReader lines_;
-  PlyHeader header_;
-  bool has_format_ = false;
-};
 
 // --- Body --------------------------------------------------------------------------------------------------
 // `AsciiBody` and `BinaryBody` have the same members, so that one walk serves both:
@@ -302,7 +46,7 @@ class AsciiBody {
   AsciiBody(const SharedBytes& file, const PlyHeader& header)
       : words_(file.text().substr(header.body_offset), 0, header.body_line), start_(header.body_offset) {}
 
-  double scalar(Scalar) {
+  double scalar(PlyScalar) {
     const std::string_view word = next();
     double value = 0;
     switch (parse_number(word, value)) {
@@ -315,19 +59,19 @@ class AsciiBody {
     }
     fail(quoted(word) + " is not a number");
   }
-  void skip(Scalar, std::uint64_t count) {
+  void skip(PlyScalar, std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) {
       next();
     }
   }
   /// A digit and what separates it from the next; the last one may stand at the very end.
-  static std::uint64_t least_bytes(const Element& element) { return 2 * element.properties.size(); }
-  static std::uint64_t least_bytes(Scalar) { return 2; }
+  static std::uint64_t least_bytes(const PlyElement& element) { return 2 * element.properties.size(); }
+  static std::uint64_t least_bytes(PlyScalar) { return 2; }
   std::uint64_t remaining() const { return std::uint64_t{words_.remaining()} + 1; }
   std::size_t offset() const { return start_ + words_.offset(); }
   std::uint64_t line() const { return words_.line(); }
   [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(words_.line(), sentence); }
-  static bool skip_fixed(const Element&) { return false; }
+  static bool skip_fixed(const PlyElement&) { return false; }
   void finish() {
     const std::string_view word = words_.next();
     if (!word.empty()) {
@@ -355,42 +99,42 @@ class BinaryBody {
         next_(header.body_offset),
         big_endian_(header.encoding == PlyEncoding::kBigEndian) {}
 
-  double scalar(Scalar type) {
-    const std::uint64_t bits = take(size_bytes(type));
+  double scalar(PlyScalar type) {
+    const std::uint64_t bits = take(ply_size_bytes(type));
     switch (type) {
-      case Scalar::kInt8:
+      case PlyScalar::kInt8:
         return static_cast<std::int8_t>(bits);
-      case Scalar::kUint8:
+      case PlyScalar::kUint8:
         return static_cast<std::uint8_t>(bits);
-      case Scalar::kInt16:
+      case PlyScalar::kInt16:
         return static_cast<std::int16_t>(bits);
-      case Scalar::kUint16:
+      case PlyScalar::kUint16:
         return static_cast<std::uint16_t>(bits);
-      case Scalar::kInt32:
+      case PlyScalar::kInt32:
         return static_cast<std::int32_t>(bits);
-      case Scalar::kUint32:
+      case PlyScalar::kUint32:
         return static_cast<std::uint32_t>(bits);
-      case Scalar::kFloat:
+      case PlyScalar::kFloat:
         return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-      case Scalar::kDouble:
+      case PlyScalar::kDouble:
         break;
     }
     return std::bit_cast<double>(bits);
   }
-  void skip(Scalar type, std::uint64_t count) {
-    if (count > remaining() / size_bytes(type)) {
+  void skip(PlyScalar type, std::uint64_t count) {
+    if (count > remaining() / ply_size_bytes(type)) {
       fail_early();
     }
-    next_ += static_cast<std::size_t>(count) * size_bytes(type);
+    next_ += static_cast<std::size_t>(count) * ply_size_bytes(type);
   }
-  static std::uint64_t least_bytes(const Element& element) {
+  static std::uint64_t least_bytes(const PlyElement& element) {
     std::uint64_t sum = 0;
-    for (const Property& property : element.properties) {
-      sum += size_bytes(property.is_list ? property.count_type : property.type);
+    for (const PlyProperty& property : element.properties) {
+      sum += ply_size_bytes(property.is_list ? property.count_type : property.type);
     }
     return sum;
   }
-  static std::uint64_t least_bytes(Scalar type) { return size_bytes(type); }
+  static std::uint64_t least_bytes(PlyScalar type) { return ply_size_bytes(type); }
   std::uint64_t remaining() const { return bytes_.size() - next_; }
   std::size_t offset() const { return next_; }
   static std::uint64_t line() { return 0; }
@@ -398,8 +142,8 @@ class BinaryBody {
     throw InputError("before byte offset " + std::to_string(next_) + ": " + sentence);
   }
   /// Passes over an element without lists at once; its count has been held against the bytes left.
-  bool skip_fixed(const Element& element) {
-    for (const Property& property : element.properties) {
+  bool skip_fixed(const PlyElement& element) {
+    for (const PlyProperty& property : element.properties) {
       if (property.is_list) {
         return false;
       }
@@ -433,18 +177,18 @@ class BinaryBody {
 };
 
 template <class Body>
-void check_count(const Body& body, const Element& element) {
+void check_count(const Body& body, const PlyElement& element) {
   const std::uint64_t least = Body::least_bytes(element);
   if (least != 0 && element.count > body.remaining() / least) {
     throw InputError("the header declares " + std::to_string(element.count) + " of element " +
-                     quoted(element.name) + ", but the file has room for " +
+                     tools::quoted(element.name) + ", but the file has room for " +
                      std::to_string(body.remaining() / least) + " at most");
   }
 }
 
 /// The length of a list, held against the bytes left.
 template <class Body>
-std::uint64_t list_length(Body& body, const Property& property) {
+std::uint64_t list_length(Body& body, const PlyProperty& property) {
   const double length = body.scalar(property.count_type);
   if (!(length >= 0) || length != std::floor(length)) {
     body.fail("the length of a list is not a whole number from 0 on");
@@ -458,19 +202,19 @@ std::uint64_t list_length(Body& body, const Property& property) {
 }
 
 template <class Body>
-void skip_property(Body& body, const Property& property) {
+void skip_property(Body& body, const PlyProperty& property) {
   body.skip(property.type, property.is_list ? list_length(body, property) : 1);
 }
 
 template <class Body>
-void skip_element(Body& body, const Element& element, ProgressMeter& meter) {
+void skip_element(Body& body, const PlyElement& element, ProgressMeter& meter) {
   check_count(body, element);
   // Records without properties take no bytes, whatever their count.
   if (element.properties.empty() || body.skip_fixed(element)) {
     return;
   }
   for (std::uint64_t record = 0; record < element.count; ++record) {
-    for (const Property& property : element.properties) {
+    for (const PlyProperty& property : element.properties) {
       skip_property(body, property);
     }
     meter.at(body.offset());
@@ -479,7 +223,7 @@ void skip_element(Body& body, const Element& element, ProgressMeter& meter) {
 
 /// One vertex as it is written; a splat's colour from 0 to 1.
 struct PlyVertex {
-  std::array<double, kVertexValues> values{};
+  std::array<double, kPlyVertexValues> values{};
   std::uint64_t line = 0;  ///< 0 in a binary file
 
   std::array<double, 3> position() const { return {values[0], values[1], values[2]}; }
@@ -488,23 +232,23 @@ struct PlyVertex {
   }
   /// A splat that covers less than a tenth of what is behind it; opacities are written as logits.
   bool is_clear() const {
-    return 1 / (1 + std::exp(-values[static_cast<std::size_t>(Role::kOpacity)])) < 0.1;
+    return 1 / (1 + std::exp(-values[static_cast<std::size_t>(PlyRole::kOpacity)])) < 0.1;
   }
 };
 
 /// What the three components of an element's colours are parts of.
 class ColorParts {
  public:
-  explicit ColorParts(const Element& element) {
-    for (const Property& property : element.properties) {
-      if (property.role >= Role::kRed && property.role <= Role::kBlue) {
+  explicit ColorParts(const PlyElement& element) {
+    for (const PlyProperty& property : element.properties) {
+      if (property.role >= PlyRole::kRed && property.role <= PlyRole::kBlue) {
         types_[static_cast<std::size_t>(property.role) - 3] = property.type;
       }
     }
   }
   void see(const PlyVertex& vertex) {
     for (std::size_t i = 0; i < 3; ++i) {
-      if (is_real(types_[i])) {
+      if (is_ply_real(types_[i])) {
         floats_.see(vertex.values[3 + i]);
       }
     }
@@ -514,27 +258,27 @@ class ColorParts {
     std::array<std::uint8_t, 3> bytes{};
     for (std::size_t i = 0; i < 3; ++i) {
       const double full =
-          is_real(types_[i]) ? floats_.full() : (types_[i] == Scalar::kUint16 ? 65535.0 : 255.0);
+          is_ply_real(types_[i]) ? floats_.full() : (types_[i] == PlyScalar::kUint16 ? 65535.0 : 255.0);
       bytes[i] = unit_to_byte(vertex.values[3 + i] / full);
     }
     return {bytes[0], bytes[1], bytes[2]};
   }
 
  private:
-  std::array<Scalar, 3> types_{};
+  std::array<PlyScalar, 3> types_{};
   ColorScale floats_;
 };
 
 /// Reads all vertices; `visit(vertex)`.
 template <class Body, class VisitVertex>
-void read_vertices(Body& body, const Element& element, ProgressMeter& meter, const VisitVertex& visit) {
+void read_vertices(Body& body, const PlyElement& element, ProgressMeter& meter, const VisitVertex& visit) {
   // A splat's colour is half and this part of the first of its harmonics, 1 / (2 sqrt(pi)).
   constexpr double kHarmonic = 0.28209479177387814;
   check_count(body, element);
   PlyVertex vertex;
   for (std::uint64_t record = 0; record < element.count; ++record) {
-    for (const Property& property : element.properties) {
-      if (property.role > Role::kOpacity) {
+    for (const PlyProperty& property : element.properties) {
+      if (property.role > PlyRole::kV) {
         skip_property(body, property);
         continue;
       }
@@ -548,10 +292,15 @@ void read_vertices(Body& body, const Element& element, ProgressMeter& meter, con
   }
 }
 
+/// A place on a picture, v downwards; in a file v runs up.
+std::array<float, 2> texcoord_of(double u, double v) {
+  return {static_cast<float>(u), static_cast<float>(1 - v)};
+}
+
 /// Reads one index; `lowest` is -1 where that has a meaning.
 template <class Body>
-std::int64_t read_index(Body& body, Scalar type, std::int64_t lowest, std::uint64_t vertex_count,
-                        const Element& element, std::uint64_t record) {
+std::int64_t read_index(Body& body, PlyScalar type, std::int64_t lowest, std::uint64_t vertex_count,
+                        const PlyElement& element, std::uint64_t record) {
   const double value = body.scalar(type);
   if (!(value >= static_cast<double>(lowest) && value < static_cast<double>(vertex_count)) ||
       value != std::floor(value)) {
@@ -561,36 +310,60 @@ std::int64_t read_index(Body& body, Scalar type, std::int64_t lowest, std::uint6
   return static_cast<std::int64_t>(value);
 }
 
+/// A face as it is written.
+struct PlyFace {
+  std::vector<std::uint32_t> corners;
+  std::vector<std::array<float, 2>> texcoords;
+  std::uint32_t surface = 1;  ///< of the mesh: the number of its picture and 1
+};
+
+/// Reads the properties of a face.
 template <class Body>
-void read_polygons(Body& body, const Element& element, std::uint64_t vertex_count, TriangleMesh& mesh,
-                   Polygons& polygons, ProgressMeter& meter) {
-  check_count(body, element);
-  if (element.kind == ElementKind::kFace) {
-    // Most files hold triangles only; the check above makes this at most a few times the file's size.
-    mesh.triangles.reserve(mesh.triangles.size() + static_cast<std::size_t>(element.count));
+void read_face(Body& body, const PlyElement& element, std::uint64_t record, std::uint64_t vertex_count,
+               bool has_pictures, PlyFace& face) {
+  face.corners.clear();
+  face.texcoords.clear();
+  for (const PlyProperty& property : element.properties) {
+    if (property.role == PlyRole::kIndices) {
+      const std::uint64_t length = list_length(body, property);
+      for (std::uint64_t i = 0; i < length; ++i) {
+        face.corners.push_back(
+            static_cast<std::uint32_t>(read_index(body, property.type, 0, vertex_count, element, record)));
+      }
+    } else if (property.role == PlyRole::kTexcoords && has_pictures) {
+      const std::uint64_t length = list_length(body, property);
+      for (std::uint64_t i = 0; i + 1 < length; i += 2) {
+        const double u = body.scalar(property.type);
+        face.texcoords.push_back(texcoord_of(u, body.scalar(property.type)));
+      }
+      body.skip(property.type, length % 2);
+    } else if (property.role == PlyRole::kPicture && has_pictures) {
+      const double number = body.scalar(property.type);
+      face.surface = number >= 0 && number < kMostPlyPictures ? static_cast<std::uint32_t>(number) + 1 : 0;
+    } else {
+      skip_property(body, property);
+    }
   }
+}
+
+template <class Body>
+void read_strips(Body& body, const PlyElement& element, std::uint64_t vertex_count, TriangleMesh& mesh,
+                 ProgressMeter& meter) {
+  check_count(body, element);
   for (std::uint64_t record = 0; record < element.count; ++record) {
-    for (const Property& property : element.properties) {
-      if (property.role != Role::kIndices) {
+    for (const PlyProperty& property : element.properties) {
+      if (property.role != PlyRole::kIndices) {
         skip_property(body, property);
         continue;
       }
       const std::uint64_t length = list_length(body, property);
-      if (element.kind == ElementKind::kFace) {
-        polygons.begin();
-        for (std::uint64_t i = 0; i < length; ++i) {
-          polygons.add(
-              static_cast<std::uint32_t>(read_index(body, property.type, 0, vertex_count, element, record)));
-        }
-      } else {
-        TriangleStrip strip(mesh);
-        for (std::uint64_t i = 0; i < length; ++i) {
-          const std::int64_t index = read_index(body, property.type, -1, vertex_count, element, record);
-          if (index < 0) {
-            strip.restart();
-          } else {
-            strip.add(static_cast<std::uint32_t>(index));
-          }
+      TriangleStrip strip(mesh);
+      for (std::uint64_t i = 0; i < length; ++i) {
+        const std::int64_t index = read_index(body, property.type, -1, vertex_count, element, record);
+        if (index < 0) {
+          strip.restart();
+        } else {
+          strip.add(static_cast<std::uint32_t>(index));
         }
       }
     }
@@ -598,24 +371,81 @@ void read_polygons(Body& body, const Element& element, std::uint64_t vertex_coun
   }
 }
 
-bool holds_polygons(const Element& element) {
-  return element.count != 0 && has_role(element, Role::kIndices);
+/// @param pictures  that the file names
+template <class Body>
+void read_faces(Body& body, const PlyElement& element, std::uint64_t vertex_count, std::size_t pictures,
+                TriangleMesh& mesh, Polygons& polygons, ProgressMeter& meter) {
+  check_count(body, element);
+  // Most files hold triangles only; the check above makes this at most a few times the file's size.
+  mesh.triangles.reserve(mesh.triangles.size() + static_cast<std::size_t>(element.count));
+  PlyFace face;
+  for (std::uint64_t record = 0; record < element.count; ++record) {
+    read_face(body, element, record, vertex_count, pictures != 0, face);
+    const bool has_place = !face.texcoords.empty() && face.texcoords.size() == face.corners.size() &&
+                           mesh.texcoords.size() + face.corners.size() < kNoTexcoord;
+    const auto first = static_cast<std::uint32_t>(mesh.texcoords.size());
+    polygons.begin();
+    for (std::uint32_t i = 0; i < face.corners.size(); ++i) {
+      polygons.add(face.corners[i], has_place ? first + i : kNoTexcoord);
+    }
+    if (has_place) {
+      mesh.texcoords.insert(mesh.texcoords.end(), face.texcoords.begin(), face.texcoords.end());
+    }
+    if (pictures > 1) {
+      mesh.surface_of.resize(mesh.triangles.size(), face.surface <= pictures ? face.surface : 0);
+    }
+    meter.at(body.offset());
+  }
+}
+
+bool holds_polygons(const PlyElement& element) {
+  return element.count != 0 && has_role(element, PlyRole::kIndices);
+}
+
+bool has_face_texcoords(const PlyHeader& header) {
+  return std::any_of(header.elements.begin(), header.elements.end(),
+                     [](const PlyElement& element) { return has_role(element, PlyRole::kTexcoords); });
+}
+
+/// Gives the mesh the pictures that its file names.
+void add_pictures(const std::string& path, const PlyHeader& header, TriangleMesh& mesh) {
+  if (header.pictures.empty()) {
+    return;
+  }
+  Textures textures(path);
+  mesh.surfaces.resize(header.pictures.size() + 1);
+  for (std::size_t i = 0; i < header.pictures.size(); ++i) {
+    if (mesh.texcoords.empty()) {
+      textures.miss(header.pictures[i], "has no place, for there are no texture coordinates");
+    } else {
+      mesh.surfaces[i + 1].color = textures.beside(header.pictures[i]);
+    }
+  }
+  mesh.surface_of.resize(mesh.triangles.size(), 1);
+  textures.add_notes(mesh.notes);
+  check_texcoords(mesh);
+  if (!mesh.surfaces.empty()) {
+    mesh.colors = {};  // which are the picture's once more, or nothing
+  }
 }
 
 /// Walks a whole body and gathers its mesh.
 template <class Body>
-TriangleMesh read_mesh(Body body, const PlyHeader& header, const Element& vertices, ProgressMeter& meter) {
+TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& vertices, ProgressMeter& meter) {
   if (vertices.count > kMeshVertexLimit) {
     throw InputError("the mesh has " + std::to_string(vertices.count) + " vertices, the limit is " +
                      std::to_string(kMeshVertexLimit));
   }
   TriangleMesh mesh;
   Polygons polygons(mesh);
-  for (const Element& element : header.elements) {
-    if (element.kind == ElementKind::kVertex) {
+  for (const PlyElement& element : header.elements) {
+    if (element.kind == PlyElementKind::kVertex) {
       check_count(body, element);
       mesh.positions.reserve(static_cast<std::size_t>(element.count));
       const bool colored = has_color(element);
+      // Those of corners count before those of vertices.
+      const bool has_places = !header.pictures.empty() && has_role(element, PlyRole::kU) &&
+                              has_role(element, PlyRole::kV) && !has_face_texcoords(header);
       Body first = body;
       ColorParts parts(element);
       read_vertices(body, element, meter, [&](const PlyVertex& vertex) {
@@ -624,6 +454,10 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const Element& vertic
         }
         parts.see(vertex);
         mesh.positions.push_back(vertex.position());
+        if (has_places) {
+          mesh.texcoords.push_back(texcoord_of(vertex.values[static_cast<std::size_t>(PlyRole::kU)],
+                                               vertex.values[static_cast<std::size_t>(PlyRole::kV)]));
+        }
       });
       if (colored) {
         mesh.colors.reserve(static_cast<std::size_t>(element.count));
@@ -633,7 +467,11 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const Element& vertic
                       [&](const PlyVertex& vertex) { mesh.colors.push_back(parts.color(vertex)); });
       }
     } else if (holds_polygons(element)) {
-      read_polygons(body, element, vertices.count, mesh, polygons, meter);
+      if (element.kind == PlyElementKind::kFace) {
+        read_faces(body, element, vertices.count, header.pictures.size(), mesh, polygons, meter);
+      } else {
+        read_strips(body, element, vertices.count, mesh, meter);
+      }
     } else {
       skip_element(body, element, meter);
     }
@@ -648,7 +486,7 @@ template <class Body>
 class PlyCloud final : public PointCloud {
  public:
   /// Reads them once, and leaves `body` behind them.
-  PlyCloud(SharedBytes file, const Element& vertices, Body& body, ProgressMeter& meter)
+  PlyCloud(SharedBytes file, const PlyElement& vertices, Body& body, ProgressMeter& meter)
       : file_(std::move(file)), vertices_(vertices), body_(body), parts_(vertices) {
     std::uint64_t finite = 0;
     std::uint64_t drawn = 0;
@@ -694,22 +532,23 @@ class PlyCloud final : public PointCloud {
 
  private:
   bool is_drawn(const PlyVertex& vertex) const {
-    const bool may_be_clear = is_splat(vertices_) && has_role(vertices_, Role::kOpacity);
+    const bool may_be_clear = is_splat(vertices_) && has_role(vertices_, PlyRole::kOpacity);
     return vertex.is_finite() && !(may_be_clear && vertex.is_clear());
   }
 
   SharedBytes file_;
-  Element vertices_;
+  PlyElement vertices_;
   Body body_;
   ColorParts parts_;
 };
 
 template <class Body>
-Source read_body(const SharedBytes& file, const PlyHeader& header, const Progress& progress) {
-  const Element* vertices = nullptr;
+Source read_body(const SharedBytes& file, const std::string& path, const PlyHeader& header,
+                 const Progress& progress) {
+  const PlyElement* vertices = nullptr;
   bool has_polygons = false;
-  for (const Element& element : header.elements) {
-    if (element.kind == ElementKind::kVertex) {
+  for (const PlyElement& element : header.elements) {
+    if (element.kind == PlyElementKind::kVertex) {
       vertices = &element;
     }
     has_polygons = has_polygons || holds_polygons(element);
@@ -717,7 +556,7 @@ Source read_body(const SharedBytes& file, const PlyHeader& header, const Progres
   if (vertices == nullptr || vertices->count == 0) {
     throw InputError("the file holds no vertices");
   }
-  for (const Role role : {Role::kX, Role::kY, Role::kZ}) {
+  for (const PlyRole role : {PlyRole::kX, PlyRole::kY, PlyRole::kZ}) {
     if (!has_role(*vertices, role)) {
       throw InputError("element 'vertex' has no property x, y or z that is a number");
     }
@@ -726,14 +565,12 @@ Source read_body(const SharedBytes& file, const PlyHeader& header, const Progres
   Body body(file, header);
   if (has_polygons) {
     TriangleMesh mesh = read_mesh(body, header, *vertices, meter);
-    if (header.has_picture) {
-      mesh.notes.push_back("its picture (TextureFile) is not drawn");
-    }
+    add_pictures(path, header, mesh);
     meter.done();
     return mesh;
   }
   std::unique_ptr<PointCloud> cloud;
-  for (const Element& element : header.elements) {
+  for (const PlyElement& element : header.elements) {
     if (&element == vertices) {
       cloud = std::make_unique<PlyCloud<Body>>(file, element, body, meter);
     } else {
@@ -753,11 +590,15 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes) {
 }
 
 Source read_ply(const SharedBytes& file, const Progress& progress) {
-  const PlyHeader header = PlyHeaderParser(file.text()).parse();
+  return read_ply_at("", file, progress);
+}
+
+Source read_ply_at(const std::string& path, const SharedBytes& file, const Progress& progress) {
+  const PlyHeader header = read_ply_header(file.text());
   if (header.encoding == PlyEncoding::kAscii) {
-    return read_body<AsciiBody>(file, header, progress);
+    return read_body<AsciiBody>(file, path, header, progress);
   }
-  return read_body<BinaryBody>(file, header, progress);
+  return read_body<BinaryBody>(file, path, header, progress);
 }
 
 }  // namespace thimble::tools

@@ -18,6 +18,8 @@
 #ifndef THIMBLE_TOOLS_READERS_PLY_H
 #define THIMBLE_TOOLS_READERS_PLY_H
 
+#include <string>
+
 #include "readers/shared_bytes.h"
 #include "readers/source.h"
 
@@ -29,11 +31,17 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes);
 /// Checks the whole file; a mesh is returned as read, a point cloud keeps `file` and reads it again each
 /// time.
 ///
-/// Memory beyond the file: a mesh holds 24 bytes a vertex (27 with colour) and 12 a triangle; a point cloud
-/// some bytes a header line. A count of the header is held against the bytes that follow before anything is
+/// Pictures of a mesh (`comment TextureFile`) lie beside the file; coordinates on them are those of corners (`texcoord`
+/// of faces, with `texnumber` where there are several), or else those of vertices (`u v`, `s t`, `texture_u texture_v`).
+/// A mesh whose picture is there has its colours alone.
+///
+/// Memory beyond the file: a mesh holds 24 bytes a vertex (27 with colour) and 12 a triangle, with pictures 8 more a
+/// place on them and 16 a triangle; a point cloud some bytes a header line. A count of the header is held against the bytes that follow before anything is
 /// allocated for it.
 /// @throws InputError  a broken header; a count that the bytes cannot hold; a file that ends early; text that
 ///   is no number; a coordinate that is not finite; an index out of range; no vertex
+Source read_ply_at(const std::string& path, const SharedBytes& file, const Progress& progress = {});
+/// The same of a file that is alone.
 Source read_ply(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools

@@ -51,6 +51,10 @@ Source read_obj_beside(const SharedBytes& file, const ReadOptions& options, cons
   return read_obj_at(options.path, file, progress);
 }
 
+Source read_ply_beside(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return read_ply_at(options.path, file, progress);
+}
+
 Source read_gltf_source(const SharedBytes& file, const Progress& progress) {
   return read_gltf(file, "", progress);
 }
@@ -62,7 +66,7 @@ Source read_gltf_beside(const SharedBytes& file, const ReadOptions& options, con
 // The one place that knows all formats. Where two recognise the same bytes, the first one counts.
 constexpr std::array<ReaderRow, 22> kRows{{
     {".vox", "MagicaVoxel model", read_vox_source, looks_like_vox, Beginning::kMagic, read_vox_frame},
-    {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic},
+    {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic, read_ply_beside},
     {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText, read_obj_beside},
     {".off", "OFF mesh", read_off, looks_like_off, Beginning::kText},
     {".stl", "STL mesh", read_stl, looks_like_stl},

@@ -110,6 +110,22 @@ class PointCloud {
   virtual const char* counts_in() const { return "point"; }
 };
 
+class Texture;
+
+/// How a texture continues outside its picture.
+enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
+
+/// What some triangles of a mesh look like where they lie, beside their own colours.
+struct MeshSurface {
+  std::shared_ptr<const Texture> color{};    ///< times the triangle's own colour, as light; null: that alone
+  std::shared_ptr<const Texture> opacity{};  ///< its alpha counts; null: that of `color`
+  Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  double alpha = 1;   ///< times that of the pictures
+  double cutoff = 0;  ///< nothing is there where alpha is less; 0: alpha means nothing
+};
+/// No texture coordinate: the triangle has its own colour alone.
+inline constexpr std::uint32_t kNoTexcoord = UINT32_MAX;
+
 /// Triangles with real coordinates: `.obj`, `.off`, `.stl`, `.gltf`, `.ply` with faces. Polygons are already
 /// cut.
 struct TriangleMesh {
@@ -119,6 +135,10 @@ struct TriangleMesh {
   std::vector<Rgb> face_colors{};                       ///< one a triangle, or empty; counts before `colors`
   bool is_z_up = false;                                 ///< the format says so; else y is taken to be up
   Notes notes{};
+  std::vector<MeshSurface> surfaces{};            ///< empty where no triangle has more than its colour
+  std::vector<std::uint32_t> surface_of{};        ///< one a triangle, in range, or empty as `surfaces` are
+  std::vector<std::array<float, 2>> texcoords{};  ///< u, and v that runs down; 0 to 1 is the picture once
+  std::vector<std::array<std::uint32_t, 3>> texcoord_corners{};  ///< one a triangle; empty: as `triangles`
 };
 
 /// A scene baked by `thimble bake`, checked to its last byte: `.oct`.

@@ -50,6 +50,9 @@ constexpr bool is_space(char c) {
 /// Takes the first word (a run without spaces) off the front of `line`; empty when there is none.
 std::string_view take_word(std::string_view& line);
 
+/// `text` without the spaces at its ends: a name that may hold some.
+std::string_view trimmed(std::string_view text);
+
 /// `line` up to a # that begins a comment: one at the front or after a space, comma or semicolon. (In
 /// "1.#IND", which some programs write for NaN, it is part of the word.)
 std::string_view without_comment(std::string_view line);

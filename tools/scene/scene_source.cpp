@@ -7,6 +7,7 @@
 #include "readers/oct.h"
 #include "readers/read_any.h"
 #include "scene/generators.h"
+#include "scene/mesh_shade.h"
 #include "scene/named_scenes.h"
 #include "scene/palette.h"
 #include "scene/voxelise.h"
@@ -159,7 +160,6 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
 std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments& arguments) {
   constexpr int kDefaultDepth = 9;
   const auto mesh = std::make_shared<const TriangleMesh>(std::move(read));
-  const auto colors = std::make_shared<const PaletteMap>(triangle_colors(*mesh));
   const bool z_up = arguments.z_up || mesh->is_z_up;
   if (mesh->triangles.empty()) {
     throw InputError("no triangles");
@@ -167,6 +167,7 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
   SourceFacts facts;
   facts.kind = "triangle mesh, voxelised";
   facts.level = arguments.depth.value_or(kDefaultDepth);
+  const auto colors = std::make_shared<const PaletteMap>(mesh_colors(*mesh, facts.level, z_up));
   facts.points = mesh->positions.size();
   facts.is_mesh = true;
   facts.single_material = colors->colors() == 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "scene/mesh_shade.h"
 #include "scene/world_fit.h"
 
 namespace thimble::tools {
@@ -140,8 +141,8 @@ class RecentTriangles {
 constexpr std::uint64_t kCheapVoxels = std::uint64_t{1} << 24;
 constexpr std::uint64_t kSmallTriangleVoxels = 64;
 
-/// About how many voxels a triangle may have: decides only how they are found and how often progress is
-/// reported.
+}  // namespace
+
 std::uint64_t rough_cost(const UnitTriangle& triangle) {
   std::array<std::uint64_t, 3> span{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -152,7 +153,9 @@ std::uint64_t rough_cost(const UnitTriangle& triangle) {
   return span[1] * span[2];
 }
 
-}  // namespace
+bool goes_by_cells(std::uint64_t cost, std::size_t triangles) {
+  return cost > std::max(kCheapVoxels, kSmallTriangleVoxels * triangles);
+}
 
 TriangleBoxTest::TriangleBoxTest(const UnitTriangle& triangle) : origin_(triangle[0]), slabs_{} {
   std::array<std::array<std::int64_t, 3>, 3> local{};
@@ -358,7 +361,7 @@ Rgb triangle_color(const TriangleMesh& mesh, std::size_t index) {
           static_cast<std::uint8_t>((p.b + q.b + r.b + 1) / 3)};
 }
 
-static bool has_colors(const TriangleMesh& mesh) {
+bool has_colors(const TriangleMesh& mesh) {
   return !mesh.colors.empty() || !mesh.face_colors.empty();
 }
 
@@ -374,19 +377,28 @@ ColorHistogram triangle_colors(const TriangleMesh& mesh) {
 
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress) {
+  if (!mesh.surfaces.empty()) {
+    const auto material_of = [&](Rgb color) {
+      return colors == nullptr ? std::uint8_t{0} : colors->index(color);
+    };
+    voxelise_shaded(mesh, level, z_up, material_of, sink, progress);
+    return;
+  }
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
   const bool colored = colors != nullptr && has_colors(mesh);
   const auto triangle_at = [&](std::size_t i) {
     const auto& [a, b, c] = mesh.triangles[i];
     return CellTriangle{{units[a], units[b], units[c]},
-                        colored ? colors->index(triangle_color(mesh, i)) : std::uint8_t{0}};
+                        colored ? colors->index(triangle_color(mesh, i)) : std::uint8_t{0},
+                        false,
+                        static_cast<std::uint32_t>(i)};
   };
   RecentTriangles recent(mesh.triangles.size());
   std::uint64_t all_cost = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     all_cost += rough_cost(triangle_at(i).corners);
   }
-  if (all_cost > std::max(kCheapVoxels, kSmallTriangleVoxels * mesh.triangles.size())) {
+  if (goes_by_cells(all_cost, mesh.triangles.size())) {
     std::vector<CellTriangle> triangles;
     for (std::size_t i = mesh.triangles.size(); i-- > 0;) {
       const CellTriangle triangle = triangle_at(i);

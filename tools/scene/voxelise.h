@@ -26,6 +26,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -126,6 +127,13 @@ std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bo
 /// triangle into eight, and so on down to voxels, so a big triangle costs in proportion to its area. No heap.
 void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, const VoxelSink& sink);
 
+/// Whether triangles have colours of their own.
+bool has_colors(const TriangleMesh& mesh);
+/// About how many voxels a triangle may have: decides only how they are found and how often progress is
+/// reported.
+std::uint64_t rough_cost(const UnitTriangle& triangle);
+/// Whether so many triangles of that cost together go cell by cell.
+bool goes_by_cells(std::uint64_t cost, std::size_t triangles);
 /// The colour of triangle `index`: its own, or the average of its three vertices' colours, rounded; `mesh` has colours.
 Rgb triangle_color(const TriangleMesh& mesh, std::size_t index);
 /// The colours of all triangles, for PaletteMap; empty when the mesh has no colours.
@@ -142,7 +150,11 @@ ColorHistogram triangle_colors(const TriangleMesh& mesh);
 /// each other many times over, they go cell by cell: each voxel comes once, with the
 /// material of the last triangle that meets it, and a full block as one. So time follows the triangles and
 /// the surface that they have together. Memory: 12 bytes a vertex and 48 bytes a triangle, of these at most
-/// 3 MiB; cell by cell 40 bytes a triangle more, and the lists.
+/// 3 MiB; cell by cell 44 bytes a triangle more, and the lists.
+///
+/// A mesh with pictures goes twice, so that of the triangles that meet a voxel the last one counts that its middle is
+/// over, and only without one the last of all: an edge does not bleed into what is beside it. Voxels have colours of
+/// their own (mesh_shade.h), and none comes where all is clear.
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress = {});
 /// The same, voxel by voxel.
@@ -174,17 +186,23 @@ bool meets_slabs(const TriangleBoxTest& test, TriangleBlock& block);
 struct CellTriangle {
   UnitTriangle corners;
   std::uint8_t material = 0;
+  bool only_over = false;    ///< for a `CellShade`: only voxels whose middle is over it
+  std::uint32_t number = 0;  ///< in its mesh
 };
 
+/// The material of a voxel that a triangle meets; nothing where the triangle does not count there.
+using CellShade =
+    std::function<std::optional<std::uint8_t>(const CellTriangle& triangle, const UnitPoint& voxel)>;
+
 /// Calls `sink` for blocks that together hold each voxel of the world of 2^level that a triangle meets, once,
-/// with the material of the last such triangle.
+/// with the material of the last such triangle, or, where there is a `shade`, the last that it has one of.
 ///
 /// Time: the world is cut into eight, and so on, each part with a list of the triangles that meet it, down to
 /// parts of 64 voxels a side. They are filled from the last triangle on, and what is full is left alone: its
 /// cubes of 4 voxels, its cells of 16, and the triangles that are left once all of it is. Memory:
 /// at most 32 bytes a triangle and level, where all of them meet everything.
 void voxelise_cells(std::span<const CellTriangle> triangles, int level, const BlockSink& sink,
-                    const Progress& progress);
+                    const Progress& progress, const CellShade& shade = {});
 
 }  // namespace thimble::tools
 

@@ -73,7 +73,8 @@ bool meets_part(const SteppingTest& test, const NearBlock& whole, int child, Nea
 /// What one cell holds: a bit and a material a voxel.
 class Cell {
  public:
-  explicit Cell(bool has_materials) : has_materials_(has_materials), materials_(has_materials ? 4096 : 0) {}
+  Cell(bool has_materials, const CellShade& shade)
+      : has_materials_(has_materials), shade_(shade), materials_(has_materials ? 4096 : 0) {}
 
   void clear() {
     covered_.fill(0);
@@ -84,7 +85,7 @@ class Cell {
   bool is_full() const { return full_cubes_ == kFull; }
 
   /// Adds what a triangle meets and no later triangle has. `cell` is of kCellLevel.
-  void add(const SteppingTest& test, std::uint8_t material, const NearBlock& cell) {
+  void add(const SteppingTest& test, const CellTriangle& triangle, const NearBlock& cell) {
     NearBlock part{};
     NearBlock block{};
     for (int octant = 0; octant < 8; ++octant) {
@@ -96,7 +97,12 @@ class Cell {
         const std::size_t cube =
             std::size_t{8} * static_cast<std::size_t>(octant) + static_cast<std::size_t>(child);
         if (covered_[cube] != kFull && meets_part(test, part, child, &block)) {
-          take(cube, missing_met(test, block, ~covered_[cube]), material);
+          const std::uint64_t met = missing_met(test, block, ~covered_[cube]);
+          if (shade_) {
+            take_shaded(cube, met, triangle, block.block);
+          } else {
+            take(cube, met, triangle.material);
+          }
         }
       }
     }
@@ -148,6 +154,18 @@ class Cell {
     return met;
   }
 
+  void take_shaded(std::size_t cube, std::uint64_t met, const CellTriangle& triangle,
+                   const TriangleBlock& block) {
+    for (; met != 0; met &= met - 1) {
+      const int bit = std::countr_zero(met);
+      const auto material = shade_(triangle, {block.voxel[0] + (bit & 3), block.voxel[1] + (bit >> 2 & 3),
+                                              block.voxel[2] + (bit >> 4)});
+      if (material) {
+        take(cube, std::uint64_t{1} << bit, *material);
+      }
+    }
+  }
+
   void take(std::size_t cube, std::uint64_t added, std::uint8_t material) {
     if (added == 0) {
       return;
@@ -184,6 +202,7 @@ class Cell {
   }
 
   bool has_materials_;
+  const CellShade& shade_;
   std::array<std::uint64_t, kCubes> covered_{};  ///< by Morton number of the cube; bit x + 4 y + 16 z
   std::uint64_t full_cubes_ = 0;
   std::optional<std::uint8_t> first_material_;
@@ -195,8 +214,8 @@ class Cell {
 /// asked of a cell that later ones have filled.
 class Group {
  public:
-  Group(int level, bool has_materials)
-      : cells_(std::size_t{1} << (3 * (level - kCellLevel)), Cell(has_materials)) {
+  Group(int level, bool has_materials, const CellShade& shade)
+      : cells_(std::size_t{1} << (3 * (level - kCellLevel)), Cell(has_materials, shade)) {
     all_ = cells_.size() == 64 ? kFull : (std::uint64_t{1} << cells_.size()) - 1;
   }
 
@@ -205,7 +224,7 @@ class Group {
 
   void add(const CellTriangle& triangle, const TriangleBlock& group) {
     const SteppingTest test(triangle.corners);
-    add_to(test, triangle.material, {group, test.distance(center_of(group))}, 0);
+    add_to(test, triangle, {group, test.distance(center_of(group))}, 0);
   }
 
   /// Hands over what `block`, whose cells are `first` and on, holds; where it is full of one material says that and
@@ -252,7 +271,8 @@ class Group {
     return first + (static_cast<std::size_t>(child) << (3 * (block.level - 1 - kCellLevel)));
   }
 
-  void add_to(const SteppingTest& test, std::uint8_t material, const NearBlock& whole, std::size_t first) {
+  void add_to(const SteppingTest& test, const CellTriangle& triangle, const NearBlock& whole,
+              std::size_t first) {
     const int level = whole.block.level - 1;
     if (level < kCellLevel) {
       const std::uint64_t bit = std::uint64_t{1} << first;
@@ -261,7 +281,7 @@ class Group {
         touched_ |= bit;
         cell.clear();
       }
-      cell.add(test, material, whole);
+      cell.add(test, triangle, whole);
       full_ |= cell.is_full() ? bit : 0;
       return;
     }
@@ -270,7 +290,7 @@ class Group {
     for (int child = 0; child < 8; ++child) {
       const std::size_t at = cell_of(whole.block, first, child);
       if ((full_ >> at & some) != some && meets_part(test, whole, child, &part)) {
-        add_to(test, material, part, at);
+        add_to(test, triangle, part, at);
       }
     }
   }
@@ -284,16 +304,18 @@ class Group {
 class Voxeliser {
  public:
   Voxeliser(std::span<const CellTriangle> triangles, int level, const BlockSink& sink,
-            const Progress& progress)
+            const Progress& progress, const CellShade& shade)
       : triangles_(triangles),
         sink_(sink),
         progress_(progress),
         root_level_(std::max(level, kCellLevel)),
         group_level_(std::min(root_level_, kGroupLevel)),
         group_(group_level_,
-               std::any_of(triangles.begin(), triangles.end(), [&](const CellTriangle& triangle) {
-                 return triangle.material != triangles.front().material;
-               })) {}
+               shade || std::any_of(triangles.begin(), triangles.end(),
+                                    [&](const CellTriangle& triangle) {
+                                      return triangle.material != triangles.front().material;
+                                    }),
+               shade) {}
 
   void run() {
     std::vector<std::uint32_t> all(triangles_.size());
@@ -398,8 +420,8 @@ bool meets_slabs(const TriangleBoxTest& test, TriangleBlock& block) {
 }
 
 void voxelise_cells(std::span<const CellTriangle> triangles, int level, const BlockSink& sink,
-                    const Progress& progress) {
-  Voxeliser(triangles, level, sink, progress).run();
+                    const Progress& progress, const CellShade& shade) {
+  Voxeliser(triangles, level, sink, progress, shade).run();
 }
 
 }  // namespace thimble::tools

@@ -65,6 +65,10 @@ FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const Fi
   return FileBytes::copy_of(bytes);
 }
 
+FileBytes load_regular_file(const std::string& path, std::uint64_t limit_bytes) {
+  return load_file(path, limit_bytes);
+}
+
 class FileBuffer {
  public:
   static FileBytes of(std::span<const std::uint8_t> bytes) {

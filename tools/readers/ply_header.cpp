@@ -1,0 +1,236 @@
+#include "readers/ply_header.h"
+
+#include <optional>
+#include <utility>
+
+#include "readers/ply.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+std::optional<PlyScalar> scalar_named(std::string_view name) {
+  struct Name {
+    std::string_view old_name, new_name;
+    PlyScalar type;
+  };
+  static constexpr std::array<Name, 8> kNames{{{"char", "int8", PlyScalar::kInt8},
+                                               {"uchar", "uint8", PlyScalar::kUint8},
+                                               {"short", "int16", PlyScalar::kInt16},
+                                               {"ushort", "uint16", PlyScalar::kUint16},
+                                               {"int", "int32", PlyScalar::kInt32},
+                                               {"uint", "uint32", PlyScalar::kUint32},
+                                               {"float", "float32", PlyScalar::kFloat},
+                                               {"double", "float64", PlyScalar::kDouble}}};
+  for (const Name& known : kNames) {
+    if (name == known.old_name || name == known.new_name) {
+      return known.type;
+    }
+  }
+  return std::nullopt;
+}
+
+PlyRole role_of(PlyElementKind kind, std::string_view name, bool is_list) {
+  struct Name {
+    std::string_view name;
+    PlyRole role;
+  };
+  static constexpr std::array<Name, 24> kScalars{{{"x", PlyRole::kX},
+                                                  {"y", PlyRole::kY},
+                                                  {"z", PlyRole::kZ},
+                                                  {"red", PlyRole::kRed},
+                                                  {"green", PlyRole::kGreen},
+                                                  {"blue", PlyRole::kBlue},
+                                                  {"diffuse_red", PlyRole::kRed},
+                                                  {"diffuse_green", PlyRole::kGreen},
+                                                  {"diffuse_blue", PlyRole::kBlue},
+                                                  {"r", PlyRole::kRed},
+                                                  {"g", PlyRole::kGreen},
+                                                  {"b", PlyRole::kBlue},
+                                                  {"f_dc_0", PlyRole::kRed},
+                                                  {"f_dc_1", PlyRole::kGreen},
+                                                  {"f_dc_2", PlyRole::kBlue},
+                                                  {"opacity", PlyRole::kOpacity},
+                                                  {"u", PlyRole::kU},
+                                                  {"v", PlyRole::kV},
+                                                  {"s", PlyRole::kU},
+                                                  {"t", PlyRole::kV},
+                                                  {"texture_u", PlyRole::kU},
+                                                  {"texture_v", PlyRole::kV},
+                                                  {"texcoord_u", PlyRole::kU},
+                                                  {"texcoord_v", PlyRole::kV}}};
+  if (kind == PlyElementKind::kVertex && !is_list) {
+    for (const Name& known : kScalars) {
+      if (name == known.name) {
+        return known.role;
+      }
+    }
+  }
+  const bool has_corners = kind == PlyElementKind::kFace || kind == PlyElementKind::kStrips;
+  if (has_corners && is_list && (name == "vertex_indices" || name == "vertex_index")) {
+    return PlyRole::kIndices;
+  }
+  if (kind == PlyElementKind::kFace && is_list && name == "texcoord") {
+    return PlyRole::kTexcoords;
+  }
+  if (kind == PlyElementKind::kFace && !is_list && (name == "texnumber" || name == "texture")) {
+    return PlyRole::kPicture;
+  }
+  return PlyRole::kUnused;
+}
+
+PlyElementKind kind_named(std::string_view name) {
+  if (name == "vertex") {
+    return PlyElementKind::kVertex;
+  }
+  if (name == "face") {
+    return PlyElementKind::kFace;
+  }
+  return name == "tristrips" ? PlyElementKind::kStrips : PlyElementKind::kOther;
+}
+
+class PlyHeaderParser {
+ public:
+  explicit PlyHeaderParser(std::string_view text) : text_(text), lines_(text) {}
+
+  PlyHeader parse() {
+    if (!looks_like_ply({reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size()})) {
+      throw InputError("the first line is not 'ply'");
+    }
+    std::string_view line;
+    lines_.next(line);
+    for (;;) {
+      if (!lines_.next(line)) {
+        throw InputError("the header has no line 'end_header'");
+      }
+      const std::string_view word = take_word(line);
+      if (word == "end_header") {
+        break;
+      }
+      if (word == "format") {
+        format(line);
+      } else if (word == "element") {
+        element(line);
+      } else if (word == "property") {
+        property(line);
+      } else if (word == "comment") {
+        if (take_word(line) == "TextureFile" && header_.pictures.size() < kMostPlyPictures) {
+          header_.pictures.emplace_back(trimmed(line));
+        }
+      }
+    }
+    if (!has_format_) {
+      throw InputError("the header has no line 'format'");
+    }
+    header_.body_offset = lines_.offset();
+    header_.body_line = lines_.line_number() + 1;
+    // A binary body may begin with a byte that looks like the second half of a CRLF; only a header written
+    // with CRLF throughout has one that belongs to the header.
+    const bool first_line_has_cr_alone = text_.substr(3, 1) == "\r" && text_.substr(4, 1) != "\n";
+    if (first_line_has_cr_alone && text_.substr(header_.body_offset - 2, 2) == "\r\n") {
+      --header_.body_offset;
+    }
+    return std::move(header_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(lines_.line_number(), sentence); }
+
+  void format(std::string_view line) {
+    const std::string_view word = take_word(line);
+    if (word == "ascii") {
+      header_.encoding = PlyEncoding::kAscii;
+    } else if (word == "binary_little_endian") {
+      header_.encoding = PlyEncoding::kLittleEndian;
+    } else if (word == "binary_big_endian") {
+      header_.encoding = PlyEncoding::kBigEndian;
+    } else {
+      fail("the format " + quoted(word) + " is not ascii, binary_little_endian or binary_big_endian");
+    }
+    has_format_ = true;
+  }
+
+  void element(std::string_view line) {
+    const std::string_view name = take_word(line);
+    const std::string_view count = take_word(line);
+    std::int64_t value = 0;
+    if (name.empty() || !parse_integer(count, value) || value < 0) {
+      fail("element " + quoted(name) + " has the count " + quoted(count) +
+           ", which is no number of elements");
+    }
+    PlyElement added;
+    added.name = name;
+    added.kind = kind_named(name);
+    added.count = static_cast<std::uint64_t>(value);
+    if (added.kind != PlyElementKind::kOther) {
+      for (const PlyElement& other : header_.elements) {
+        if (other.kind == added.kind) {
+          fail("element " + quoted(name) + " is declared twice");
+        }
+      }
+    }
+    header_.elements.push_back(std::move(added));
+  }
+
+  void property(std::string_view line) {
+    if (header_.elements.empty()) {
+      fail("a property comes before the first element");
+    }
+    PlyElement& element = header_.elements.back();
+    PlyProperty added;
+    std::string_view word = take_word(line);
+    if (word == "list") {
+      added.is_list = true;
+      added.count_type = type(take_word(line));
+      if (is_ply_real(added.count_type)) {
+        fail("the length of a list cannot be of type float or double");
+      }
+      word = take_word(line);
+    }
+    added.type = type(word);
+    const std::string_view name = take_word(line);
+    if (name.empty()) {
+      fail("a property has no name");
+    }
+    added.role = role_of(element.kind, name, added.is_list);
+    added.is_harmonic = name.starts_with("f_dc_");
+    if (added.role != PlyRole::kUnused && has_role(element, added.role)) {
+      if (added.role <= PlyRole::kZ || added.role == PlyRole::kIndices) {
+        fail("property " + quoted(name) + " is declared twice");
+      }
+      added.is_harmonic = false;
+      added.role = PlyRole::kUnused;  // A second set of colours; the first one counts.
+    }
+    element.properties.push_back(added);
+  }
+
+  PlyScalar type(std::string_view name) const {
+    const std::optional<PlyScalar> found = scalar_named(name);
+    if (!found) {
+      fail("the type " + quoted(name) + " is unknown");
+    }
+    return *found;
+  }
+
+  std::string_view text_;
+  LineReader lines_;
+  PlyHeader header_;
+  bool has_format_ = false;
+};
+
+}  // namespace
+
+bool has_role(const PlyElement& element, PlyRole role) {
+  for (const PlyProperty& property : element.properties) {
+    if (property.role == role) {
+      return true;
+    }
+  }
+  return false;
+}
+
+PlyHeader read_ply_header(std::string_view text) {
+  return PlyHeaderParser(text).parse();
+}
+
+}  // namespace thimble::tools

@@ -1,0 +1,299 @@
+#include "readers/texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+#include "readers/file_bytes.h"
+#include "readers/mesh.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+/// Memory for the decoder, which knows no bound: what a picture holds behind its header may be far more than its pixels.
+/// A block's size stands before it.
+constexpr std::size_t kBeforeBlock = alignof(std::max_align_t);
+thread_local std::size_t room_bytes = 0;
+
+void* take_block(std::size_t size) {
+  if (size > room_bytes) {
+    return nullptr;
+  }
+  auto* const block = static_cast<std::uint8_t*>(std::malloc(size + kBeforeBlock));
+  if (block == nullptr) {
+    return nullptr;
+  }
+  room_bytes -= size;
+  *reinterpret_cast<std::size_t*>(block) = size;
+  return block + kBeforeBlock;
+}
+void free_block(void* block) {
+  if (block != nullptr) {
+    void* const whole = static_cast<std::uint8_t*>(block) - kBeforeBlock;
+    room_bytes += *static_cast<std::size_t*>(whole);
+    std::free(whole);
+  }
+}
+void* move_block(void* block, std::size_t old_size, std::size_t size) {
+  void* const moved = take_block(size);
+  if (moved != nullptr && block != nullptr) {
+    std::copy_n(static_cast<const std::uint8_t*>(block), std::min(old_size, size),
+                static_cast<std::uint8_t*>(moved));
+    free_block(block);
+  }
+  return moved;
+}
+
+}  // namespace
+}  // namespace thimble::tools
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wcast-align"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#ifndef __clang_analyzer__  // what it finds in the library is not ours to change
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#endif
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#define STBI_NO_LINEAR
+#define STBI_NO_HDR
+#define STBI_MALLOC(size) thimble::tools::take_block(size)
+#define STBI_REALLOC_SIZED(block, old_size, size) thimble::tools::move_block(block, old_size, size)
+#define STBI_FREE(block) thimble::tools::free_block(block)
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::int64_t kMostAcross = 8;  ///< pixels of the level that a box is averaged on
+
+std::int64_t wrapped(std::int64_t i, std::int64_t count, Wrap wrap) {
+  if (wrap == Wrap::kClamp) {
+    return std::clamp<std::int64_t>(i, 0, count - 1);
+  }
+  const std::int64_t period = wrap == Wrap::kMirror ? 2 * count : count;
+  const std::int64_t at = (i % period + period) % period;
+  return at < count ? at : period - 1 - at;
+}
+
+/// The pixels of a row that a range covers, and how much of each.
+struct Coverage {
+  std::array<std::size_t, kMostAcross + 3> pixel{};
+  std::array<double, kMostAcross + 3> part{};
+  std::size_t count = 0;
+
+  Coverage(double middle, double half, std::int32_t pixels, Wrap wrap) {
+    // Far out, where no number tells one pixel from the next, nor does this.
+    middle = std::isfinite(middle) ? middle : 0;
+    middle = wrap == Wrap::kClamp ? std::clamp(middle, -1.0, 2.0) : middle - 2 * std::floor(middle / 2);
+    const double low = (middle - half) * pixels;
+    const double high = (middle + half) * pixels;
+    const auto first = static_cast<std::int64_t>(std::floor(low));
+    const auto last = std::min(static_cast<std::int64_t>(std::floor(high)), first + kMostAcross + 1);
+    // A sliver of a pixel is what corners rounded to 1/256 voxel make of a border.
+    constexpr double kSliver = 1.0 / 32;
+    for (std::int64_t i = first; i <= last; ++i) {
+      const double covered =
+          std::min(high, static_cast<double>(i + 1)) - std::max(low, static_cast<double>(i));
+      if (first != last && covered <= (high - low) * kSliver) {
+        continue;
+      }
+      pixel[count] = static_cast<std::size_t>(wrapped(i, pixels, wrap));
+      part[count++] = first == last ? 1 : covered;
+    }
+  }
+};
+
+/// Makes the grey of a picture its alpha, unless it has one.
+void take_opacity(std::span<std::uint8_t> rgba) {
+  std::uint8_t least = 255;
+  for (std::size_t i = 3; i < rgba.size(); i += 4) {
+    least = std::min(least, rgba[i]);
+  }
+  for (std::size_t i = 0; least == 255 && i < rgba.size(); i += 4) {
+    rgba[i + 3] = static_cast<std::uint8_t>((rgba[i] + rgba[i + 1] + rgba[i + 2]) / 3);
+  }
+}
+
+}  // namespace
+
+double light_of(std::uint8_t byte) {
+  static const std::array<double, 256> kLight = [] {
+    std::array<double, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const double value = static_cast<double>(i) / 255;
+      table[i] = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+    }
+    return table;
+  }();
+  return kLight[byte];
+}
+
+std::uint8_t screen_byte(double light) {
+  if (!(light > 0)) {
+    return 0;
+  }
+  return unit_to_byte(light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
+}
+
+Texture::Texture(std::shared_ptr<const std::uint8_t> rgba, std::int32_t width_px, std::int32_t height_px) {
+  levels_.push_back({std::move(rgba), width_px, height_px});
+  while (levels_.back().width > 1 || levels_.back().height > 1) {
+    const Level& finer = levels_.back();
+    Level level{nullptr, (finer.width + 1) / 2, (finer.height + 1) / 2};
+    auto pixels = std::make_shared<std::vector<std::uint8_t>>();
+    pixels->reserve(4 * static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+    const double half_u = 0.5 / level.width;
+    const double half_v = 0.5 / level.height;
+    for (std::int32_t y = 0; y < level.height; ++y) {
+      for (std::int32_t x = 0; x < level.width; ++x) {
+        const Box box{(2 * x + 1) * half_u, (2 * y + 1) * half_v, half_u, half_v};
+        const Sample sample = average_at(finer, box, Wrap::kClamp, Wrap::kClamp);
+        for (const double light : sample.light) {
+          pixels->push_back(screen_byte(light));
+        }
+        pixels->push_back(unit_to_byte(sample.alpha));
+      }
+    }
+    level.rgba = {pixels, pixels->data()};
+    levels_.push_back(std::move(level));
+  }
+}
+
+Texture::Sample Texture::average(const Box& box, Wrap wrap_u, Wrap wrap_v) const {
+  const auto half = [](double value) { return value > 0 ? std::min(value, 0.5) : 0; };  // NaN is none
+  const Box bounded{box.u, box.v, half(box.half_u), half(box.half_v)};
+  std::size_t at = 0;
+  while (at + 1 < levels_.size() && std::max(2 * bounded.half_u * levels_[at].width,
+                                             2 * bounded.half_v * levels_[at].height) > kMostAcross) {
+    ++at;
+  }
+  return average_at(levels_[at], bounded, wrap_u, wrap_v);
+}
+
+Texture::Sample Texture::average_at(const Level& level, const Box& box, Wrap wrap_u, Wrap wrap_v) {
+  const Coverage columns(box.u, box.half_u, level.width, wrap_u);
+  const Coverage rows(box.v, box.half_v, level.height, wrap_v);
+  std::array<double, 3> light{};
+  double weights = 0;
+  double alpha = 0;
+  double parts = 0;
+  for (std::size_t row = 0; row < rows.count; ++row) {
+    const std::uint8_t* const line =
+        level.rgba.get() + 4 * rows.pixel[row] * static_cast<std::size_t>(level.width);
+    for (std::size_t column = 0; column < columns.count; ++column) {
+      const std::uint8_t* const pixel = line + 4 * columns.pixel[column];
+      const double part = rows.part[row] * columns.part[column];
+      // What is clear has a colour too, which counts where there is no other.
+      const double weight = part * (pixel[3] + 1);
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        light[channel] += weight * light_of(pixel[channel]);
+      }
+      weights += weight;
+      alpha += part * pixel[3];
+      parts += part;
+    }
+  }
+  return {{light[0] / weights, light[1] / weights, light[2] / weights}, alpha / (255 * parts)};
+}
+
+std::shared_ptr<const Texture> Textures::inside(const std::string& key, std::span<const std::uint8_t> encoded,
+                                                bool is_opacity) {
+  const auto known = known_.find({key, is_opacity});
+  if (known != known_.end()) {
+    return known->second;
+  }
+  std::shared_ptr<const Texture>& texture = known_[{key, is_opacity}];
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  const auto size = static_cast<int>(std::min<std::size_t>(encoded.size(), std::numeric_limits<int>::max()));
+  room_bytes = std::size_t{1} << 20;
+  if (stbi_info_from_memory(encoded.data(), size, &width, &height, &channels) == 0 || width < 1 ||
+      height < 1) {
+    const std::string_view begins(reinterpret_cast<const char*>(encoded.data()), encoded.size());
+    const bool is_ktx = begins.starts_with("\xABKTX");
+    const bool is_webp = begins.starts_with("RIFF") && begins.substr(0, 12).ends_with("WEBP");
+    miss(key, is_ktx    ? "is KTX, which is not read"
+              : is_webp ? "is WebP, which is not read"
+                        : "is no PNG or JPEG");
+    return texture;
+  }
+  encoded_bytes_ += encoded.size();
+  const std::uint64_t bytes =
+      std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  if (pixel_bytes_ + bytes > 64 * encoded_bytes_ + (std::uint64_t{64} << 20)) {
+    miss(key, "has " + std::to_string(width) + " x " + std::to_string(height) +
+                  " pixels, too many for a file of " + std::to_string(encoded.size()) + " bytes");
+    return texture;
+  }
+  room_bytes = static_cast<std::size_t>(5 * bytes + 3 * encoded.size() + (std::uint64_t{1} << 20));
+  std::shared_ptr<std::uint8_t> rgba(
+      stbi_load_from_memory(encoded.data(), size, &width, &height, &channels, 4), free_block);
+  if (rgba == nullptr) {
+    miss(key, "is damaged");
+    return texture;
+  }
+  if (is_opacity) {
+    take_opacity({rgba.get(), static_cast<std::size_t>(bytes)});
+  }
+  pixel_bytes_ += bytes;
+  texture = std::make_shared<const Texture>(std::move(rgba), width, height);
+  return texture;
+}
+
+std::shared_ptr<const Texture> Textures::beside(const std::string& name, bool is_opacity) {
+  const auto known = known_.find({name, is_opacity});
+  if (known != known_.end()) {
+    return known->second;
+  }
+  if (path_.empty()) {
+    miss(name, "is beside a file that has no place");
+    return nullptr;
+  }
+  constexpr std::uint64_t kMostFileBytes = std::uint64_t{256} << 20;
+  std::string slashed = name;
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  const std::string folder = path_.substr(0, path_.rfind('/') + 1);
+  const std::string full = slashed.starts_with('/') ? slashed : folder + slashed;
+  std::string reason;
+  for (const std::string& place : {full, folder + slashed.substr(slashed.rfind('/') + 1)}) {
+    try {
+      const FileBytes file = load_regular_file(place, kMostFileBytes);
+      return inside(name, file.bytes(), is_opacity);
+    } catch (const ShortageError&) {
+      throw;
+    } catch (const InputError& error) {
+      reason = reason.empty() ? error.what() : reason;
+    }
+  }
+  known_[{name, is_opacity}] = nullptr;
+  miss(name, reason);
+  return nullptr;
+}
+
+void Textures::miss(const std::string& name, const std::string& reason) {
+  fault("the picture " + tools::quoted(name) + " is not drawn: it " + reason);
+}
+
+void Textures::add_notes(Notes& notes) const {
+  constexpr std::size_t kMostSentences = 3;
+  for (std::size_t i = 0; i < std::min(faults_.size(), kMostSentences); ++i) {
+    notes.push_back(faults_[i]);
+  }
+  if (faults_.size() > kMostSentences) {
+    const std::size_t more = faults_.size() - kMostSentences;
+    notes.push_back(std::to_string(more) +
+                    (more == 1 ? " more picture is not drawn" : " more pictures are not drawn"));
+  }
+}
+
+}  // namespace thimble::tools

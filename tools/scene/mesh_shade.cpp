@@ -1,0 +1,301 @@
+#include "scene/mesh_shade.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "readers/real3.h"
+#include "readers/texture.h"
+#include "scene/world_fit.h"
+
+namespace thimble::tools {
+namespace {
+
+Real3 in_voxels(const UnitPoint& point) {
+  return scaled<double>(
+      {static_cast<double>(point[0]), static_cast<double>(point[1]), static_cast<double>(point[2])},
+      1.0 / kUnitsPerVoxel);
+}
+
+/// What is clear does not end the search for what a voxel is of, as all else does.
+constexpr std::uint64_t kMostClearVoxels = std::uint64_t{1} << 28;
+
+/// One triangle of a mesh, seen from voxels.
+class MeshShade {
+ public:
+  MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitTriangle& corners);
+
+  /// Nothing where the triangle is clear; nor, where `only_over`, where the voxel's middle is not over the triangle.
+  /// @param edges  those of all triangles, sorted
+  std::optional<Rgb> at(const UnitPoint& voxel, bool only_over, std::span<const std::uint64_t> edges) const;
+  /// Adds the edges of a triangle that may be clear.
+  void add_edges(std::vector<std::uint64_t>& edges) const;
+
+ private:
+  /// A point of the triangle's plane, by the weights of the second and third corner.
+  using Place = std::array<double, 2>;
+
+  /// The place next to the voxel's middle.
+  Place place_of(const Real3& out) const;
+  /// The place on the triangle next to one beyond it, which is that of the middle.
+  Place edge_place_of(const Real3& out) const;
+  /// Whether the picture continues over all edges that separate the place from the triangle.
+  bool goes_on(const Place& place, std::span<const std::uint64_t> edges) const;
+  /// Stands for the edge opposite to a corner: its ends, on the mesh and on the picture, and on which side of it the
+  /// triangle lies there; or a neighbour, on the other side.
+  std::uint64_t edge_key(std::size_t corner, bool is_neighbour) const;
+  /// @param size  of the piece of the picture that is averaged; 1: what a voxel covers
+  Texture::Sample sample_at(const Place& place, double size) const;
+  /// Clear on the average and at the place itself: a voxel may cover much that is beside the mesh's part of a picture.
+  bool is_clear(const Place& place) const;
+
+  const TriangleMesh& mesh_;
+  std::size_t triangle_;
+  UnitTriangle corners_;
+  const MeshSurface* surface_ = nullptr;  ///< null: the triangle has its own colour alone
+  Real3 corner_{};                        ///< the first, in voxels; the edges from it to the others:
+  Real3 edge_b_{}, edge_c_{};
+  double bb_ = 0, bc_ = 0, cc_ = 0, area_ = 0;  ///< products of the edges; the square of twice the area
+  std::array<std::array<double, 2>, 3> texcoord_{};
+  double half_u_ = 0, half_v_ = 0;  ///< of what a voxel covers
+};
+
+double mixed(double p, double q, double r, const std::array<double, 2>& place) {
+  return p + (q - p) * place[0] + (r - p) * place[1];
+}
+
+bool is_inside(const std::array<double, 2>& place) {
+  return place[0] >= 0 && place[1] >= 0 && place[0] + place[1] <= 1;
+}
+
+MeshShade::MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitTriangle& corners)
+    : mesh_(mesh), triangle_(triangle), corners_(corners), corner_(in_voxels(corners[0])) {
+  edge_b_ = minus(in_voxels(corners[1]), corner_);
+  edge_c_ = minus(in_voxels(corners[2]), corner_);
+  bb_ = dot(edge_b_, edge_b_);
+  bc_ = dot(edge_b_, edge_c_);
+  cc_ = dot(edge_c_, edge_c_);
+  area_ = bb_ * cc_ - bc_ * bc_;
+  const auto& numbers =
+      mesh.texcoord_corners.empty() ? mesh.triangles[triangle] : mesh.texcoord_corners[triangle];
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (numbers[i] >= mesh.texcoords.size()) {
+      return;
+    }
+    const auto [u, v] = mesh.texcoords[numbers[i]];
+    texcoord_[i] = {static_cast<double>(u), static_cast<double>(v)};
+  }
+  surface_ = &mesh.surfaces[mesh.surface_of[triangle]];
+  if (area_ <= 0) {
+    return;
+  }
+  const Real3 slope_b = scaled(minus(scaled(edge_b_, cc_), scaled(edge_c_, bc_)), 1 / area_);
+  const Real3 slope_c = scaled(minus(scaled(edge_c_, bb_), scaled(edge_b_, bc_)), 1 / area_);
+  const auto half = [&](std::size_t axis) {
+    const Real3 slope = plus(scaled(slope_b, texcoord_[1][axis] - texcoord_[0][axis]),
+                             scaled(slope_c, texcoord_[2][axis] - texcoord_[0][axis]));
+    return std::sqrt(dot(slope, slope)) / 2;
+  };
+  half_u_ = half(0);
+  half_v_ = half(1);
+}
+
+MeshShade::Place MeshShade::place_of(const Real3& out) const {
+  const double ob = dot(out, edge_b_);
+  const double oc = dot(out, edge_c_);
+  return area_ > 0 ? Place{(ob * cc_ - oc * bc_) / area_, (oc * bb_ - ob * bc_) / area_} : Place{-1, -1};
+}
+
+MeshShade::Place MeshShade::edge_place_of(const Real3& out) const {
+  const Real3 side = minus(edge_c_, edge_b_);
+  const auto part = [](double along, double whole) {
+    return whole > 0 ? std::clamp(along / whole, 0.0, 1.0) : 0;
+  };
+  const double on_side = part(dot(minus(out, edge_b_), side), dot(side, side));
+  // The nearest point of each edge: from A to B, from A to C, from B to C.
+  const std::array<Place, 3> places{
+      {{part(dot(out, edge_b_), bb_), 0}, {0, part(dot(out, edge_c_), cc_)}, {1 - on_side, on_side}}};
+  const auto distance = [&](const Place& place) {
+    const Real3 apart = minus(out, plus(scaled(edge_b_, place[0]), scaled(edge_c_, place[1])));
+    return dot(apart, apart);
+  };
+  return *std::min_element(places.begin(), places.end(),
+                           [&](const Place& p, const Place& q) { return distance(p) < distance(q); });
+}
+
+std::uint64_t MeshShade::edge_key(std::size_t corner, bool is_neighbour) const {
+  std::array<std::size_t, 2> ends{(corner + 1) % 3, (corner + 2) % 3};
+  if (std::pair(corners_[ends[1]], texcoord_[ends[1]]) < std::pair(corners_[ends[0]], texcoord_[ends[0]])) {
+    std::swap(ends[0], ends[1]);
+  }
+  const auto& [u, v] = texcoord_[ends[0]];
+  const auto& [to_u, to_v] = texcoord_[ends[1]];
+  const auto& [own_u, own_v] = texcoord_[corner];
+  const bool is_left = (to_u - u) * (own_v - v) > (to_v - v) * (own_u - u);
+  std::uint64_t key = is_left != is_neighbour ? 1 : 0;
+  const auto add = [&](std::uint64_t value) {
+    key = (key ^ value) * 0x9E3779B97F4A7C15U;
+    key ^= key >> 29U;
+  };
+  add(mesh_.surface_of[triangle_]);
+  for (const std::size_t end : ends) {
+    for (const std::int32_t coordinate : corners_[end]) {
+      add(static_cast<std::uint32_t>(coordinate));
+    }
+    for (const double coordinate : texcoord_[end]) {
+      add(std::bit_cast<std::uint64_t>(coordinate));
+    }
+  }
+  return key;
+}
+
+void MeshShade::add_edges(std::vector<std::uint64_t>& edges) const {
+  for (std::size_t corner = 0; surface_ != nullptr && surface_->cutoff > 0 && corner < 3; ++corner) {
+    edges.push_back(edge_key(corner, false));
+  }
+}
+
+bool MeshShade::goes_on(const Place& place, std::span<const std::uint64_t> edges) const {
+  const std::array<double, 3> weights{1 - place[0] - place[1], place[0], place[1]};
+  bool is_on = area_ > 0;
+  for (std::size_t corner = 0; is_on && corner < 3; ++corner) {
+    is_on = weights[corner] >= 0 || std::binary_search(edges.begin(), edges.end(), edge_key(corner, true));
+  }
+  return is_on;
+}
+
+Texture::Sample MeshShade::sample_at(const Place& place, double size) const {
+  const Texture::Box box{mixed(texcoord_[0][0], texcoord_[1][0], texcoord_[2][0], place),
+                         mixed(texcoord_[0][1], texcoord_[1][1], texcoord_[2][1], place), half_u_ * size,
+                         half_v_ * size};
+  const auto sample_of = [&](const std::shared_ptr<const Texture>& texture) {
+    return texture == nullptr ? Texture::Sample{} : texture->average(box, surface_->wrap_u, surface_->wrap_v);
+  };
+  Texture::Sample sample = sample_of(surface_->color);
+  if (surface_->opacity != nullptr) {
+    sample.alpha = sample_of(surface_->opacity).alpha;
+  }
+  return sample;
+}
+
+bool MeshShade::is_clear(const Place& place) const {
+  constexpr double kInwards = 1.0 / 1024;  // of an edge, at which the next pixel may begin
+  const auto inwards = [](double weight) { return weight + (1.0 / 3 - weight) * kInwards; };
+  const auto is_below = [&](const Texture::Sample& sample) {
+    return sample.alpha * surface_->alpha < surface_->cutoff;
+  };
+  return is_below(sample_at(place, 1)) && is_below(sample_at({inwards(place[0]), inwards(place[1])}, 0));
+}
+
+std::optional<Rgb> MeshShade::at(const UnitPoint& voxel, bool only_over,
+                                 std::span<const std::uint64_t> edges) const {
+  const Real3 out = minus(Real3{voxel[0] + 0.5, voxel[1] + 0.5, voxel[2] + 0.5}, corner_);
+  const Place below = place_of(out);
+  const bool is_over = is_inside(below);
+  if (only_over && !is_over) {
+    return std::nullopt;
+  }
+  if (surface_ == nullptr || (surface_->color == nullptr && surface_->opacity == nullptr)) {
+    return has_colors(mesh_) ? triangle_color(mesh_, triangle_) : Rgb{};
+  }
+  const Place place = is_over ? below : edge_place_of(out);
+  if (surface_->cutoff > 0 && (is_clear(place) || (!is_over && goes_on(below, edges) && is_clear(below)))) {
+    return std::nullopt;
+  }
+  const Texture::Sample sample = sample_at(place, 1);
+  std::array<double, 3> tint{1, 1, 1};
+  const auto tint_by = [&](Rgb p, Rgb q, Rgb r) {
+    tint = {mixed(light_of(p.r), light_of(q.r), light_of(r.r), place),
+            mixed(light_of(p.g), light_of(q.g), light_of(r.g), place),
+            mixed(light_of(p.b), light_of(q.b), light_of(r.b), place)};
+  };
+  if (!mesh_.face_colors.empty()) {
+    const Rgb color = mesh_.face_colors[triangle_];
+    tint_by(color, color, color);
+  } else if (!mesh_.colors.empty()) {
+    const auto& corners = mesh_.triangles[triangle_];
+    tint_by(mesh_.colors[corners[0]], mesh_.colors[corners[1]], mesh_.colors[corners[2]]);
+  }
+  return Rgb{screen_byte(tint[0] * sample.light[0]), screen_byte(tint[1] * sample.light[1]),
+             screen_byte(tint[2] * sample.light[2])};
+}
+
+}  // namespace
+
+void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
+                     const std::function<std::uint8_t(Rgb)>& material_of, const BlockSink& sink,
+                     const Progress& progress) {
+  const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
+  const std::size_t count = mesh.triangles.size();
+  std::uint64_t all_cost = 0;
+  const auto triangle_at = [&](std::size_t i) {
+    const auto& [a, b, c] = mesh.triangles[i % count];
+    return CellTriangle{{units[a], units[b], units[c]}, 0, i >= count, static_cast<std::uint32_t>(i % count)};
+  };
+  std::vector<std::uint64_t> edges;
+  for (std::size_t i = 0; i < count; ++i) {
+    const CellTriangle triangle = triangle_at(i);
+    all_cost += rough_cost(triangle.corners);
+    MeshShade(mesh, i, triangle.corners).add_edges(edges);
+  }
+  std::sort(edges.begin(), edges.end());
+  std::uint64_t clear = 0;
+  const auto material_at = [&](const MeshShade& shade, const CellTriangle& triangle, const UnitPoint& voxel) {
+    const auto color = shade.at(voxel, triangle.only_over, edges);
+    if (!color && !triangle.only_over && ++clear > kMostClearVoxels) {
+      throw InputError("its triangles lie over each other too often where they are clear");
+    }
+    return color ? std::optional<std::uint8_t>(material_of(*color)) : std::nullopt;
+  };
+  if (goes_by_cells(all_cost, count)) {
+    std::vector<CellTriangle> triangles;
+    triangles.reserve(2 * count);
+    for (std::size_t i = 0; i < 2 * count; ++i) {
+      triangles.push_back(triangle_at(i));
+    }
+    std::optional<MeshShade> shade;
+    std::uint32_t number = 0;
+    voxelise_cells(triangles, level, sink, progress,
+                   [&](const CellTriangle& triangle, const UnitPoint& voxel) {
+                     if (!shade || number != triangle.number) {
+                       number = triangle.number;
+                       shade.emplace(mesh, number, triangle.corners);
+                     }
+                     return material_at(*shade, triangle, voxel);
+                   });
+    return;
+  }
+  for (std::size_t i = 0; i < 2 * count; ++i) {
+    if (progress && i % 4096 == 0) {
+      progress(static_cast<double>(i) / static_cast<double>(2 * count));
+    }
+    const CellTriangle triangle = triangle_at(i);
+    const MeshShade shade(mesh, triangle.number, triangle.corners);
+    voxelise_triangle(triangle.corners, 0, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+      if (const auto material = material_at(shade, triangle, {x, y, z})) {
+        sink({x, y, z}, 0, *material);
+      }
+    });
+  }
+}
+
+ColorHistogram mesh_colors(const TriangleMesh& mesh, int level, bool z_up) {
+  if (mesh.surfaces.empty()) {
+    return triangle_colors(mesh);
+  }
+  ColorHistogram histogram;
+  const auto count = [&](Rgb color) {
+    histogram.add(color);
+    return std::uint8_t{0};
+  };
+  voxelise_shaded(mesh, level, z_up, count, [](const UnitPoint&, int, std::uint8_t) {}, {});
+  return histogram;
+}
+
+}  // namespace thimble::tools
