@@ -1,7 +1,6 @@
 // thimble accuracy: what each knob that trades a picture's error for time gives, and what a given time or
 // error calls for.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -41,11 +40,9 @@ void run_scene(const AccuracyCommand& command) {
   ReportFiles files(command.files, command.scene.arguments.scene);
   const auto source = command.scene.open();
   BuiltScene built = command.scene.build(*source);
-  AccuracyStudy study;
-  {
-    ProgressBar bar("measuring", command.scene.quiet);
-    study = study_accuracy(*source, &built, command.study, [&](double done) { bar.update(done); });
-  }
+  const AccuracyStudy study = with_progress("measuring", command.scene.quiet, [&](const Progress& progress) {
+    return study_accuracy(*source, &built, command.study, progress);
+  });
   // Before anything is written: no answer is an error.
   const std::string answer = command.for_ms      ? answer_for_ms(study, *command.for_ms)
                              : command.for_error ? answer_for_error(study, *command.for_error)
@@ -66,14 +63,12 @@ void run_scene(const AccuracyCommand& command) {
 
 void run_hard(const AccuracyCommand& command) {
   ReportFiles files(command.files, command.scene.arguments.scene);
-  HardCaseStudy study;
-  {
-    ProgressBar bar("tracing", command.scene.quiet);
-    study.cases =
-        run_hard_cases(command.hard_rays, command.seed, [&](double done) { bar.update(0.8 * done); });
-    study.operations = sweep_operations(std::max(command.hard_rays / 5, kLeastCases), command.seed,
-                                        [&](double done) { bar.update(0.8 + 0.2 * done); });
-  }
+  const HardCaseStudy study = with_progress("tracing", command.scene.quiet, [&](const Progress& progress) {
+    return HardCaseStudy{
+        run_hard_cases(command.hard_rays, command.seed, [&](double done) { progress(0.8 * done); }),
+        sweep_operations(std::max(command.hard_rays / 5, kLeastCases), command.seed,
+                         [&](double done) { progress(0.8 + 0.2 * done); })};
+  });
   files.write(hard_case_objects(study), "");
   files.print(hard_case_tables(study));
   if (const std::string fault = hard_case_fault(study); !fault.empty()) {
@@ -83,12 +78,9 @@ void run_hard(const AccuracyCommand& command) {
 
 void run_simulation(const AccuracyCommand& command) {
   ReportFiles files(command.files, command.scene.arguments.scene);
-  std::vector<SimulationRow> rows;
-  {
-    ProgressBar bar("measuring", command.scene.quiet);
-    rows =
-        study_simulation(*command.simulation, command.study.rounds, [&](double done) { bar.update(done); });
-  }
+  const auto rows = with_progress("measuring", command.scene.quiet, [&](const Progress& progress) {
+    return study_simulation(*command.simulation, command.study.rounds, progress);
+  });
   files.write(simulation_objects(*command.simulation, rows), simulation_plot(*command.simulation, rows));
   files.print(simulation_table(*command.simulation, rows));
 }
@@ -183,11 +175,8 @@ void add_accuracy(CLI::App& app) {
            "floating point, and every fixed-point operation against exact arithmetic; the exit status is "
            "1 when this tracer gets one wrong");
   add_choice_option(
-      *sub, "--simulation", {"particles", "water"},
-      [command](std::size_t index) {
-        constexpr std::array kWorlds{SimulationWorld::kParticles, SimulationWorld::kWater};
-        command->simulation = kWorlds[index];
-      },
+      *sub, "--simulation", {{"particles", SimulationWorld::kParticles}, {"water", SimulationWorld::kWater}},
+      &command->simulation,
       "instead of a scene: substeps and bits of positions of the particle world, or columns and steps of a "
       "basin of water, against the finest");
   add_whole_option(*sub, "--rays", "N", 1, 1000000000, &command->hard_rays,
@@ -208,11 +197,9 @@ void add_accuracy(CLI::App& app) {
                    "frames timed of each setting, by turns, one of each a round")
       .default_str("5");
   add_choice_option(
-      *sub, "--against", {"time", "visits", "instructions"},
-      [command](std::size_t index) {
-        constexpr std::array kAxes{CostAxis::kTime, CostAxis::kVisits, CostAxis::kInstructions};
-        command->study.axis = kAxes[index];
-      },
+      *sub, "--against",
+      {{"time", CostAxis::kTime}, {"visits", CostAxis::kVisits}, {"instructions", CostAxis::kInstructions}},
+      &command->study.axis,
       "what the front and the plot weigh errors against: milliseconds here, or what is the same on every "
       "machine: nodes visited, or an estimate of instructions on lm3s6965evb")
       .default_str("time");

@@ -104,6 +104,18 @@ std::optional<double> parse_real(std::string_view text) {
   return number;
 }
 
+std::optional<std::pair<std::int32_t, std::int32_t>> parse_pair(std::string_view text, char between,
+                                                                std::int32_t low, std::int32_t most) {
+  const std::size_t middle = text.find(between);
+  const auto first = parse_whole(text.substr(0, middle), low, most);
+  const auto second =
+      middle == std::string_view::npos ? std::nullopt : parse_whole(text.substr(middle + 1), 1, most);
+  if (!first || !second) {
+    return std::nullopt;
+  }
+  return std::pair{static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*second)};
+}
+
 Option& Option::default_str(const std::string& text) {
   option_->default_str(text);
   return *this;
@@ -115,12 +127,8 @@ Option& Option::required() {
 }
 
 Option& Option::offers(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    text += (text.empty() ? "" : "|") + word;
-  }
   // Kept with the option as a check that is never made, which the help does not show.
-  option_->check(CLI::Validator(text).name(kOffered).active(false));
+  option_->check(CLI::Validator(joined(words, "|")).name(kOffered).active(false));
   return *this;
 }
 
@@ -212,12 +220,8 @@ Option add_real_option(CLI::App& app, const std::string& name, const std::string
 
 Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                          std::function<void(std::size_t)> take, const std::string& help) {
-  std::string type_name;
-  for (const std::string& word : words) {
-    type_name += (type_name.empty() ? "" : "|") + word;
-  }
   return add_text_option(
-      app, name, type_name,
+      app, name, joined(words, "|"),
       [words, take = std::move(take)](const std::string& text) -> std::string {
         const auto found = std::find(words.begin(), words.end(), CLI::detail::to_lower(text));
         if (found == words.end()) {

@@ -31,6 +31,9 @@ namespace thimble::tools {
 std::optional<std::int64_t> parse_whole(std::string_view text, std::int64_t low, std::int64_t high);
 /// `text` as a finite number.
 std::optional<double> parse_real(std::string_view text);
+/// "800x600" and the like: two whole numbers up to `most` with `between` between them, the second from 1 on.
+std::optional<std::pair<std::int32_t, std::int32_t>> parse_pair(std::string_view text, char between,
+                                                                std::int32_t low, std::int32_t most);
 
 /// An option or argument that was added, for what else there is to say of it.
 class Option {
@@ -98,6 +101,19 @@ Option add_real_option(CLI::App& app, const std::string& name, const std::string
 /// An option that is one of a few words, in any case. `take` gets the index into `words`.
 Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                          std::function<void(std::size_t)> take, const std::string& help);
+
+/// The same; `to` gets what stands beside the word.
+template <class Value>
+Option add_choice_option(CLI::App& app, const std::string& name,
+                         const std::vector<std::pair<std::string, std::type_identity_t<Value>>>& choices,
+                         Value* to, const std::string& help) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : choices) {
+    words.push_back(word);
+  }
+  const auto take = [choices, to](std::size_t index) { *to = choices[index].second; };
+  return add_choice_option(app, name, words, take, help);
+}
 
 /// The path of a file.
 Option add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,

@@ -1,6 +1,4 @@
 // thimble bake: a scene as bytes for flash.
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <memory>
 
@@ -64,9 +62,10 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
 std::string advice(const BakeCommand& command, const SceneSource& source, EffectSet effects) {
   std::string text = ";";
   const auto fits = [&](const BakeCommand& other, const SceneSource& from, Baked* baked) {
-    ProgressBar bar("trying what would fit", command.scene.quiet);
     BakingOptions options = baking_options(other, from, nullptr);
-    *baked = bake_within(other.limit(), from, &options, [&](double done) { bar.update(done); });
+    *baked = with_progress("trying what would fit", command.scene.quiet, [&](const Progress& progress) {
+      return bake_within(other.limit(), from, &options, progress);
+    });
     return baked->fits;
   };
   Baked baked;
@@ -167,11 +166,9 @@ void run(const BakeCommand& given) {
   BakingOptions options = baking_options(command, *source, &note);
   options.coarsen = command.scene.coarsen;
   const bool lit = options.default_look;
-  Baked baked;
-  {
-    ProgressBar bar("baking", command.scene.quiet);
-    baked = bake_within(command.limit(), *source, &options, [&](double done) { bar.update(done); });
-  }
+  const Baked baked = with_progress("baking", command.scene.quiet, [&](const Progress& progress) {
+    return bake_within(command.limit(), *source, &options, progress);
+  });
   if (!baked.fits) {
     throw InputError(too_large_text(command.limit(), baked, options, source->level()) +
                      (options.coarsen ? "" : advice(command, *source, baked.effects)));
@@ -189,12 +186,6 @@ void run(const BakeCommand& given) {
   if (!command.scene.quiet) {
     report(command, options, baked, lit && !options.default_look, note);
   }
-}
-
-bool ends_in(const std::string& text, const std::string& ending) {
-  return text.size() > ending.size() &&
-         std::equal(ending.rbegin(), ending.rend(), text.rbegin(),
-                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // thimble boards: what the boards are, and what of a scene fits on each.
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 
@@ -40,17 +41,8 @@ struct SceneSizes {
 };
 
 const char* screen_name(platform::Screen screen) {
-  switch (screen) {
-    case platform::Screen::kNone:
-      return "none";
-    case platform::Screen::kOled:
-      return "oled";
-    case platform::Screen::kLcd:
-      return "lcd";
-    case platform::Screen::kPlain:
-      return "plain";
-  }
-  return "unknown";
+  constexpr std::array kScreenNames{"none", "oled", "lcd", "plain"};  // in the order of `Screen`
+  return kScreenNames[static_cast<std::size_t>(screen)];
 }
 
 // Bytes of the scene when it is baked; and fewer than it takes a depth deeper.

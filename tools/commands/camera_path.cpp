@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "commands/arguments.h"
 #include "output/output_file.h"
 #include "output/part_file.h"
 #include "output/units.h"
@@ -24,14 +25,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
   for (;;) {
     const std::size_t comma = line.find(',');
-    std::string_view cell = line.substr(0, comma);
-    while (!cell.empty() && is_space(cell.front())) {
-      cell.remove_prefix(1);
-    }
-    while (!cell.empty() && is_space(cell.back())) {
-      cell.remove_suffix(1);
-    }
-    cells.push_back(cell);
+    cells.push_back(trimmed(line.substr(0, comma)));
     if (comma == std::string_view::npos) {
       return cells;
     }
@@ -141,12 +135,7 @@ const char* const kPathColumns =
     "degrees, or both may follow";
 
 CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
-  FileBytes bytes;
-  try {
-    bytes = load_file(path, kMostPathBytes);
-  } catch (const InputError& error) {
-    throw OutputError(printable(path) + ": " + error.what());
-  }
+  const FileBytes bytes = about(printable(path), [&] { return load_file(path, kMostPathBytes); });
   return PathReader(path, view).read(bytes.text());
 }
 

@@ -31,31 +31,27 @@ std::string signed_count(std::int64_t number) {
 
 // --- rows for machines -------------------------------------------------------------------------------------
 
-JsonRow row_object(const EffectRow& row) {
-  JsonRow object;
-  object["effect"] = effect_name(row.effect);
-  object["called_for"] = row.called_for ? 1 : 0;
-  object["why"] = row.why;
-  for (int kind = 0; kind < kLitRayKinds; ++kind) {
-    object[std::string(ray_kind_name(static_cast<LitRayKind>(kind))) + "_rays"] =
-        row.rays[static_cast<std::size_t>(kind)];
-  }
-  object["rays"] = row.all_rays();
-  object["node_visits"] = row.node_visits;
-  object["ms"] = row.ms;
-  object["q25_ms"] = row.ms_q25;
-  object["q75_ms"] = row.ms_q75;
-  object["with_ms"] = row.called_for ? JsonRow(row.with_ms) : JsonRow(nullptr);
-  object["without_ms"] = row.called_for ? JsonRow(row.without_ms) : JsonRow(nullptr);
-  object["ram_bytes"] = row.ram_bytes;
-  object["flash_bytes"] = row.flash_bytes;
-  return object;
-}
-
 JsonRow objects(const EffectsStudy& study) {
   JsonRow rows = JsonRow::array();
   for (const EffectRow& row : study.rows) {
-    rows.push_back(row_object(row));
+    JsonRow object;
+    object["effect"] = effect_name(row.effect);
+    object["called_for"] = row.called_for ? 1 : 0;
+    object["why"] = row.why;
+    for (int kind = 0; kind < kLitRayKinds; ++kind) {
+      object[std::string(ray_kind_name(static_cast<LitRayKind>(kind))) + "_rays"] =
+          row.rays[static_cast<std::size_t>(kind)];
+    }
+    object["rays"] = row.all_rays();
+    object["node_visits"] = row.node_visits;
+    object["ms"] = row.ms_median;
+    object["q25_ms"] = row.ms_quarter;
+    object["q75_ms"] = row.ms_three_quarters;
+    object["with_ms"] = json_of(row.called_for ? &row.with_ms : nullptr);
+    object["without_ms"] = json_of(row.called_for ? &row.without_ms : nullptr);
+    object["ram_bytes"] = row.ram_bytes;
+    object["flash_bytes"] = row.flash_bytes;
+    rows.push_back(object);
   }
   return rows;
 }
@@ -70,7 +66,8 @@ std::string cost_table(const EffectsStudy& study) {
       continue;
     }
     rows.push_back({effect_name(row.effect), signed_count(row.all_rays()), signed_count(row.node_visits),
-                    fixed(row.ms, 2), fixed(row.ms_q25, 2) + " .. " + fixed(row.ms_q75, 2),
+                    fixed(row.ms_median, 2),
+                    fixed(row.ms_quarter, 2) + " .. " + fixed(row.ms_three_quarters, 2),
                     grouped(row.ram_bytes), grouped(row.flash_bytes)});
   }
   return "more with the effect than without it: rays, nodes visited, milliseconds a frame, bytes of RAM\n"
@@ -95,25 +92,19 @@ std::string rays_table(const EffectsStudy& study) {
     head.push_back(ray_kind_name(static_cast<LitRayKind>(kind)));
   }
   std::vector<Cells> rows{head};
-  const auto frame = [&](const char* name, const LitCounts& counts) {
-    Cells cells{name};
-    for (const std::uint64_t number : counts.rays) {
-      cells.push_back(grouped(number));
+  const auto add = [&](const char* name, const auto& rays) {
+    rows.push_back({name});
+    for (const auto number : rays) {
+      rows.back().push_back(signed_count(static_cast<std::int64_t>(number)));
     }
-    rows.push_back(cells);
   };
-  frame("frame without any", study.plain);
-  if (study.effects == Effect::kNone) {
-    return "\n" + columns_of(rows, 1);
+  add("frame without any", study.plain.rays);
+  if (study.effects != Effect::kNone) {
+    add("frame with all", study.lit.rays);
   }
-  frame("frame with all", study.lit);
   for (const EffectRow& row : study.rows) {
     if (row.called_for) {
-      Cells cells{effect_name(row.effect)};
-      for (const std::int64_t number : row.rays) {
-        cells.push_back(signed_count(number));
-      }
-      rows.push_back(cells);
+      add(effect_name(row.effect), row.rays);
     }
   }
   return "\n" + columns_of(rows, 1);
@@ -139,10 +130,10 @@ std::string plot(const EffectsCommand& command, const EffectsStudy& study) {
   for (const EffectRow& row : study.rows) {
     Bar bar;
     bar.name = effect_name(row.effect);
-    bar.value = row.ms;
-    bar.low = row.ms_q25;
-    bar.high = row.ms_q75;
-    bar.text = row.called_for ? fixed(row.ms, 2) + " ms, " + signed_count(row.all_rays()) + " rays"
+    bar.value = row.ms_median;
+    bar.low = row.ms_quarter;
+    bar.high = row.ms_three_quarters;
+    bar.text = row.called_for ? fixed(row.ms_median, 2) + " ms, " + signed_count(row.all_rays()) + " rays"
                               : "not called for";
     chart.bars.push_back(bar);
   }
@@ -152,11 +143,9 @@ std::string plot(const EffectsCommand& command, const EffectsStudy& study) {
 void run(const EffectsCommand& command) {
   ReportFiles files(command.files, command.scene.arguments.scene);
   const auto source = command.scene.open();
-  EffectsStudy study;
-  {
-    ProgressBar bar("measuring", command.scene.quiet);
-    study = study_effects(*source, command.study, [&](double done) { bar.update(done); });
-  }
+  const EffectsStudy study = with_progress("measuring", command.scene.quiet, [&](const Progress& progress) {
+    return study_effects(*source, command.study, progress);
+  });
   files.write(objects(study), files.wants_plot() ? plot(command, study) : "");
   if (!command.scene.quiet && !study.note.empty()) {
     std::fprintf(stderr, "note: %s\n", study.note.c_str());

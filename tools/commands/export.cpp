@@ -29,11 +29,10 @@ void run(const ExportCommand& command) {
   if (built.voxels() == 0) {
     throw InputError("nothing in " + printable(command.scene.arguments.scene) + " is solid");
   }
-  {
-    ProgressBar bar("writing", command.scene.quiet);
+  with_progress("writing", command.scene.quiet, [&](const Progress& progress) {
     write_voxels(outputs[0], command.format, built.compact(), source->palette(), source->has_colors(),
-                 [&](double done) { bar.update(done); });
-  }
+                 progress);
+  });
   outputs.commit();
   if (!command.scene.quiet) {
     const VoxelBox box = built.bounds();

@@ -17,22 +17,6 @@
 namespace thimble::tools {
 namespace {
 
-const char* name_of(SurfaceKind kind) {
-  switch (kind) {
-    case SurfaceKind::kDiffuse:
-      return "diffuse";
-    case SurfaceKind::kMetal:
-      return "metal";
-    case SurfaceKind::kGlass:
-      return "glass";
-    case SurfaceKind::kEmit:
-      return "emit";
-    case SurfaceKind::kMedia:
-      return "media";
-  }
-  return "unknown";
-}
-
 std::string three(double x, double y, double z) {
   return shortest(x) + "," + shortest(y) + "," + shortest(z);
 }
@@ -81,7 +65,9 @@ void describe(const LitDescription& lit, const UsedMaterials& used, const Row& r
 
 // How many materials of each kind.
 std::string describe(const LitDescription& lit, const UsedMaterials& used) {
-  std::array<int, 5> kinds{};
+  constexpr std::array kKindNames{"diffuse", "metal", "glass", "emit",
+                                  "media"};  // in the order of `SurfaceKind`
+  std::array<int, kKindNames.size()> kinds{};
   int used_count = 0;
   for (std::size_t index = 0; index < kMaxSurfaces; ++index) {
     if (used.is[index]) {
@@ -93,7 +79,7 @@ std::string describe(const LitDescription& lit, const UsedMaterials& used) {
   const char* separator = ": ";
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     if (kinds[kind] != 0) {
-      materials += separator + std::to_string(kinds[kind]) + " " + name_of(static_cast<SurfaceKind>(kind));
+      materials += separator + std::to_string(kinds[kind]) + " " + kKindNames[kind];
       separator = ", ";
     }
   }

@@ -146,7 +146,6 @@ void join_film(const JoinCommand& command, const Whole& whole, OutputFile* file)
 
 void join_picture(const JoinCommand& command, const Whole& whole, OutputFile* file) {
   const PartHeader& header = whole.header();
-  const ImageKind kind = image_kind(command.output).value_or(ImageKind::kPpm);
   Image image = frame_of(header, {});
   image.format = header.pixels == PartPixels::kMono ? PixelFormat::kMono1 : PixelFormat::kRgb888;
   for (std::uint32_t y = 0; y < header.all; ++y) {
@@ -160,7 +159,7 @@ void join_picture(const JoinCommand& command, const Whole& whole, OutputFile* fi
       image.alpha.push_back(row[i + 3]);
     }
   }
-  write_image(file, kind, converted(image, pixel_format(kind)));
+  write_picture(file, command.output, image);
 }
 
 // What kind of file these parts can become.

@@ -1,10 +1,14 @@
 // thimble manual: the man page, from the same description as --help. The build writes it to share/man.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
+#include "output/units.h"
 #include "output/version.h"
 #include "scene/named_scenes.h"
 
@@ -13,33 +17,13 @@ namespace {
 
 // `text` so that roff prints it as it stands, wherever in a line it comes.
 std::string plain(const std::string& text) {
-  std::string out;
+  constexpr std::array<std::pair<char, const char*>, 6> kEscapes{
+      {{'\\', "\\e"}, {'-', "\\-"}, {'\'', "\\(aq"}, {'`', "\\(ga"}, {'^', "\\(ha"}, {'~', "\\(ti"}}};
+  std::string out = text.starts_with('.') ? "\\&" : "";  // else it would be a request
   for (const char c : text) {
-    switch (c) {
-      case '\\':
-        out += "\\e";
-        break;
-      case '-':
-        out += "\\-";
-        break;
-      case '\'':
-        out += "\\(aq";
-        break;
-      case '`':
-        out += "\\(ga";
-        break;
-      case '^':
-        out += "\\(ha";
-        break;
-      case '~':
-        out += "\\(ti";
-        break;
-      case '.':
-        out += out.empty() ? "\\&." : ".";
-        break;
-      default:
-        out += c;
-    }
+    const auto* const escape =
+        std::find_if(kEscapes.begin(), kEscapes.end(), [c](const auto& each) { return each.first == c; });
+    out += escape == kEscapes.end() ? std::string(1, c) : escape->second;
   }
   return out;
 }
@@ -105,10 +89,7 @@ std::string manual(const CLI::App& app) {
   text +=
       ".SH SCENES\nThese come with Thimble and are found by name, where the current folder has no such "
       "file:\n";
-  std::string names;
-  for (const std::string& name : scene_names()) {
-    names += (names.empty() ? "" : ", ") + name;
-  }
+  const std::string names = joined(scene_names(), ", ");
   text += paragraph(names.empty() ? "none are installed" : names) +
           ".SH EXIT STATUS\n"
           ".TP\n0\nsuccess\n"

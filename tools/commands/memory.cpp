@@ -20,11 +20,9 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::size_t kDense = 0;
-constexpr std::size_t kPool = 1;
-constexpr std::size_t kCompact = 2;
-constexpr std::size_t kShared = 3;
 constexpr std::array<const char*, kMemoryStructures> kTitles{"dense", "pool", "compact", "DAG"};
+constexpr std::array<std::string_view, kMemoryStructures> kColumnNames{"dense", "pool", "compact",
+                                                                       "dag"};  // of columns
 constexpr std::uint64_t kFourGiB = std::uint64_t{1} << 32;
 // The paper's picture, and as deep as it is wide.
 constexpr std::uint64_t kPaperLayer = 800 * 600;
@@ -83,27 +81,30 @@ std::string grid_text(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   return std::to_string(x) + "x" + std::to_string(y) + "x" + std::to_string(z);
 }
 
-JsonRow optional_of(const std::optional<double>& value) {
-  return value ? JsonRow(*value) : JsonRow(nullptr);
+// The error of the picture at a depth; null for none.
+const PictureError* error_at(const MemoryStudy& study, int depth) {
+  return depth == 0 ? nullptr : &study.depths[static_cast<std::size_t>(depth) - 1].error;
 }
 
 // --- rows for machines -------------------------------------------------------------------------------------
 
 void add_error(const std::string& prefix, const PictureError* error, JsonRow* object) {
-  const bool is_there = error != nullptr;
-  (*object)[prefix + "wrong_px"] = is_there ? JsonRow(error->wrong_px) : JsonRow(nullptr);
-  (*object)[prefix + "silhouette_px"] = is_there ? JsonRow(error->silhouette_px) : JsonRow(nullptr);
-  (*object)[prefix + "depth_error_mean_voxels"] =
-      is_there ? JsonRow(error->depth_mean_voxels) : JsonRow(nullptr);
-  (*object)[prefix + "depth_error_max_voxels"] =
-      is_there ? JsonRow(error->depth_max_voxels) : JsonRow(nullptr);
+  const auto add = [&](const char* name, auto figure) {
+    (*object)[prefix + name] = error == nullptr ? JsonRow(nullptr) : JsonRow(error->*figure);
+  };
+  add("wrong_px", &PictureError::wrong_px);
+  add("silhouette_px", &PictureError::silhouette_px);
+  add("depth_error_mean_voxels", &PictureError::depth_mean_voxels);
+  add("depth_error_max_voxels", &PictureError::depth_max_voxels);
 }
 
 JsonRow depth_object(const MemoryStudy& study, const DepthRow& row) {
-  const auto name = [](std::size_t structure) {
-    return std::string(structure_name(static_cast<MemoryStructure>(structure)));
-  };
   JsonRow object;
+  const auto add_each = [&](const std::string& name, const auto& figure_of) {
+    for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+      object[std::string(kColumnNames[i]) + name] = figure_of(row.structures[i]);
+    }
+  };
   object["row"] = "depth";
   object["depth"] = row.depth;
   object["grid"] = grid_text(static_cast<std::uint64_t>(row.grid.x), static_cast<std::uint64_t>(row.grid.y),
@@ -115,29 +116,22 @@ JsonRow depth_object(const MemoryStudy& study, const DepthRow& row) {
   object["pool_nodes"] = row.pool_nodes;
   object["compact_nodes"] = row.compact_nodes;
   object["dag_nodes"] = row.dag_nodes;
-  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-    object[name(i) + "_bytes"] = row.structures[i].bytes;
-  }
+  add_each("_bytes", [](const StructureFigures& figures) { return figures.bytes; });
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     for (std::size_t stored = 0; stored < kStoredKinds; ++stored) {
       const double bytes = static_cast<double>(row.structures[i].stored_bytes[stored]);
-      object[name(i) + "_" + kStoredNames[stored] + "_bytes_per_voxel"] =
+      object[std::string(kColumnNames[i]) + "_" + kStoredNames[stored] + "_bytes_per_voxel"] =
           row.voxels == 0 ? JsonRow(nullptr) : JsonRow(bytes / static_cast<double>(row.voxels));
     }
   }
-  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-    object[name(i) + "_build_bytes"] = row.structures[i].build_bytes;
-  }
+  add_each("_build_bytes", [](const StructureFigures& figures) { return figures.build_bytes; });
   object["dag_table_bytes"] = row.dag_table_bytes;
-  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-    object[name(i) + "_frame_ms"] = optional_of(row.structures[i].frame_ms);
-  }
-  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-    object[name(i) + "_visits_per_ray"] = optional_of(row.structures[i].visits_per_ray);
-  }
+  add_each("_frame_ms", [](const StructureFigures& figures) { return json_of(figures.frame_ms); });
+  add_each("_visits_per_ray",
+           [](const StructureFigures& figures) { return json_of(figures.visits_per_ray); });
   add_error("", &row.error, &object);
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-    object[name(i) + "_boards"] = boards_that_fit(study, row, i);
+    object[std::string(kColumnNames[i]) + "_boards"] = boards_that_fit(study, row, i);
   }
   return object;
 }
@@ -177,14 +171,11 @@ JsonRow budget_objects(const MemoryStudy& study) {
     JsonRow object;
     object["budget_bytes"] = row.budget_bytes;
     for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-      object[std::string(structure_name(static_cast<MemoryStructure>(i))) + "_depth"] = row.depth[i];
+      object[std::string(kColumnNames[i]) + "_depth"] = row.depth[i];
     }
-    const auto error_at = [&](int depth) {
-      return depth == 0 ? nullptr : &study.depths[static_cast<std::size_t>(depth) - 1].error;
-    };
-    add_error("compact_", error_at(row.depth[kCompact]), &object);
-    add_error("dag_", error_at(row.depth[kShared]), &object);
-    object["coarsened_bytes"] = row.coarsened_bytes ? JsonRow(*row.coarsened_bytes) : JsonRow(nullptr);
+    add_error("compact_", error_at(study, row.depth[kCompact]), &object);
+    add_error("dag_", error_at(study, row.depth[kShared]), &object);
+    object["coarsened_bytes"] = json_of(row.coarsened_bytes);
     object["coarsened_solid_added_voxels"] =
         row.coarsened_bytes ? JsonRow(row.solid_added) : JsonRow(nullptr);
     add_error("coarsened_", row.coarsened_bytes ? &row.coarsened_error : nullptr, &object);
@@ -329,9 +320,7 @@ std::string budget_table(const MemoryStudy& study) {
     for (const int depth : row.depth) {
       cells.push_back(depth == 0 ? "-" : std::to_string(depth));
     }
-    const int depth = row.depth[kCompact];
-    const PictureError* error =
-        depth == 0 ? nullptr : &study.depths[static_cast<std::size_t>(depth) - 1].error;
+    const PictureError* error = error_at(study, row.depth[kCompact]);
     cells.push_back(error == nullptr ? "-" : percent(error->wrong_px, study.pixels));
     cells.push_back(error == nullptr ? "-" : fixed(error->depth_mean_voxels, 2));
     const bool coarsened = row.coarsened_bytes.has_value();
@@ -399,20 +388,15 @@ std::string budget_plot(const MemoryCommand& command, const MemoryStudy& study) 
   Series coarsened{"compact tree, coarsened to fit", false, {}};
   for (const BudgetRow& row : study.budgets) {
     const double budget = static_cast<double>(row.budget_bytes);
-    const auto add = [&](Series* series, double error) {
-      if (error > 0 && budget > 0) {  // what is exact has no place on a logarithmic axis
-        series->points.emplace_back(budget, error);
+    const auto add = [&](Series* series, const PictureError* error) {
+      // What is exact has no place on a logarithmic axis.
+      if (error != nullptr && error->depth_mean_voxels > 0 && budget > 0) {
+        series->points.emplace_back(budget, error->depth_mean_voxels);
       }
     };
-    for (const auto& [series, structure] : {std::pair{&compact, kCompact}, std::pair{&dag, kShared}}) {
-      const int depth = row.depth[structure];
-      if (depth != 0) {
-        add(series, study.depths[static_cast<std::size_t>(depth) - 1].error.depth_mean_voxels);
-      }
-    }
-    if (row.coarsened_bytes) {
-      add(&coarsened, row.coarsened_error.depth_mean_voxels);
-    }
+    add(&compact, error_at(study, row.depth[kCompact]));
+    add(&dag, error_at(study, row.depth[kShared]));
+    add(&coarsened, row.coarsened_bytes ? &row.coarsened_error : nullptr);
   }
   plot.series = {compact, dag, coarsened};
   return log_plot_text(plot);
@@ -421,12 +405,9 @@ std::string budget_plot(const MemoryCommand& command, const MemoryStudy& study) 
 void run(const MemoryCommand& command) {
   ReportFiles files(command.files, command.scene.arguments.scene);
   const auto source = command.scene.open();
-  MemoryStudy study;
-  {
-    ProgressBar bar("measuring", command.scene.quiet);
-    study = study_memory(*source, command.scene.arguments.scene, command.study,
-                         [&](double done) { bar.update(done); });
-  }
+  const MemoryStudy study = with_progress("measuring", command.scene.quiet, [&](const Progress& progress) {
+    return study_memory(*source, command.scene.arguments.scene, command.study, progress);
+  });
   const bool sweep = command.study.budget_sweep;
   const std::string plot = !files.wants_plot() ? ""
                            : sweep             ? budget_plot(command, study)

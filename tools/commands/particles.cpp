@@ -1,10 +1,10 @@
 // thimble particles: the paper's particle world in a window, in a terminal, or unseen.
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
@@ -23,7 +23,6 @@ constexpr std::uint64_t kMostInputBytes = std::uint64_t{64} << 20;
 struct ParticlesCommand {
   WorldOptions world;
   PlayOptions play;
-  bool view_given = false;
   bool count_given = false;
   bool gravity_given = false;
   std::string bodies_path;
@@ -88,8 +87,7 @@ void write_files(const ParticlesCommand& command, const PopulatedWorld& populate
     if (command.play.figures_in_files) {
       draw_figures(image.width_px, image.height_px, result.figures, &image.pixels);
     }
-    const ImageKind kind = image_kind(command.frame_path).value_or(ImageKind::kPng);
-    write_image(outputs[kFrame], kind, converted(image, pixel_format(kind)));
+    write_picture(outputs[kFrame], command.frame_path, image);
   }
   if (outputs[kCounts] != nullptr) {
     outputs[kCounts]->write(particle_stats(populated, result.counts, result.step_seconds));
@@ -103,7 +101,7 @@ void run(const ParticlesCommand& given) {
     refuse_usage("--min-size", std::to_string(world_options.least_diameter) + " is more than --max-size, " +
                                    std::to_string(world_options.most_diameter));
   }
-  if (!command.view_given) {
+  if (command.play.view == host::ScreenKind::kAuto) {
     const bool for_files = command.play.steps || !command.state_path.empty() || !command.field_path.empty() ||
                            !command.frame_path.empty() || !command.recording_path.empty() ||
                            !command.stats_path.empty();
@@ -170,26 +168,17 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
   add_text_option(
       sub, "--size", "WxH",
       [world](const std::string& text) -> std::string {
-        const std::size_t x = text.find('x');
-        const auto width = parse_whole(text.substr(0, x), 1, kMaxFieldSide);
-        const auto height =
-            x == std::string::npos ? std::nullopt : parse_whole(text.substr(x + 1), 1, kMaxFieldSide);
-        if (!width || !height) {
+        const auto size = parse_pair(text, 'x', 1, kMaxFieldSide);
+        if (!size) {
           return "is not a size such as 800x600, each side from 1 to " + std::to_string(kMaxFieldSide);
         }
-        world->width = static_cast<std::int32_t>(*width);
-        world->height = static_cast<std::int32_t>(*height);
+        std::tie(world->width, world->height) = *size;
         return {};
       },
       "cells of the world, a pixel each")
       .default_str("800x600");
-  add_whole_option(
-      sub, "--count", "N", 0, kMaxBalls / 2,
-      [command](std::int64_t count) {
-        command->world.count = static_cast<std::uint32_t>(count);
-        command->count_given = true;
-      },
-      "balls at the start; of --bodies, the first N")
+  add_whole_option(sub, "--count", "N", 0, kMaxBalls / 2, &world->count,
+                   "balls at the start; of --bodies, the first N")
       .default_str("693");
   add_whole_option(sub, "--min-size", "D", 1, kMaxBallDiameter, &world->least_diameter,
                    "least diameter of a ball, cells")
@@ -203,7 +192,7 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       .default_str("0.8");
   add_text_option(
       sub, "--gravity", "X,Y",
-      [command](const std::string& text) -> std::string {
+      [world](const std::string& text) -> std::string {
         constexpr double kMost = kMaxAccelerationQ16 / 65536.0;
         const std::size_t comma = text.find(',');
         const auto x = parse_real(text.substr(0, comma));
@@ -212,8 +201,7 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
           return "is not two numbers X,Y from " + shortest(-kMost) + " to " + shortest(kMost);
         }
         const auto q16 = [](double value) { return static_cast<std::int32_t>(std::lround(value * 65536)); };
-        command->world.gravity_q16 = {q16(*x), q16(*y)};
-        command->gravity_given = true;
+        world->gravity_q16 = {q16(*x), q16(*y)};
         return {};
       },
       "gravity in cells a step a step; y down the picture; with --bodies there is none unless given")
@@ -230,10 +218,8 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       "The circle of that radius fills the box; area goes with mass, from --max-size down to --min-size; y "
       "is "
       "turned; a body whose place is taken goes to the nearest free one; those beyond the box are left out");
-  add_choice_option(
-      sub, "--substeps", {"1", "2", "4", "8", "16"},
-      [world](std::size_t index) { world->substeps_log2 = static_cast<std::int32_t>(index); },
-      "parts that each step is made in")
+  add_choice_option(sub, "--substeps", {{"1", 0}, {"2", 1}, {"4", 2}, {"8", 3}, {"16", 4}},
+                    &world->substeps_log2, "parts that each step is made in")
       .default_str("1");
   add_whole_option(sub, "--subpixel-bits", "N", 1, 15, &world->subpixel_bits,
                    "positions are kept to 2^-N cells")
@@ -247,13 +233,12 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
       "2000, "
       "or to the end of a longer --input)");
   add_choice_option(
-      sub, "--display", {"auto", "none", "window", "terminal"},
-      [command](std::size_t index) {
-        constexpr std::array kKinds{host::ScreenKind::kAuto, host::ScreenKind::kNone,
-                                    host::ScreenKind::kWindow, host::ScreenKind::kTerminal};
-        command->play.view = kKinds[index];
-        command->view_given = index != 0;
-      },
+      sub, "--display",
+      {{"auto", host::ScreenKind::kAuto},
+       {"none", host::ScreenKind::kNone},
+       {"window", host::ScreenKind::kWindow},
+       {"terminal", host::ScreenKind::kTerminal}},
+      &command->play.view,
       "where the world is shown; auto: nowhere where --steps or a file to write (but --record-input) is "
       "given, "
       "else in an X11 window where DISPLAY works, else in the terminal where standard output is one, else "
@@ -329,7 +314,11 @@ void add_particles(CLI::App& app) {
   add_world_options(*sub, command);
   add_view_options(*sub, command);
   add_file_options(*sub, command);
-  when_chosen(*sub, [command] { run(*command); });
+  when_chosen(*sub, [command, sub] {
+    command->count_given = is_given(*sub, "--count");
+    command->gravity_given = is_given(*sub, "--gravity");
+    run(*command);
+  });
 }
 
 }  // namespace thimble::tools

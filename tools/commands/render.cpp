@@ -198,20 +198,19 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
   const EngineOptions& engine = command.engine;
   const TraceOptions options = engine.trace_options();
   Painting painting;
-  if (!command.quality.plain()) {
-    const auto painter = command.quality.at_edges ? ray_edge_painter(subject.built, frame, subject.camera(),
-                                                                     subject.fine, subject.format, options)
-                                                  : quality_painter(subject.built, frame, options);
+  const auto paint_or_fail = [&](const BandPainter& painter) {
     if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
       fail_camera(command);
     }
+  };
+  if (!command.quality.plain()) {
+    paint_or_fail(command.quality.at_edges ? ray_edge_painter(subject.built, frame, subject.camera(),
+                                                              subject.fine, subject.format, options)
+                                           : quality_painter(subject.built, frame, options));
     return painting;
   }
   if (gpu != nullptr) {
-    if (paint_with(gpu_painter(gpu, subject.camera(), subject.shading), subject, progress, &painting) !=
-        Status::kOk) {
-      fail_camera(command);
-    }
+    paint_or_fail(gpu_painter(gpu, subject.camera(), subject.shading));
     painting.preparation_seconds = gpu->seconds();
     return painting;
   }
@@ -228,10 +227,8 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
       fail_camera(command);
     }
   }
-  if (status != Status::kOk &&
-      paint_with(ray_painter(subject.built, subject.camera(), subject.shading, subject.format, options),
-                 subject, progress, &painting) != Status::kOk) {
-    fail_camera(command);
+  if (status != Status::kOk) {
+    paint_or_fail(ray_painter(subject.built, subject.camera(), subject.shading, subject.format, options));
   }
   painting.preparation_seconds = wide != nullptr ? wide->seconds() : 0;
   return painting;
@@ -403,19 +400,13 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
   add_text_option(
       app, "--background", "none|RRGGBB|gradient",
       [command](const std::string& text) {
-        command->look.given = true;
-        return parse_background(text, &command->look.wishes.background)
-                   ? ""
-                   : "is not none, gradient or six hex digits";
+        const bool is_known = parse_background(text, &command->look.wishes.background);
+        return is_known ? "" : "is not none, gradient or six hex digits";
       },
       "what stands behind the scene; none is transparent, in a .png (default: the scene's sky, else a soft "
       "gradient, black behind stars)");
   add_choice_option(
-      app, "--ground", {"auto", "on", "off"},
-      [command](std::size_t index) {
-        command->look.given = true;
-        command->look.wishes.ground = index == 0 ? std::nullopt : std::optional<bool>(index == 1);
-      },
+      app, "--ground", {{"auto", std::nullopt}, {"on", true}, {"off", false}}, &command->look.wishes.ground,
       "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light")
       .default_str("auto");
   add_whole_option(app, "--turntable", "N", 2, 1000, &command->output.turntable,
@@ -504,12 +495,8 @@ void add_render(CLI::App& app) {
   auto command = std::make_shared<RenderCommand>();
   CLI::App* sub = add_command(app, "render", "Draw a scene as a picture.");
   command->scene.add_to(*sub);
-  add_text_option(
-      *sub, "-o,--output", "FILE",
-      [command](const std::string& text) {
-        command->output.path = text;
-        return text.empty() ? "is not a file's name" : "";
-      },
+  add_path_option(
+      *sub, "-o,--output", "FILE", &command->output.path,
       "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output; with --turntable "
       "or --camera-path a .gif or .y4m")
       .required();
@@ -533,6 +520,7 @@ void add_render(CLI::App& app) {
   add_paragraph_below(*sub, kDefaultLookText);
   when_chosen(*sub, [command, sub] {
     command->fov_given = is_given(*sub, "--fov");
+    command->look.given = is_given(*sub, "--background") || is_given(*sub, "--ground");
     run(*command);
   });
 }

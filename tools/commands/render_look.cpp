@@ -257,7 +257,7 @@ class Filming {
 };
 
 void write_part(const RenderCommand& command, PartHeader header, Filming& filming, OutputFile* file) {
-  header.kind = command.output.turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath;
+  header.kind = command.output.film_kind();
   header.width_px = static_cast<std::uint32_t>(command.view.width_px);
   header.height_px = static_cast<std::uint32_t>(command.view.height_px);
   header.first = static_cast<std::uint32_t>(command.output.frames->first);
@@ -281,9 +281,8 @@ void render_film(const RenderCommand& command, const SceneSource& source, LookSt
   if (command.output.frames) {
     write_part(command, part_of(source, studio, filming.framings()), filming, outputs[kPicture]);
   } else {
-    Film film(outputs[kPicture], command.output.path,
-              command.output.turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath,
-              filming.framings().size(), [&](std::size_t number) { return filming.draw(number); });
+    Film film(outputs[kPicture], command.output.path, command.output.film_kind(), filming.framings().size(),
+              [&](std::size_t number) { return filming.draw(number); });
     for (std::size_t i = 0; i < filming.framings().size(); ++i) {
       film.add(filming.shoot(i));
     }

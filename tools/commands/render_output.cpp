@@ -15,20 +15,6 @@
 namespace thimble::tools {
 namespace {
 
-// "FIRST:COUNT"; nothing for anything else.
-std::optional<RowRange> parse_range(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  if (colon == std::string::npos) {
-    return std::nullopt;
-  }
-  const auto first = parse_whole(text.substr(0, colon), 0, INT32_MAX);
-  const auto count = parse_whole(text.substr(colon + 1), 1, INT32_MAX);
-  if (!first || !count) {
-    return std::nullopt;
-  }
-  return RowRange{static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*count)};
-}
-
 // Whether a part of that name is drawn in one bit a pixel.
 bool is_mono_part(const std::string& output) {
   return output.ends_with(".pbm.part");
@@ -47,8 +33,9 @@ void add_range(CLI::App& app, const std::string& name, std::optional<RowRange>* 
   add_text_option(
       app, name, "FIRST:COUNT",
       [range](const std::string& text) {
-        *range = parse_range(text);
-        return *range ? "" : "is not FIRST:COUNT, whole numbers from 0 and from 1";
+        const auto pair = parse_pair(text, ':', 0, INT32_MAX);
+        *range = pair ? std::optional(RowRange{pair->first, pair->second}) : std::nullopt;
+        return pair ? "" : "is not FIRST:COUNT, whole numbers from 0 and from 1";
       },
       help);
 }

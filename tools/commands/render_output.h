@@ -37,6 +37,7 @@ struct RenderOutput {
   /// --rows and --part.
   void add_parts(CLI::App& app);
   bool is_film() const { return turntable != 0 || !camera_path.empty(); }
+  PartKind film_kind() const { return turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath; }
   /// How the picture is kept: `of_rows` for a part of one, unless it is to be rows of a .pbm.
   ImageKind kind(ImageKind of_rows) const;
   /// Ends the command as wrong usage where --output, --rows, --part, --turntable and --camera-path do not go together,

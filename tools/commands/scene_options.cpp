@@ -65,9 +65,11 @@ void SceneOptions::add_to(CLI::App& app) {
   add_flag(app, "--coarsen", &coarsen,
            "when the budget is short, merge blocks of voxels instead of failing; this only adds solid");
   add_choice_option(
-      app, "--structure", {"dense", "pool", "compact"},
-      [this](std::size_t index) { structure = static_cast<StructureKind>(index); },
-      "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one")
+      app, "--structure",
+      {{"dense", StructureKind::kDense},
+       {"pool", StructureKind::kPool},
+       {"compact", StructureKind::kCompact}},
+      &structure, "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one")
       .default_str("compact");
   add_report(app);
 }
@@ -91,12 +93,11 @@ void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64
 }
 
 void add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help) {
-  std::string names;
   std::vector<std::string> all;
   for (const platform::BoardFacts& each : platform::boards()) {
-    names += (names.empty() ? "" : ", ") + std::string(each.name);
     all.emplace_back(each.name);
   }
+  const std::string names = joined(all, ", ");
   add_text_option(
       app, "--board", "NAME",
       [board, names](const std::string& text) {
@@ -108,11 +109,8 @@ void add_board(CLI::App& app, const platform::BoardFacts** board, const std::str
 }
 
 std::unique_ptr<SceneSource> SceneOptions::open() const {
-  std::unique_ptr<SceneSource> scene;
-  {
-    ProgressBar bar("reading", quiet);
-    scene = open_scene(arguments, [&](double done) { bar.update(done); });
-  }
+  auto scene = with_progress("reading", quiet,
+                             [&](const Progress& progress) { return open_scene(arguments, progress); });
   for (const std::string& note : quiet ? Notes() : scene->notes()) {
     std::fprintf(stderr, "note: %s\n", note.c_str());
   }
@@ -140,8 +138,8 @@ BuiltScene SceneOptions::build(const SceneSource& source, const DrawingBytes& dr
   options.least_band_bytes = drawing.least_band;
   options.render_state_bytes = drawing.state;
   options.threads = build_threads;
-  ProgressBar bar("building", quiet);
-  return BuiltScene(source, options, [&](double done) { bar.update(done); });
+  return with_progress("building", quiet,
+                       [&](const Progress& progress) { return BuiltScene(source, options, progress); });
 }
 
 BuiltScene SceneOptions::build(const SceneSource& source) const {
@@ -278,14 +276,10 @@ void EngineOptions::add_to(CLI::App& app, bool all_cores) {
       "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
       "need more; auto: wide where it can be, but not with --board, else ray64");
   threads = all_cores ? tools::all_cores() : 1;
-  add_whole_option(
-      app, "--threads", "N", 1, wide::kMaxThreads,
-      [this](std::int64_t number) {
-        threads = static_cast<int>(number);
-        threads_given = true;
-      },
-      "threads that build, and that draw with the wide engine or with effects")
+  add_whole_option(app, "--threads", "N", 1, wide::kMaxThreads, &threads,
+                   "threads that build, and that draw with the wide engine or with effects")
       .default_str(all_cores ? "all cores; 1 with --memory or --board, whose bytes they count in" : "1");
+  also_check(app, [this, &app] { threads_given = is_given(app, "--threads"); });
 }
 
 void EngineOptions::add_ray_engines_to(CLI::App& app) {

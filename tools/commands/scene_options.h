@@ -18,14 +18,6 @@ class App;
 namespace thimble::platform {
 struct BoardFacts;
 }
-
-namespace CLI {
-class App;
-}
-
-namespace CLI {
-class App;
-}
 namespace thimble {
 struct TraceOptions;
 }

@@ -1,5 +1,4 @@
 // thimble sim: the firmware's own application in the host simulator.
-#include <zlib.h>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include "apps/app_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
+#include "commands/render_output.h"
 #include "commands/scene_options.h"
 #include "commands/sim_session.h"
 #include "commands/stats.h"
@@ -109,9 +109,9 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     view.side = NamedView::kBest;
     view.fov_degrees = kPictureFov;
     options.camera = [&](const CompactTree& tree) { return frame_round(view, *source, shape_of(tree)).kept; };
-    ProgressBar bar("baking", command.scene.quiet);
-    Baked made =
-        bake_within({&board, std::nullopt}, *source, &options, [&](double done) { bar.update(done); });
+    Baked made = with_progress("baking", command.scene.quiet, [&](const Progress& progress) {
+      return bake_within({&board, std::nullopt}, *source, &options, progress);
+    });
     limit = *options.limit_bytes;
     bytes = std::move(made.bytes);
   }
@@ -161,9 +161,6 @@ std::string engine_text(const WideFrames& wide) {
 // As the other subcommands name things; without what is not counted here.
 std::string stats_text(const SimCommand& command, const SessionResult& result, const std::string& engine) {
   const SessionOptions& session = command.session;
-  const auto crc = [](const std::vector<std::uint8_t>& bytes) {
-    return crc_text(static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size())));
-  };
   nlohmann::ordered_json json;
   json["scene"] = session.application->wants_scene ? command.scene.arguments.scene : "";
   json["board"] = session.board->name;
@@ -187,8 +184,8 @@ std::string stats_text(const SimCommand& command, const SessionResult& result, c
     json["threads"] = command.engine.threads;
     json["engine"] = engine;
   }
-  json["frame_crc32"] = result.pictures == 0 ? "" : crc(host::expand_rgb(result.picture));
-  json["display_crc32"] = result.pictures == 0 ? "" : crc(result.picture.bytes);
+  json["frame_crc32"] = result.pictures == 0 ? "" : crc_of(host::expand_rgb(result.picture));
+  json["display_crc32"] = result.pictures == 0 ? "" : crc_of(result.picture.bytes);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -209,12 +206,6 @@ void report(const SimCommand& command, const SessionResult& result, const std::s
                command.session.board->name, grouped(result.pictures).c_str(),
                result.pictures == 1 ? "frame" : "frames", time.c_str(), by.c_str(), rows.c_str(),
                memory_text(result.use, "\n").c_str());
-}
-
-// The application's own status is the command's.
-[[noreturn]] void end_with(int status, const std::string& sentence) {
-  std::fprintf(stderr, "thimble: %s\n", printable(sentence).c_str());
-  std::exit(status);
 }
 
 int run_and_write(SimCommand* command, std::string* sentence) {
@@ -276,8 +267,7 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   const Image picture{board.width_px, board.height_px, PixelFormat::kRgb888,
                       host::expand_rgb(result.picture)};
   if (outputs[kShot] != nullptr) {
-    const ImageKind kind = image_kind(command->shot_path).value_or(ImageKind::kPng);
-    write_image(outputs[kShot], kind, converted(picture, pixel_format(kind)));
+    write_picture(outputs[kShot], command->shot_path, picture);
   }
   if (outputs[kStats] != nullptr) {
     outputs[kStats]->write(stats_text(*command, result, engine));
@@ -326,29 +316,29 @@ void run(const SimCommand& given) {
     throw OutputError(error.what());
   }
   if (status != 0) {
-    end_with(status, sentence);
+    std::fprintf(stderr, "thimble: %s\n", printable(sentence).c_str());
+    std::exit(status);  // the application's own is the command's
   }
 }
 
 void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {
   add_choice_option(
-      sub, "--display", {"auto", "window", "terminal", "none"},
-      [command](std::size_t index) {
-        constexpr std::array kKinds{host::ScreenKind::kAuto, host::ScreenKind::kWindow,
-                                    host::ScreenKind::kTerminal, host::ScreenKind::kNone};
-        command->session.display = kKinds[index];
-      },
+      sub, "--display",
+      {{"auto", host::ScreenKind::kAuto},
+       {"window", host::ScreenKind::kWindow},
+       {"terminal", host::ScreenKind::kTerminal},
+       {"none", host::ScreenKind::kNone}},
+      &command->session.display,
       "where the display is shown; auto: in an X11 window where DISPLAY works, else in the terminal where "
       "standard output is one, else not at all; a board without a display gets one by window or terminal")
       .default_str("auto");
-  add_choice_option(
-      sub, "--theme", {"auto", "oled", "lcd", "plain"},
-      [command](std::size_t index) {
-        constexpr std::array<std::optional<host::Theme>, 4> kThemes{std::nullopt, host::Theme::kOled,
-                                                                    host::Theme::kLcd, host::Theme::kPlain};
-        command->session.theme = kThemes[index];
-      },
-      "how the display looks; auto: as the board's does; pictures in files never have a theme")
+  add_choice_option(sub, "--theme",
+                    {{"auto", std::nullopt},
+                     {"oled", host::Theme::kOled},
+                     {"lcd", host::Theme::kLcd},
+                     {"plain", host::Theme::kPlain}},
+                    &command->session.theme,
+                    "how the display looks; auto: as the board's does; pictures in files never have a theme")
       .default_str("auto");
   add_whole_option(sub, "--scale", "N", 1, 32, &command->session.scale,
                    "screen pixels a pixel at most (default: as fits)");

@@ -62,16 +62,9 @@ std::optional<std::uint8_t> byte_of(char32_t character) {
 }
 
 host::Theme theme_of(platform::Screen screen) {
-  switch (screen) {
-    case platform::Screen::kOled:
-      return host::Theme::kOled;
-    case platform::Screen::kLcd:
-      return host::Theme::kLcd;
-    case platform::Screen::kPlain:
-    case platform::Screen::kNone:
-      break;
-  }
-  return host::Theme::kPlain;
+  return screen == platform::Screen::kOled  ? host::Theme::kOled
+         : screen == platform::Screen::kLcd ? host::Theme::kLcd
+                                            : host::Theme::kPlain;
 }
 
 // The last line that has anything in it, as far as it can be printed.
@@ -107,6 +100,7 @@ class SimSession {
   void pass_output();
   void take_script();
   void take_picture();
+  void look(SessionResult* to) const;
   void update_status();
   // Somebody who watches does not wait for the frame that is being drawn: the picture before it is the last.
   bool leaves_frame() const { return closing_at_ && watched() && Clock::now() > *closing_at_ + kWatchedTime; }
@@ -124,10 +118,7 @@ class SimSession {
   std::optional<Clock::time_point> closing_at_;
   Clock::time_point status_at_;
   std::uint32_t pictures_ = 0;
-  host::PackedPicture picture_;  // the last one that was seen, where somebody watches
-  host::MemoryUse use_;
-  std::uint64_t rows_sent_ = 0;
-  std::uint64_t rows_kept_ = 0;
+  SessionResult seen_;  // as of the last picture that was seen, where somebody watches
   std::uint32_t frames_ = 0;
   double seconds_ = 0;
   double shown_seconds_ = 0;
@@ -277,11 +268,11 @@ void SimSession::update_status() {
   shown_seconds_ = shown_seconds_ == 0 ? simulation_.frame_seconds()
                                        : 0.75 * shown_seconds_ + 0.25 * simulation_.frame_seconds();
   const std::string line = last_line(output_);
-  use_ = simulation_.use();
+  seen_.use = simulation_.use();
   screen_->set_status(
       std::string(options_.board->name) + "  " + options_.application->name + "  frame " +
       grouped(pictures_) + "  " + fixed(1000 * shown_seconds_, 2) + " ms a frame on this machine\n" +
-      memory_text(use_, "\n") + "\n" +
+      memory_text(seen_.use, "\n") + "\n" +
       (line.empty() || !uart_in_pane_
            ? (options_.application->takes_pointer ? "mouse: touch, drop   arrows or WASD, space   Esc ends"
                                                   : "buttons: arrows or WASD, space   Esc ends")
@@ -309,12 +300,17 @@ void SimSession::take_picture() {
     options_.recording->write(host::y4m_color_frame(shown));
   }
   if (watched()) {
-    picture_ = picture;
-    rows_sent_ = simulation_.rows_sent();
-    rows_kept_ = simulation_.rows_kept();
+    look(&seen_);
     update_status();
     screen_->show(shown);
   }
+}
+
+void SimSession::look(SessionResult* to) const {
+  to->pictures = simulation_.pictures();
+  to->rows_sent = simulation_.rows_sent();
+  to->rows_kept = simulation_.rows_kept();
+  to->picture = simulation_.picture();
 }
 
 SessionResult SimSession::run() {
@@ -350,17 +346,10 @@ SessionResult SimSession::run() {
     take_picture();  // one that was drawn after the last question
     result.status = simulation_.status();
     result.fault = simulation_.fault();
-    result.pictures = simulation_.pictures();
-    result.rows_sent = simulation_.rows_sent();
-    result.rows_kept = simulation_.rows_kept();
-    result.picture = simulation_.picture();
+    look(&result);
     result.use = simulation_.use();
   } else if (leaves_frame()) {
-    result.pictures = pictures_;
-    result.picture = picture_;
-    result.rows_sent = rows_sent_;
-    result.rows_kept = rows_kept_;
-    result.use = use_;
+    result = seen_;
   } else {
     result.status = port::kFaultStatus;
     result.fault = "it did not end within two seconds of the request";

@@ -6,16 +6,16 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
+#include "commands/stats.h"
 #include "instruments/timed_frames.h"
-#include "output/output_set.h"
 #include "output/plot.h"
 #include "output/progress.h"
+#include "output/tables.h"
 #include "output/units.h"
 #include "reference/reference.h"
 #include "scene/built_scene.h"
@@ -27,9 +27,6 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::int32_t kWidthPx = kTimedWidthPx;
-constexpr std::int32_t kHeightPx = kTimedHeightPx;
-constexpr int kFrames = kTimedFrames;
 constexpr int kJudgedPixels = 10000;
 
 struct TableCommand {
@@ -37,8 +34,7 @@ struct TableCommand {
   std::string scene = "points";
   int depth = 10;
   bool quiet = false;
-  std::string json_path;
-  std::string plot_path;
+  ReportPaths files;
   EngineOptions engine;
 };
 
@@ -81,9 +77,9 @@ std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid
                                const Shading& shading, const std::vector<std::uint8_t>& pixels,
                                const TraceOptions& options, std::mt19937_64* random) {
   std::uint64_t mismatches = 0;
-  for (int i = 0; i < kJudgedPixels / kFrames; ++i) {
-    const std::int32_t x = static_cast<std::int32_t>((*random)() % kWidthPx);
-    const std::int32_t y = static_cast<std::int32_t>((*random)() % kHeightPx);
+  for (int i = 0; i < kJudgedPixels / kTimedFrames; ++i) {
+    const std::int32_t x = static_cast<std::int32_t>((*random)() % kTimedWidthPx);
+    const std::int32_t y = static_cast<std::int32_t>((*random)() % kTimedHeightPx);
     const Ray ray = camera.ray(x, y);
     Hit hit;
     if (built.closest_hit(ray, &hit, options) != Status::kOk) {
@@ -101,7 +97,8 @@ std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid
     ours.t_denominator = hit.t_denominator;
     ours.axis = int{hit.axis};
     const Rgb8 color = shade(hit, ray, camera, shading);
-    const std::uint8_t pixel = pixels[static_cast<std::size_t>(y) * kWidthPx + static_cast<std::size_t>(x)];
+    const std::uint8_t pixel =
+        pixels[static_cast<std::size_t>(y) * kTimedWidthPx + static_cast<std::size_t>(x)];
     const bool same_pixel = pixel == gray_of(color);
     mismatches += same_pixel && reference::same_answer(ours, reference::walk(grid, judged)) ? 0U : 1U;
   }
@@ -112,21 +109,21 @@ Row measure(const TableCommand& command, const BuiltScene& built, const referenc
             WideRenderer* wide, GpuEngine* gpu, bool orthographic, std::uint64_t points,
             const std::function<void(double)>& progress) {
   const TraceOptions options = command.engine.trace_options();
-  std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kGray8, kWidthPx, kHeightPx));
+  std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kGray8, kTimedWidthPx, kTimedHeightPx));
   std::vector<double> seconds;
   Row row;
   row.points = points;
   row.orthographic = orthographic;
   std::mt19937_64 random(points);
-  for (int frame = -1; frame < kFrames; ++frame) {
+  for (int frame = -1; frame < kTimedFrames; ++frame) {
     // Everything a frame needs is done again: the camera, its depth range, clearing, rays and shading.
     const FrameWatch watch(command.engine.threads);
-    const Camera camera = timed_camera(command.depth, orthographic, frame + kFrames);
+    const Camera camera = timed_camera(command.depth, orthographic, frame + kTimedFrames);
     const Shading shading = timed_shading(camera, built.bounds());
     Band band;
     band.format = PixelFormat::kGray8;
     band.pixels = Bytes(pixels.data(), pixels.size());
-    band.rows = kHeightPx;
+    band.rows = kTimedHeightPx;
     RenderCounts counts;
     thimble::wide::Counts work;
     Status status = gpu != nullptr    ? gpu->draw(camera, shading, band, &counts)
@@ -146,10 +143,9 @@ Row measure(const TableCommand& command, const BuiltScene& built, const referenc
     seconds.push_back(taken);
     row.hits = counts.hits;
     row.mismatches += count_mismatches(built, grid, camera, shading, pixels, options, &random);
-    progress(static_cast<double>(frame + 1) / kFrames);
+    progress(static_cast<double>(frame + 1) / kTimedFrames);
   }
-  std::nth_element(seconds.begin(), seconds.begin() + kFrames / 2, seconds.end());
-  row.seconds = seconds[kFrames / 2];
+  row.seconds = quantile(seconds, 0.5);
   return row;
 }
 
@@ -168,21 +164,20 @@ std::string row_text(const Row& row) {
   return line.data();
 }
 
-std::string json_text(const std::vector<Row>& rows) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+JsonRow objects_of(const std::vector<Row>& rows) {
+  JsonRow objects = JsonRow::array();
   for (const Row& row : rows) {
-    nlohmann::ordered_json object;
+    JsonRow object;
     object["points"] = row.points;
     object["projection"] = row.orthographic ? "orthographic" : "perspective";
     object["seconds"] = row.seconds;
-    const std::optional<double> paper = paper_seconds(row.points, row.orthographic);
-    object["paper_seconds"] = paper ? nlohmann::ordered_json(*paper) : nlohmann::ordered_json(nullptr);
+    object["paper_seconds"] = json_of(paper_seconds(row.points, row.orthographic));
     object["hits"] = row.hits;
     object["exact_mismatches"] = row.mismatches;
     object["engine"] = row.engine;
-    json.push_back(object);
+    objects.push_back(object);
   }
-  return json.dump(2) + "\n";
+  return objects;
 }
 
 std::string plot_text(const TableCommand& command, const std::vector<Row>& rows) {
@@ -212,8 +207,8 @@ std::string plot_text(const TableCommand& command, const std::vector<Row>& rows)
 }
 
 void run(const TableCommand& command) {
-  OutputSet outputs({command.json_path, command.plot_path}, {});
-  outputs.print("      points  projection      seconds      paper    faster      hits  mismatches\n");
+  ReportFiles files(command.files, "");
+  files.print("      points  projection      seconds      paper    faster      hits  mismatches\n");
   std::vector<Row> rows;
   for (const std::uint64_t points : command.points) {
     ProgressBar bar(grouped(points) + " points", command.quiet);
@@ -225,7 +220,7 @@ void run(const TableCommand& command) {
     build.memory_bytes.reset();
     build.threads = command.engine.threads;
     BuiltScene built(*source, build, [&](double done) { bar.update(done * 0.3); });
-    const auto wide = command.engine.wide_renderer(&built, kWidthPx, kHeightPx);
+    const auto wide = command.engine.wide_renderer(&built, kTimedWidthPx, kTimedHeightPx);
     const auto gpu = command.engine.gpu(built);
     const int side = 1 << command.depth;
     reference::BitGrid grid({side, side, side});
@@ -241,17 +236,11 @@ void run(const TableCommand& command) {
     }
     bar.clear();
     for (const Row& row : pair) {
-      outputs.print(row_text(row));
+      files.print(row_text(row));
       rows.push_back(row);
     }
   }
-  if (outputs[0] != nullptr) {
-    outputs[0]->write(json_text(rows));
-  }
-  if (outputs[1] != nullptr) {
-    outputs[1]->write(plot_text(command, rows));
-  }
-  outputs.commit();
+  files.write(objects_of(rows), files.wants_plot() ? plot_text(command, rows) : "");
 }
 
 }  // namespace
@@ -292,10 +281,10 @@ void add_table(CLI::App& app) {
                    "the world is 2^L voxels a side, L from 5 to 12; the paper's was probably smaller")
       .default_str("10");
   add_path_option(
-      *sub, "--json", "FILE.json", &command->json_path,
+      *sub, "--json", "FILE.json", &command->files.json,
       "an array, one object a row: points, projection, seconds, paper_seconds (null where the paper "
       "has none), hits, exact_mismatches, engine");
-  add_path_option(*sub, "--plot", "FILE.svg", &command->plot_path, "seconds against points");
+  add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot, "seconds against points");
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar");
   command->engine.add_to(*sub, false);
   when_chosen(*sub, [command] { run(*command); });

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +23,7 @@
 #include "output/progress.h"
 #include "output/units.h"
 #include "readers/file_bytes.h"
+#include "readers/text.h"
 #include "scene/built_scene.h"
 #include "scene/gpu_engine.h"
 #include "scene/scene_source.h"
@@ -72,35 +73,24 @@ class RayFile {
   std::vector<std::size_t> ends_;
 };
 
-// The six numbers of a line, or nothing when it does not hold just six numbers.
+constexpr std::string_view kBlanks = " \t";
+
+// The six numbers of a line, or nothing when it does not hold just six numbers. One that no double holds is infinite.
 std::optional<std::array<double, 6>> parse_line(std::string_view line) {
   std::array<double, 6> numbers{};
-  const char* at = line.data();
-  const char* end = at + line.size();
-  const auto skip_blanks = [&] {
-    while (at != end && (*at == ' ' || *at == '\t')) {
-      ++at;
-    }
-  };
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    skip_blanks();
-    if (end - at > 1 && *at == '+' && at[1] != '-') {
-      ++at;
-    }
-    const auto [next, error] = std::from_chars(at, end, numbers[i]);
-    if (error == std::errc::result_out_of_range) {
-      // Too large or too small for a double: infinite or zero, which the caller judges.
-      numbers[i] = std::strtod(std::string(at, next).c_str(), nullptr);
-    } else if (error != std::errc{}) {
+    const std::size_t comma = line.find(',');
+    std::string_view cell = line.substr(0, comma);
+    cell.remove_prefix(std::min(cell.find_first_not_of(kBlanks), cell.size()));
+    cell = cell.substr(0, cell.find_last_not_of(kBlanks) + 1);
+    const NumberKind kind = parse_number(cell, numbers[i]);
+    if (kind == NumberKind::kGarbage || (comma == std::string_view::npos) != (i + 1 == numbers.size())) {
       return std::nullopt;
     }
-    at = next;
-    skip_blanks();
-    if (i + 1 < numbers.size() && (at == end || *at++ != ',')) {
-      return std::nullopt;
-    }
+    numbers[i] = kind == NumberKind::kFinite ? numbers[i] : std::numeric_limits<double>::infinity();
+    line.remove_prefix(std::min(comma, line.size() - 1) + 1);
   }
-  return at == end ? std::optional(numbers) : std::nullopt;
+  return numbers;
 }
 
 // The ray as it is traced: origin to the nearest 1/256 voxel; a direction of integers within the limit as it
@@ -174,7 +164,7 @@ std::string_view next_line(std::string_view* text) {
 }
 
 bool is_blank(std::string_view line) {
-  return line.find_first_not_of(" \t") == std::string_view::npos;
+  return line.find_first_not_of(kBlanks) == std::string_view::npos;
 }
 
 // About so many bytes a chunk, some thousand rays.

@@ -77,10 +77,9 @@ void add_uart_picture(CLI::App& app) {
   hide_command(*sub);
   when_chosen(*sub, [command] {
     const FileBytes log = load_file(command->log, std::uint64_t{1} << 30);
-    const ImageKind kind = *image_kind(command->output);
     const Image picture = find_picture(log.text());
     OutputSet outputs({command->output}, {command->log});
-    write_image(outputs[0], kind, converted(picture, pixel_format(kind)));
+    write_picture(outputs[0], command->output, picture);
     outputs.commit();
   });
 }

@@ -3,20 +3,15 @@
 
 #include "commands/commands.h"
 #include "host/window_kind.h"
+#include "output/units.h"
 #include "scene/gpu_engine.h"
 #include "scene/wide_renderer.h"
 
 namespace thimble::tools {
 
 std::string version_text() {
-  std::string sets;
-  for (const std::string& name : WideRenderer::instruction_sets()) {
-    sets += (sets.empty() ? "" : ", ") + name;
-  }
-  std::string gpus;
-  for (const std::string& name : GpuEngine::devices()) {
-    gpus += (gpus.empty() ? "" : ", ") + name;
-  }
+  const std::string sets = joined(WideRenderer::instruction_sets(), ", ");
+  const std::string gpus = joined(GpuEngine::devices(), ", ");
   const char* const no_gpu = GpuEngine::is_in_build()
                                  ? "none: there is no Vulkan loader or device"
                                  : "not in this build (-DTHIMBLE_GPU=OFF): the processor draws";

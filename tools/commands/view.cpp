@@ -60,14 +60,11 @@ void add_view_command(CLI::App& app) {
   options.view.width_px = 1280;
   options.view.height_px = 720;
   add_picture_view(*sub, &options.view, false);
-  add_choice_option(
-      *sub, "--display", {"auto", "window", "terminal"},
-      [command](std::size_t index) {
-        constexpr host::ScreenKind kKinds[]{host::ScreenKind::kAuto, host::ScreenKind::kWindow,
-                                            host::ScreenKind::kTerminal};
-        command->viewer.display = kKinds[index];
-      },
-      "where; auto: an X11 window where DISPLAY works, else the terminal")
+  add_choice_option(*sub, "--display",
+                    {{"auto", host::ScreenKind::kAuto},
+                     {"window", host::ScreenKind::kWindow},
+                     {"terminal", host::ScreenKind::kTerminal}},
+                    &options.display, "where; auto: an X11 window where DISPLAY works, else the terminal")
       .default_str("auto");
   add_shade(*sub, &command->shade, "as for render; without it and --effects the scene decides, as there",
             &options.look.shade_word);

@@ -1,9 +1,9 @@
 #include "commands/view_options.h"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "boards/board_table.h"
 #include "commands/arguments.h"
@@ -30,13 +30,12 @@ std::optional<Real3> parse_triple(std::string_view text) {
   return result;
 }
 
-void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* value, bool* given,
+void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* value,
                 const std::string& help) {
   add_text_option(
       app, name, "X,Y,Z",
-      [value, given](const std::string& text) {
+      [value](const std::string& text) {
         *value = parse_triple(text);
-        *given = true;
         return *value ? "" : "is not three numbers X,Y,Z";
       },
       help);
@@ -44,77 +43,40 @@ void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* va
 
 constexpr int kMostSamples = kMaxSamplesAcross * kMaxSamplesAcross;
 
-void take_samples(std::int64_t number, int* across) {
-  for (*across = 1; *across * *across < number; ++*across) {
-  }
-}
-
-std::string samples_help(const std::string& of_what) {
-  return "samples a pixel, " + of_what +
-         ": 1, 4, 9, 16, 25, 36, 49 or 64; what lies between is taken as the next of them";
-}
-
-// Says so where a number was taken as another one.
-void note_samples(CLI::App& app, const int* across) {
-  also_check(app, [&app, across] {
-    const std::string asked = text_given(app, "--samples");
-    const auto number = parse_whole(asked, 1, kMostSamples);
-    const int taken = *across * *across;
-    const bool quiet = has_option(app, "--quiet") && is_given(app, "--quiet");
-    if (number && *number != taken && !quiet) {
-      std::fprintf(stderr, "note: --samples %s is not a square; %d are taken\n", asked.c_str(), taken);
-    }
-  });
-}
-
 }  // namespace
 
 void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
   add_text_option(
       app, "--size", "WxH",
       [view](const std::string& text) -> std::string {
-        const std::size_t x = text.find('x');
-        const auto width = parse_whole(text.substr(0, x), 1, kMaxPicturePx);
-        const auto height =
-            x == std::string::npos ? std::nullopt : parse_whole(text.substr(x + 1), 1, kMaxPicturePx);
-        if (!width || !height) {
+        const auto size = parse_pair(text, 'x', 1, kMaxPicturePx);
+        if (!size) {
           return "is not WxH with sides of 1 to " + std::to_string(kMaxPicturePx) + " pixels";
         }
-        view->width_px = static_cast<std::int32_t>(*width);
-        view->height_px = static_cast<std::int32_t>(*height);
+        std::tie(view->width_px, view->height_px) = *size;
         view->sized = true;
         return {};
       },
       "the picture's size in pixels (default: " + std::to_string(view->width_px) + "x" +
           std::to_string(view->height_px) +
           (has_option(app, "--board") ? ", or the display of --board)" : ")"));
-  add_choice_option(
-      app, "--projection", {"perspective", "orthographic"},
-      [view](std::size_t index) {
-        view->orthographic = index == 1;
-        view->placed = true;
-      },
-      "how rays leave the camera")
+  add_choice_option(app, "--projection", {{"perspective", false}, {"orthographic", true}},
+                    &view->orthographic, "how rays leave the camera")
       .default_str("perspective");
-  add_triple(app, "--eye", &view->eye, &view->placed,
+  add_triple(app, "--eye", &view->eye,
              "where the camera is, in voxels (default: where it sees the whole scene)");
-  add_triple(app, "--target", &view->target, &view->placed,
+  add_triple(app, "--target", &view->target,
              "what it looks at, in voxels (default: the middle of the scene)");
-  add_triple(app, "--up", &view->up, &view->placed,
+  add_triple(app, "--up", &view->up,
              "what is up in the picture (default: 0,0,1, or 0,1,0 when looking along z)");
   add_real_option(
-      app, "--fov", "DEG", 1, 120,
-      [view](double degrees) {
-        view->fov_degrees = degrees;
-        view->placed = true;
-      },
+      app, "--fov", "DEG", 1, 120, [view](double degrees) { view->fov_degrees = degrees; },
       "perspective: vertical field of view in degrees, 1 to 120")
       .default_str(shortest(view->fov_degrees));
   add_text_option(
       app, "--span", "V",
       [view](const std::string& text) {
         view->span = parse_real(text);
-        view->placed = true;
         return view->span && *view->span > 0 ? "" : "is not a number above 0";
       },
       "orthographic: width of the picture in voxels (default: the whole scene)");
@@ -122,6 +84,11 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
     add_direction_bits(app, &view->direction_bits);
   }
   also_check(app, [&app, view] {
+    // Then the scene's own camera is not asked for.
+    for (const char* const name :
+         {"--projection", "--eye", "--target", "--up", "--fov", "--span", "--view", "--turn", "--tilt"}) {
+      view->placed = view->placed || (has_option(app, name) && is_given(app, name));
+    }
     if (!view->orthographic && is_given(app, "--span")) {
       refuse_usage("--span", "is the width of --projection orthographic; in perspective --fov is the angle");
     }
@@ -132,29 +99,26 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
 }
 
 void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
-  static constexpr std::array kSides{NamedView::kBest, NamedView::kIso,  NamedView::kFront,
-                                     NamedView::kBack, NamedView::kLeft, NamedView::kRight,
-                                     NamedView::kTop,  NamedView::kPaper};
   view->side = NamedView::kBest;
   view->fov_degrees = kPictureFov;
   add_choice_option(
-      app, "--view", {"best", "iso", "front", "back", "left", "right", "top", "paper"},
-      [view](std::size_t index) {
-        view->side = kSides[index];
-        view->placed = true;
-      },
+      app, "--view",
+      {{"best", NamedView::kBest},
+       {"iso", NamedView::kIso},
+       {"front", NamedView::kFront},
+       {"back", NamedView::kBack},
+       {"left", NamedView::kLeft},
+       {"right", NamedView::kRight},
+       {"top", NamedView::kTop},
+       {"paper", NamedView::kPaper}},
+      &view->side,
       "from which side the scene fills nine tenths of the picture; best: of eight three-quarter views from "
       "above the one that shows the most distinct faces and colours; front looks along +y, left along +x; "
       "paper: where the instruments stand, which frame a box "
       "(default: the scene's own camera, else best)");
   const auto add_angle = [&](const char* name, double* angle, double most, const char* help) {
     add_real_option(
-        app, name, "DEG", -most, most,
-        [view, angle](double degrees) {
-          *angle = degrees;
-          view->placed = true;
-        },
-        help);
+        app, name, "DEG", -most, most, [angle](double degrees) { *angle = degrees; }, help);
   };
   add_angle("--turn", &view->onward.turn, 360,
             "go round the scene by so many degrees from there, to the right");
@@ -189,12 +153,23 @@ void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& 
         if (!*at_edges && !number) {
           return "is neither auto nor a whole number from 1 to " + std::to_string(kMostSamples);
         }
-        take_samples(number.value_or(kEdgeGrid * kEdgeGrid), across);
+        for (*across = 1; *across * *across < number.value_or(kEdgeGrid * kEdgeGrid); ++*across) {
+        }
         return {};
       },
-      samples_help(of_what) + "; auto: one, and 2 or 4 more where the picture of one has edges")
+      "samples a pixel, " + of_what +
+          ": 1, 4, 9, 16, 25, 36, 49 or 64; what lies between is taken as the next of them; auto: one, and "
+          "2 or 4 more where the picture of one has edges")
       .default_str(usual);
-  note_samples(app, across);
+  also_check(app, [&app, across] {
+    const std::string asked = text_given(app, "--samples");
+    const auto number = parse_whole(asked, 1, kMostSamples);
+    const int taken = *across * *across;
+    const bool quiet = has_option(app, "--quiet") && is_given(app, "--quiet");
+    if (number && *number != taken && !quiet) {
+      std::fprintf(stderr, "note: --samples %s is not a square; %d are taken\n", asked.c_str(), taken);
+    }
+  });
 }
 
 void add_quality(CLI::App& app, Quality* quality) {
@@ -216,19 +191,16 @@ void add_quality(CLI::App& app, Quality* quality) {
 }
 
 void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given) {
-  static constexpr std::array kModes{ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor,
-                                     ShadeMode::kMono};
-  static const std::vector<std::string> kNames{"depth", "normal", "color", "mono"};
-  add_choice_option(
-      app, "--shade", kNames,
-      [mode, given](std::size_t index) {
-        *mode = kModes[index];
-        if (given != nullptr) {
-          *given = kNames[index];
-        }
-      },
-      help)
+  add_choice_option(app, "--shade",
+                    {{"depth", ShadeMode::kDepth},
+                     {"normal", ShadeMode::kNormal},
+                     {"color", ShadeMode::kColor},
+                     {"mono", ShadeMode::kMono}},
+                    mode, help)
       .default_str(given != nullptr ? "the scene's own look" : "depth");
+  if (given != nullptr) {
+    also_check(app, [&app, given] { *given = text_given(app, "--shade"); });
+  }
 }
 
 }  // namespace thimble::tools

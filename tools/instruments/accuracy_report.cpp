@@ -24,7 +24,7 @@ std::string options_of(const AccuracyRow& row) {
   if (row.light != LightSetting{}) {
     return row.light.text();
   }
-  const std::string text = row.trial.setting.options();
+  const std::string text = row.setting.text();
   return text.empty() ? "(none: the defaults)" : text;
 }
 
@@ -34,10 +34,10 @@ JsonRow known(int value) {
 
 // All columns, with what each row has in them; the others are null.
 JsonRow object_of(const char* kind, const AccuracyRow& row) {
-  const Setting& setting = row.trial.setting;
+  const Setting& setting = row.setting;
   JsonRow object;
   object["row"] = kind;
-  object["group"] = row.trial.group;
+  object["group"] = row.group;
   object["options"] = nullptr;
   object["front"] = row.front ? 1 : 0;
   object["max_depth"] = setting.quality.max_depth;
@@ -65,13 +65,12 @@ std::string settings_table(const AccuracyStudy& study) {
                            "depth off", "visits", "M instr"}};
   std::size_t together = 0;
   for (const AccuracyRow& row : study.rows) {
-    together += row.trial.group == "together" ? 1U : 0U;
-    if (row.trial.group == "together" && !row.front) {
+    together += row.group == "together" ? 1U : 0U;
+    if (row.group == "together" && !row.front) {
       continue;
     }
     Cells cells{row.front ? "*" : ""};
-    for (const Knob& knob : knobs()) {
-      const double value = knob.get(row.trial.setting);
+    for (const double value : row.setting.values()) {
       cells.push_back(value == 0 ? "-" : shortest(value));
     }
     const std::array measured{
@@ -111,7 +110,7 @@ std::string light_table(const AccuracyStudy& study) {
       {"", "occlusion", "roughness", "bounces", "ms", "+-%", "PSNR", "RMS", "wrong %", "rays", "visits"}};
   const auto rays_of = [](int value) { return value < 0 ? std::string("-") : std::to_string(value); };
   for (const AccuracyRow& row : study.light) {
-    if (row.trial.group == "together" && !row.front) {
+    if (row.group == "together" && !row.front) {
       continue;
     }
     const double pixels = static_cast<double>(study.pixels);
@@ -136,7 +135,7 @@ std::vector<Cloud> clouds_of(const std::vector<AccuracyRow>& rows, CostAxis axis
   for (const auto& [group, name] : groups) {
     Cloud cloud{name, {}, false};
     for (const AccuracyRow& row : rows) {
-      if (row.trial.group == group && cost_of(row, axis) > 0) {
+      if (row.group == group && cost_of(row, axis) > 0) {
         cloud.points.emplace_back(cost_of(row, axis), row.psnr_db);
       }
     }
@@ -145,23 +144,6 @@ std::vector<Cloud> clouds_of(const std::vector<AccuracyRow>& rows, CostAxis axis
     }
   }
   return clouds;
-}
-
-// Error against cost of lit pictures; a knob alone a colour.
-Scatter light_scatter(const AccuracyStudy& study, CostAxis axis) {
-  Scatter scatter;
-  scatter.title = "Light: error against ";
-  scatter.y_label = "PSNR against the best light, dB";
-  scatter.infinite_name = "upper edge: equal to the best light";
-  scatter.front_name = "The front: no other light that is as cheap comes nearer";
-  scatter.clouds = clouds_of(study.light, axis,
-                             {{"together", "knobs together"},
-                              {"occlusion_rays", "occlusion rays alone"},
-                              {"roughness_rays", "roughness rays alone"},
-                              {"bounces", "bounces alone"},
-                              {"best", "the reference"},
-                              {"default", "as the scene asks"}});
-  return scatter;
 }
 
 // The front's points of those rows, by cost.
@@ -184,6 +166,20 @@ const char* axis_label(CostAxis axis) {
 
 const char* axis_title(CostAxis axis) {
   return axis == CostAxis::kTime ? "time" : axis == CostAxis::kVisits ? "work" : "instructions";
+}
+
+// Error against cost of rows whose errors are those from `reference`.
+Scatter scatter_of(const std::vector<AccuracyRow>& rows, CostAxis axis, const std::string& what,
+                   const std::string& reference, const std::string& scene,
+                   const std::vector<std::pair<const char*, const char*>>& groups) {
+  Scatter scatter;
+  scatter.title = what + axis_title(axis) + ": " + scene_title(scene);
+  scatter.x_label = axis_label(axis);
+  scatter.y_label = "PSNR against " + reference + ", dB";
+  scatter.infinite_name = "upper edge: equal to " + reference;
+  scatter.clouds = clouds_of(rows, axis, groups);
+  scatter.front = front_of(rows, axis);
+  return scatter;
 }
 
 std::string answer(const std::string& question, const AccuracyRow& row) {
@@ -216,7 +212,7 @@ JsonRow accuracy_objects(const AccuracyStudy& study) {
   JsonRow rows = JsonRow::array();
   for (const AccuracyRow& row : study.rows) {
     JsonRow object = object_of("setting", row);
-    object["options"] = row.trial.setting.options();
+    object["options"] = row.setting.text();
     object["silhouette_px"] = row.silhouette_px;
     object["depth_error_mean_voxels"] = row.depth_mean_voxels;
     object["depth_error_max_voxels"] = row.depth_max_voxels;
@@ -242,7 +238,7 @@ JsonRow accuracy_objects(const AccuracyStudy& study) {
 }
 
 std::string accuracy_tables(const AccuracyStudy& study, CostAxis axis) {
-  return "reference: " + study.reference.options() +
+  return "reference: " + study.reference.text() +
          "\nPSNR in dB, RMS in 1/255: channels against the reference; wrong: of another colour; depth off:\n"
          "mean error of distance in voxels; +-%: half the quartiles' distance; visits: nodes a pixel;\n"
          "M instr: millions of instructions on lm3s6965evb, estimated; front by " +
@@ -251,24 +247,19 @@ std::string accuracy_tables(const AccuracyStudy& study, CostAxis axis) {
 }
 
 std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::string& scene) {
-  Scatter scatter;
-  scatter.title = std::string("Error against ") + axis_title(axis) + ": " + scene_title(scene);
-  scatter.x_label = axis_label(axis);
-  scatter.y_label = "PSNR against the reference, dB";
-  scatter.infinite_name = "upper edge: equal to the reference";
+  // The defaults last, over all others.
+  Scatter scatter = scatter_of(study.rows, axis, "Error against ", "the reference", scene,
+                               {{"together", "knobs together"},
+                                {"depth", "depth alone"},
+                                {"cutoff", "cut-off alone"},
+                                {"direction_bits", "direction bits alone"},
+                                {"samples", "samples alone"},
+                                {"best", "the reference"},
+                                {"default", "defaults"}});
   scatter.front_name =
       axis == CostAxis::kTime
           ? "The front: no options of thimble render in at most 3 per cent more time come nearer"
           : "The front: no other options of thimble render are both cheaper and nearer";
-  // The defaults last, over all others.
-  scatter.clouds = clouds_of(study.rows, axis,
-                             {{"together", "knobs together"},
-                              {"depth", "depth alone"},
-                              {"cutoff", "cut-off alone"},
-                              {"direction_bits", "direction bits alone"},
-                              {"samples", "samples alone"},
-                              {"best", "the reference"},
-                              {"default", "defaults"}});
   // No estimate of instructions is made for frames that stop early.
   if (axis != CostAxis::kInstructions && !study.work.empty()) {
     Cloud cloud{"defaults, stopped early", {}, true};
@@ -279,15 +270,18 @@ std::string accuracy_plot(const AccuracyStudy& study, CostAxis axis, const std::
     }
     scatter.clouds.push_back(cloud);
   }
-  scatter.front = front_of(study.rows, axis);
   if (study.light.empty()) {
     return scatter_text(scatter);
   }
-  const CostAxis light_axis = axis == CostAxis::kInstructions ? CostAxis::kVisits : axis;
-  Scatter light = light_scatter(study, light_axis);
-  light.title += std::string(axis_title(light_axis)) + ": " + scene_title(scene);
-  light.x_label = axis_label(light_axis);
-  light.front = front_of(study.light, light_axis);
+  Scatter light = scatter_of(study.light, axis == CostAxis::kInstructions ? CostAxis::kVisits : axis,
+                             "Light: error against ", "the best light", scene,
+                             {{"together", "knobs together"},
+                              {"occlusion_rays", "occlusion rays alone"},
+                              {"roughness_rays", "roughness rays alone"},
+                              {"bounces", "bounces alone"},
+                              {"best", "the reference"},
+                              {"default", "as the scene asks"}});
+  light.front_name = "The front: no other light that is as cheap comes nearer";
   return stacked({scatter_text(scatter), scatter_text(light)});
 }
 

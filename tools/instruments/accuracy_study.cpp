@@ -16,6 +16,193 @@
 namespace thimble::tools {
 namespace {
 
+using Pixels = std::vector<std::uint8_t>;
+
+// A setting, plain or of light, and why it is tried (AccuracyRow::group).
+template <class Of>
+struct Trial {
+  std::string group;
+  Of setting;
+};
+
+template <class Of>
+struct Knob {
+  const char* key;  // "cutoff"
+  // What is tried with the other knobs where they stand by themselves, and together with those of the other knobs.
+  std::vector<double> alone;
+  std::vector<double> together;
+  void (*set)(Of* setting, double value);
+};
+
+// `own`, each knob alone, every combination, `best`: each setting once.
+template <class Of>
+std::vector<Trial<Of>> trials_of(const Of& own, const std::vector<Knob<Of>>& knobs, const Of& best) {
+  std::vector<Trial<Of>> trials{{"default", own}};
+  // Each knob in turn multiplies the list.
+  std::vector<Of> together{own};
+  for (const Knob<Of>& knob : knobs) {
+    for (const double value : knob.alone) {
+      trials.push_back({knob.key, own});
+      knob.set(&trials.back().setting, value);
+    }
+    std::vector<Of> next;
+    for (const Of& setting : together) {
+      for (const double value : knob.together) {
+        next.push_back(setting);
+        knob.set(&next.back(), value);
+      }
+    }
+    together = std::move(next);
+  }
+  for (const Of& setting : together) {
+    trials.push_back({"together", setting});
+  }
+  trials.push_back({"best", best});
+  std::set<std::string> known;
+  std::erase_if(trials, [&](const auto& trial) { return !known.insert(trial.setting.text()).second; });
+  return trials;
+}
+
+// Depths less than the scene's own, by so many levels.
+std::vector<double> shallower(int depth, int most) {
+  std::vector<double> depths;
+  for (int less = 1; less <= most && depth - less >= 1; ++less) {
+    depths.push_back(depth - less);
+  }
+  return depths;
+}
+
+// The knobs of a plain picture in a scene of `depth`: one table. Whoever adds a knob adds a line to it, and to
+// `Setting`.
+std::vector<Knob<Setting>> plain_knobs(int depth) {
+  std::vector<double> depths = shallower(depth, 2);
+  depths.insert(depths.begin(), 0);
+  return {{"depth", shallower(depth, 4), depths,
+           [](Setting* setting, double levels) { setting->quality.max_depth = static_cast<int>(levels); }},
+          {"cutoff",
+           {0.5, 1, 2, 4, 8},
+           {0, 1, 2, 4},
+           [](Setting* setting, double pixels) {
+             setting->quality.cutoff =
+                 Q16::from_raw(static_cast<std::int32_t>(std::lround(pixels * Q16::kOne)));
+           }},
+          {"direction_bits",
+           {8, 9, 10, 12, 16, 20},
+           {0, 9},
+           [](Setting* setting, double bits) { setting->direction_bits = static_cast<int>(bits); }},
+          {"samples", {4, 9, 16, 36, 64}, {1, 4, 16}, [](Setting* setting, double samples) {
+             setting->quality.across = static_cast<int>(std::lround(std::sqrt(samples)));
+           }}};
+}
+
+// Every knob at its best, with at most `most_across`^2 samples a pixel.
+Setting best_setting(int most_across) {
+  Setting setting;
+  setting.quality.across = most_across;
+  setting.direction_bits = kMaxDirectionBits;
+  return setting;
+}
+
+// Draws lit pictures of a compact tree, which stays the caller's.
+class LightStudio {
+ public:
+  LightStudio(const SceneSource& source, const BuiltScene& built, const EffectChoice& choice,
+              const Camera& camera, const Shading& shading)
+      : built_(built), camera_(camera), shading_(shading), lit_(source.lighting()), polished_(lit_) {
+    const UsedMaterials used = used_materials(built.compact());
+    effects_ = chosen_effects(lit_, used, choice);
+    lit_.find_glow(built.compact());
+    polished_.find_glow(built.compact());
+    const LitScene scene = lit_.drawn(effects_);
+    if ((effects_ & Effect::kAmbientOcclusion) != 0) {
+      own_.occlusion_rays = scene.occlusion.rays;
+    }
+    if ((effects_ & Effect::kBranching) != 0) {
+      own_.bounces = scene.bounces;
+    }
+    for (std::size_t material = 0; material < lit_.surfaces.size(); ++material) {
+      const Surface& surface = lit_.surfaces[material];
+      if ((effects_ & Effect::kMirror) != 0 && used.is[material] && surface.kind == SurfaceKind::kMetal &&
+          surface.roughness != 0) {
+        own_.roughness_rays = 4;
+      }
+    }
+    for (Surface& surface : polished_.surfaces) {
+      surface.roughness = 0;
+    }
+  }
+
+  EffectSet effects() const { return effects_; }
+
+  // Every knob at its best.
+  LightSetting best() const {
+    LightSetting setting = own_;
+    setting.occlusion_rays = own_.occlusion_rays < 0 ? -1 : 32;
+    setting.bounces = own_.bounces < 0 ? -1 : kMaxBounces;
+    return setting;
+  }
+
+  // All that the study tries, each once; none where no effect has a knob.
+  std::vector<Trial<LightSetting>> trials() const {
+    std::vector<Knob<LightSetting>> knobs;
+    if (own_.occlusion_rays >= 0) {
+      knobs.push_back(
+          {"occlusion_rays", {0, 4, 8, 16, 32}, {0, 4, 8, 32}, [](LightSetting* setting, double rays) {
+             setting->occlusion_rays = static_cast<int>(rays);
+           }});
+    }
+    if (own_.roughness_rays >= 0) {
+      knobs.push_back({"roughness_rays", {1, 4}, {1, 4}, [](LightSetting* setting, double rays) {
+                         setting->roughness_rays = static_cast<int>(rays);
+                       }});
+    }
+    if (own_.bounces >= 0) {
+      knobs.push_back(
+          {"bounces", {0, 1, 2, 3, 4, 6, 8}, {0, 1, 2, 4, 8}, [](LightSetting* setting, double bounces) {
+             setting->bounces = static_cast<int>(bounces);
+           }});
+    }
+    return knobs.empty() ? std::vector<Trial<LightSetting>>() : trials_of(own_, knobs, best());
+  }
+
+  // Draws the whole picture into `pixels`, rows of kRgb888 without gaps, which are that large.
+  // Throws InputError when the scene cannot be drawn.
+  void draw(const LightSetting& setting, Pixels* pixels, RenderCounts* counts) const {
+    const LitDescription& lit = setting.roughness_rays == 1 ? polished_ : lit_;
+    EffectSet effects = effects_;
+    LitScene scene = lit.drawn(effects);
+    if (setting.occlusion_rays >= 0) {
+      scene.occlusion.rays = static_cast<std::uint8_t>(setting.occlusion_rays);
+    }
+    if (setting.occlusion_rays == 0) {
+      effects &= ~Effect::kAmbientOcclusion;
+    }
+    if (setting.bounces >= 0) {
+      scene.bounces = static_cast<std::uint8_t>(setting.bounces);
+    }
+    Band band;
+    band.pixels = {pixels->data(), pixels->size()};
+    band.format = PixelFormat::kRgb888;
+    band.rows = camera_.height_px();
+    LitCounts lit_counts;
+    if (render_lit_band(effects, built_.compact(), camera_, shading_, scene, band, &lit_counts) !=
+        Status::kOk) {
+      throw InputError(
+          "its light cannot be drawn: too many lights, or rays of this camera that are too long");
+    }
+    *counts = totals_of(lit_counts);
+  }
+
+ private:
+  const BuiltScene& built_;
+  Camera camera_;
+  Shading shading_;
+  LitDescription lit_;
+  LitDescription polished_;
+  EffectSet effects_ = Effect::kNone;
+  LightSetting own_;
+};
+
 // A setting ready to be drawn.
 struct Prepared {
   Camera camera;
@@ -46,24 +233,26 @@ class AccuracyStudio {
 
   LightStudio light(const EffectChoice& choice) const { return {source_, built_, choice, camera_, shading_}; }
 
+  std::size_t picture_bytes() const {
+    return band_bytes(PixelFormat::kRgb888, camera_.width_px(), camera_.height_px());
+  }
+
   // Draws a lit picture; milliseconds.
-  static double draw(const LightStudio& light, const LightSetting& setting, std::vector<std::uint8_t>* pixels,
-                     RenderCounts* counts) {
-    const Stopwatch watch;
+  double draw(const LightStudio& light, const LightSetting& setting, Pixels* pixels,
+              RenderCounts* counts) const {
+    pixels->resize(picture_bytes());
+    const FrameWatch watch;
     light.draw(setting, pixels, counts);
     return watch.ms();
   }
 
-  std::size_t row_bytes_of() const { return row_bytes(PixelFormat::kRgb888, camera_.width_px()); }
-
   // Draws the whole picture into `pixels`; milliseconds.
-  double draw(const Prepared& prepared, const Quality& quality, std::vector<std::uint8_t>* pixels,
-              RenderCounts* counts) {
-    const std::size_t row = row_bytes_of();
-    pixels->resize(row * static_cast<std::size_t>(camera_.height_px()));
+  double draw(const Prepared& prepared, const Quality& quality, Pixels* pixels, RenderCounts* counts) {
+    const std::size_t row = row_bytes(PixelFormat::kRgb888, camera_.width_px());
+    pixels->resize(picture_bytes());
     work_.resize(
         static_cast<std::size_t>(quality_band_bytes(quality, PixelFormat::kRgb888, camera_.width_px())));
-    const Stopwatch watch;
+    const FrameWatch watch;
     for (std::int32_t y = 0; y < camera_.height_px(); ++y) {
       // A plain picture needs no copy: its rows are drawn where they belong.
       std::uint8_t* target = pixels->data() + row * static_cast<std::size_t>(y);
@@ -78,17 +267,18 @@ class AccuracyStudio {
     return watch.ms();
   }
 
-  // Refines a frame with so many visits, in memory of its own; milliseconds.
-  double refine(const Camera& camera, std::uint32_t visits, std::vector<std::uint8_t>* memory,
-                AnytimeFrame* frame) const {
+  // Refines a frame with so many visits in `memory`, which the picture is left in; milliseconds.
+  double refine(const Camera& camera, std::uint32_t visits, Pixels* memory, AnytimeFrame* frame) const {
     memory->resize(anytime_bytes(camera.width_px(), camera.height_px(), PixelFormat::kRgb888));
-    const Stopwatch watch;
+    const FrameWatch watch;
     if (AnytimeFrame::make(built_.compact(), camera, shading_, PixelFormat::kRgb888,
                            {memory->data(), memory->size()}, frame) != Status::kOk ||
         frame->refine(built_.compact(), visits, Width::k64) != Status::kOk) {
       throw InputError("internal error: a frame cannot be refined");
     }
-    return watch.ms();
+    const double ms = watch.ms();
+    memory->resize(picture_bytes());
+    return ms;
   }
 
   // Distances along the unit rays of the pixels' centres, negative for a miss.
@@ -116,11 +306,10 @@ class AccuracyStudio {
   Camera camera_;
   Shading shading_;
   NodeColors colors_;
-  std::vector<std::uint8_t> work_;
+  Pixels work_;
 };
 
-void compare_pictures(const std::vector<std::uint8_t>& picture, const std::vector<std::uint8_t>& reference,
-                      AccuracyRow* row) {
+void compare_pictures(const Pixels& picture, const Pixels& reference, AccuracyRow* row) {
   for (std::size_t i = 0; i < picture.size(); i += 3) {
     int most = 0;
     for (std::size_t channel = i; channel < i + 3; ++channel) {
@@ -133,22 +322,13 @@ void compare_pictures(const std::vector<std::uint8_t>& picture, const std::vecto
 }
 
 // The mean absolute difference of what a display shows in greys.
-double mean_gray_error(const std::uint8_t* picture, const std::vector<std::uint8_t>& exact) {
+double mean_gray_error(const Pixels& picture, const Pixels& exact) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < exact.size(); i += 3) {
     const int gray = gray_of({picture[i], picture[i + 1], picture[i + 2]});
     sum += static_cast<std::uint64_t>(std::abs(gray - gray_of({exact[i], exact[i + 1], exact[i + 2]})));
   }
   return static_cast<double>(sum) * 3 / static_cast<double>(exact.size());
-}
-
-// All rows one after the other.
-AccuracyRow& row_of(AccuracyStudy* study, std::size_t index) {
-  if (index < study->rows.size()) {
-    return study->rows[index];
-  }
-  index -= study->rows.size();
-  return index < study->work.size() ? study->work[index].picture : study->light[index - study->work.size()];
 }
 
 // A lit picture's work in plain ones, roughly: for the progress bar.
@@ -182,16 +362,20 @@ std::vector<Prepared> prepare_trials(const AccuracyStudio& studio, int level, Ac
   std::vector<Prepared> prepared;
   std::vector<std::string> left_out;
   std::string reason;
-  for (const Trial& trial : trials(level, study->reference.quality.across)) {
+  for (const auto& trial : trials_of({}, plain_knobs(level), study->reference)) {
+    if (trial.setting.quality.across > study->reference.quality.across) {
+      continue;
+    }
     try {
       prepared.push_back(studio.prepare(trial.setting));
     } catch (const InputError& error) {
-      left_out.push_back(trial.setting.options());
+      left_out.push_back(trial.setting.text());
       reason = error.what();
       continue;
     }
     AccuracyRow row;
-    row.trial = trial;
+    row.group = trial.group;
+    row.setting = trial.setting;
     study->rows.push_back(row);
   }
   if (!left_out.empty()) {
@@ -204,9 +388,8 @@ std::vector<Prepared> prepare_trials(const AccuracyStudio& studio, int level, Ac
 }
 
 // Rows for twice the work again and again until the frame is done. `exact`: the finished picture.
-void add_work_rows(AccuracyStudio& studio, const Prepared& plain, const std::vector<std::uint8_t>& exact,
-                   AccuracyStudy* study) {
-  std::vector<std::uint8_t> memory;
+void add_work_rows(AccuracyStudio& studio, const Prepared& plain, const Pixels& exact, AccuracyStudy* study) {
+  Pixels memory;
   for (std::uint32_t visits = kFirstVisits; study->work.empty() || study->work.back().inexact_px != 0;
        visits *= 2) {
     AnytimeFrame frame;
@@ -215,9 +398,8 @@ void add_work_rows(AccuracyStudio& studio, const Prepared& plain, const std::vec
     row.given_visits = visits;
     row.inexact_px = frame.inexact();
     row.error_bound_grays = frame.mean_error_bound_q8() / 256.0;
-    row.mean_error_grays = mean_gray_error(memory.data(), exact);
-    row.picture.trial.group = "anytime";
-    row.picture.counts = frame.counts();
+    row.mean_error_grays = mean_gray_error(memory, exact);
+    row.picture.group = "anytime";
     study->work.push_back(row);
     if (visits > UINT32_MAX / 2) {
       study->notes.emplace_back("any-time frames end at " + grouped(visits) + " node visits here");
@@ -226,97 +408,44 @@ void add_work_rows(AccuracyStudio& studio, const Prepared& plain, const std::vec
   }
 }
 
-// Draws the study's rows and sets their times; in round 0 also their counts and errors.
-struct Comparison {
-  AccuracyStudio& studio;
-  int rounds;
-  const std::function<void(double)>& progress;
-  AccuracyStudy* study;
-  std::vector<std::uint8_t> reference = {};
-  std::vector<double> reference_distances = {};
-  std::vector<std::uint8_t> picture = {};
-  std::vector<std::uint8_t> memory = {};
-  std::vector<std::vector<double>> milliseconds = {};  // of all rows, in the order of `row_of`
-  double done = 0;                                     // pictures of one sample
-  double all = 1;
+// What is drawn once a round.
+struct Frame {
+  AccuracyRow* row;
+  double work;  // in pictures of one sample
+  const Pixels& reference;
+  std::function<double(Pixels* picture, RenderCounts* counts)> draw;  // milliseconds
+};
 
-  void draw_reference(const Prepared& best) {
-    double rays =
-        static_cast<double>(study->work.size()) + kLitPicture * static_cast<double>(study->light.size());
-    for (const AccuracyRow& row : study->rows) {
-      rays += row.trial.setting.quality.samples();
-    }
-    const double reference_rays = study->reference.quality.samples();
-    all = reference_rays + rays * rounds;
-    milliseconds.resize(study->rows.size() + study->work.size() + study->light.size());
-    RenderCounts unused;
-    studio.draw(best, study->reference.quality, &reference, &unused);
-    reference_distances = studio.distances(best);
-    advance(reference_rays);
+// Draws all frames by turns and sets their rows' times; in the first round also counts and errors.
+void draw_rounds(const std::vector<Frame>& frames, int rounds, const Progress& progress) {
+  double all = 0;
+  for (const Frame& frame : frames) {
+    all += frame.work * rounds;
   }
-
-  void draw_settings(int round, const std::vector<Prepared>& prepared) {
-    for (std::size_t i = 0; i < study->rows.size(); ++i) {
-      AccuracyRow& row = study->rows[i];
+  std::vector<std::vector<double>> milliseconds(frames.size());
+  Pixels picture;
+  double done = 0;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      AccuracyRow* const row = frames[i].row;
       RenderCounts counts;
-      const Quality& quality = row.trial.setting.quality;
-      milliseconds[i].push_back(studio.draw(prepared[i], quality, &picture, &counts));
+      milliseconds[i].push_back(frames[i].draw(&picture, &counts));
       if (round == 0) {
-        row.counts = counts;
-        row.lm3s_instructions = chip_instructions(counts, quality.cuts(), quality.samples());
-        compare_pictures(picture, reference, &row);
-        row.compare_distances(studio.distances(prepared[i]), reference_distances);
+        row->counts = counts;
+        compare_pictures(picture, frames[i].reference, row);
       }
-      advance(quality.samples());
-    }
-  }
-
-  void draw_work(int round, const Prepared& plain, std::size_t picture_bytes) {
-    for (std::size_t i = 0; i < study->work.size(); ++i) {
-      WorkRow& row = study->work[i];
-      AnytimeFrame frame;
-      milliseconds[study->rows.size() + i].push_back(
-          studio.refine(plain.camera, static_cast<std::uint32_t>(row.given_visits), &memory, &frame));
-      if (round == 0) {
-        picture.assign(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(picture_bytes));
-        compare_pictures(picture, reference, &row.picture);
-      }
-      advance(1);
-    }
-  }
-
-  void draw_light(int round, const LightStudio& light, const std::vector<std::uint8_t>& light_reference) {
-    picture.resize(light_reference.size());
-    for (std::size_t i = 0; i < study->light.size(); ++i) {
-      AccuracyRow& row = study->light[i];
-      RenderCounts counts;
-      milliseconds[study->rows.size() + study->work.size() + i].push_back(
-          AccuracyStudio::draw(light, row.light, &picture, &counts));
-      if (round == 0) {
-        row.counts = counts;
-        compare_pictures(picture, light_reference, &row);
-      }
-      advance(kLitPicture);
-    }
-  }
-
-  void set_times() const {
-    for (std::size_t i = 0; i < milliseconds.size(); ++i) {
-      row_of(study, i).set_times(milliseconds[i]);
-    }
-  }
-
-  void advance(double more) {
-    done += more;
-    if (progress) {
+      done += frames[i].work;
       progress(done / all);
     }
   }
-};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].row->set_times(milliseconds[i]);
+  }
+}
 
 }  // namespace
 
-double psnr_db(const std::vector<std::uint8_t>& picture, const std::vector<std::uint8_t>& reference) {
+double psnr_db(const Pixels& picture, const Pixels& reference) {
   std::uint64_t squares = 0;
   for (std::size_t i = 0; i < picture.size(); ++i) {
     const int difference = int{picture[i]} - int{reference[i]};
@@ -375,7 +504,7 @@ const AccuracyRow* fastest_with(const std::vector<AccuracyRow>& rows, double psn
 }
 
 AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options,
-                             const std::function<void(double)>& progress) {
+                             const Progress& progress) {
   AccuracyStudio studio(source, built, options);
   AccuracyStudy study;
   study.pixels =
@@ -386,7 +515,7 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   // The picture of the defaults, and what it is worked out in.
   Setting defaults;
   const Prepared plain = studio.prepare(defaults);
-  std::vector<std::uint8_t> exact;
+  Pixels exact;
   RenderCounts unused;
   studio.draw(plain, defaults.quality, &exact, &unused);
   add_work_rows(studio, plain, exact, &study);
@@ -394,140 +523,67 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   const LightStudio light = studio.light(options.effects);
   study.effects = light.effects();
   study.light_reference = light.best();
-  std::vector<std::uint8_t> light_reference(exact.size());
-  for (const LightTrial& trial : light.trials()) {
+  for (const auto& trial : light.trials()) {
     AccuracyRow row;
-    row.trial.group = trial.group;
+    row.group = trial.group;
     row.light = trial.setting;
     study.light.push_back(row);
   }
+  Pixels light_reference;
   if (!study.light.empty()) {
-    light.draw(study.light_reference, &light_reference, &unused);
+    studio.draw(light, study.light_reference, &light_reference, &unused);
   }
+  Pixels reference;
+  studio.draw(best, study.reference.quality, &reference, &unused);
 
-  Comparison comparison{studio, options.rounds, progress, &study};
-  comparison.draw_reference(best);
-  for (int round = 0; round < options.rounds; ++round) {
-    comparison.draw_settings(round, prepared);
-    comparison.draw_work(round, plain, exact.size());
-    comparison.draw_light(round, light, light_reference);
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i < study.rows.size(); ++i) {
+    const Quality& quality = study.rows[i].setting.quality;
+    frames.push_back({&study.rows[i], static_cast<double>(quality.samples()), reference,
+                      [&studio, &quality, &setting = prepared[i]](Pixels* picture, RenderCounts* counts) {
+                        return studio.draw(setting, quality, picture, counts);
+                      }});
   }
-  comparison.set_times();
+  for (WorkRow& row : study.work) {
+    frames.push_back({&row.picture, 1, reference, [&](Pixels* picture, RenderCounts* counts) {
+                        AnytimeFrame frame;
+                        const auto visits = static_cast<std::uint32_t>(row.given_visits);
+                        const double ms = studio.refine(plain.camera, visits, picture, &frame);
+                        *counts = frame.counts();
+                        return ms;
+                      }});
+  }
+  for (AccuracyRow& row : study.light) {
+    frames.push_back({&row, kLitPicture, light_reference, [&](Pixels* picture, RenderCounts* counts) {
+                        return studio.draw(light, row.light, picture, counts);
+                      }});
+  }
+  draw_rounds(frames, options.rounds, progress);
+  const std::vector<double> distances = studio.distances(best);
+  for (std::size_t i = 0; i < study.rows.size(); ++i) {
+    AccuracyRow& row = study.rows[i];
+    const Quality& quality = row.setting.quality;
+    row.lm3s_instructions = chip_instructions(row.counts, quality.cuts(), quality.samples());
+    row.compare_distances(studio.distances(prepared[i]), distances);
+  }
   mark_front(&study.rows, options.axis);
   // Instructions are not estimated for light.
   mark_front(&study.light, options.axis == CostAxis::kInstructions ? CostAxis::kVisits : options.axis);
   return study;
 }
 
-namespace {
-
-// Depths less than the scene's own, by so many levels.
-std::vector<double> shallower(int depth, int most) {
-  std::vector<double> depths;
-  for (int less = 1; less <= most && depth - less >= 1; ++less) {
-    depths.push_back(depth - less);
-  }
-  return depths;
+std::array<double, 4> Setting::values() const {
+  return {static_cast<double>(quality.max_depth), static_cast<double>(quality.cutoff.raw) / Q16::kOne,
+          static_cast<double>(direction_bits), quality.across == 1 ? 0.0 : quality.samples()};
 }
 
-}  // namespace
-
-const std::vector<Knob>& knobs() {
-  static const std::vector<Knob> kKnobs{
-      {"depth", "--max-depth", "levels", "levels of the tree that are looked at",
-       [](int depth) { return shallower(depth, 4); },
-       [](int depth) {
-         std::vector<double> depths = shallower(depth, 2);
-         depths.insert(depths.begin(), 0);
-         return depths;
-       },
-       [](Setting* setting, double value) { setting->quality.max_depth = static_cast<int>(value); },
-       [](const Setting& setting) { return static_cast<double>(setting.quality.max_depth); }},
-      {"cutoff", "--cutoff", "pixels", "blocks that cover less of a pixel are not looked into",
-       [](int) {
-         return std::vector<double>{0.5, 1, 2, 4, 8};
-       },
-       [](int) {
-         return std::vector<double>{0, 1, 2, 4};
-       },
-       [](Setting* setting, double value) {
-         setting->quality.cutoff = Q16::from_raw(static_cast<std::int32_t>(std::lround(value * Q16::kOne)));
-       },
-       [](const Setting& setting) { return static_cast<double>(setting.quality.cutoff.raw) / Q16::kOne; }},
-      {"direction_bits", "--direction-bits", "bits", "bits of a ray's direction",
-       [](int) { return std::vector<double>{8, 9, 10, 12, 16, 20}; },
-       [](int) {
-         return std::vector<double>{0, 9};
-       },
-       [](Setting* setting, double value) { setting->direction_bits = static_cast<int>(value); },
-       [](const Setting& setting) { return static_cast<double>(setting.direction_bits); }},
-      {"samples", "--samples", "rays a pixel", "samples a pixel",
-       [](int) {
-         return std::vector<double>{4, 9, 16, 36, 64};
-       },
-       [](int) {
-         return std::vector<double>{1, 4, 16};
-       },
-       [](Setting* setting, double value) {
-         setting->quality.across = static_cast<int>(std::lround(std::sqrt(value)));
-       },
-       [](const Setting& setting) {
-         return setting.quality.across == 1 ? 0.0 : static_cast<double>(setting.quality.samples());
-       }},
-  };
-  return kKnobs;
-}
-
-std::string Setting::options() const {
+std::string Setting::text() const {
+  constexpr std::array kOptions{" --max-depth ", " --cutoff ", " --direction-bits ", " --samples "};
   std::string text;
-  for (const Knob& knob : knobs()) {
-    if (const double value = knob.get(*this); value != 0) {
-      text += (text.empty() ? "" : " ") + std::string(knob.option) + " " + shortest(value);
-    }
+  for (std::size_t i = 0; i < kOptions.size(); ++i) {
+    text += values()[i] == 0 ? "" : kOptions[i] + shortest(values()[i]);
   }
-  return text;
-}
-
-Setting best_setting(int most_across) {
-  Setting setting;
-  setting.quality.across = most_across;
-  setting.direction_bits = kMaxDirectionBits;
-  return setting;
-}
-
-std::vector<Trial> trials(int depth, int most_across) {
-  std::vector<Trial> result;
-  std::set<std::string> known;
-  const auto add = [&](const std::string& group, const Setting& setting) {
-    if (setting.quality.across <= most_across && known.insert(setting.options()).second) {
-      result.push_back({group, setting});
-    }
-  };
-  add("default", {});
-  for (const Knob& knob : knobs()) {
-    for (const double value : knob.alone(depth)) {
-      Setting setting;
-      knob.set(&setting, value);
-      add(knob.key, setting);
-    }
-  }
-  // Every combination: each knob in turn multiplies the list.
-  std::vector<Setting> together(1);
-  for (const Knob& knob : knobs()) {
-    std::vector<Setting> next;
-    for (const Setting& setting : together) {
-      for (const double value : knob.together(depth)) {
-        next.push_back(setting);
-        knob.set(&next.back(), value);
-      }
-    }
-    together = std::move(next);
-  }
-  for (const Setting& setting : together) {
-    add("together", setting);
-  }
-  add("best", best_setting(most_across));
-  return result;
+  return text.substr(text.empty() ? 0 : 1);
 }
 
 std::string LightSetting::text() const {
@@ -541,114 +597,6 @@ std::string LightSetting::text() const {
   add("roughness rays", roughness_rays);
   add("bounces", bounces);
   return result;
-}
-
-LightStudio::LightStudio(const SceneSource& source, const BuiltScene& built, const EffectChoice& choice,
-                         const Camera& camera, const Shading& shading)
-    : built_(built), camera_(camera), shading_(shading), lit_(source.lighting()), polished_(lit_) {
-  const UsedMaterials used = used_materials(built.compact());
-  effects_ = chosen_effects(lit_, used, choice);
-  lit_.find_glow(built.compact());
-  polished_.find_glow(built.compact());
-  const LitScene scene = lit_.drawn(effects_);
-  if ((effects_ & Effect::kAmbientOcclusion) != 0) {
-    own_.occlusion_rays = scene.occlusion.rays;
-  }
-  if ((effects_ & Effect::kBranching) != 0) {
-    own_.bounces = scene.bounces;
-  }
-  for (std::size_t material = 0; material < lit_.surfaces.size(); ++material) {
-    const Surface& surface = lit_.surfaces[material];
-    if ((effects_ & Effect::kMirror) != 0 && used.is[material] && surface.kind == SurfaceKind::kMetal &&
-        surface.roughness != 0) {
-      own_.roughness_rays = 4;
-    }
-  }
-  for (Surface& surface : polished_.surfaces) {
-    surface.roughness = 0;
-  }
-}
-
-LightSetting LightStudio::best() const {
-  LightSetting setting = own_;
-  setting.occlusion_rays = own_.occlusion_rays < 0 ? -1 : 32;
-  setting.bounces = own_.bounces < 0 ? -1 : kMaxBounces;
-  return setting;
-}
-
-std::vector<LightTrial> LightStudio::trials() const {
-  std::vector<LightTrial> result;
-  if (own_ == LightSetting{}) {
-    return result;
-  }
-  const auto add = [&](const char* group, const LightSetting& setting) {
-    if (std::none_of(result.begin(), result.end(),
-                     [&](const LightTrial& trial) { return trial.setting == setting; })) {
-      result.push_back({group, setting});
-    }
-  };
-  struct LightKnob {
-    const char* key;
-    int LightSetting::*value;
-    std::vector<int> alone;
-    std::vector<int> together;
-  };
-  const std::array<LightKnob, 3> knobs{{
-      {"occlusion_rays", &LightSetting::occlusion_rays, {0, 4, 8, 16, 32}, {0, 4, 8, 32}},
-      {"roughness_rays", &LightSetting::roughness_rays, {1, 4}, {1, 4}},
-      {"bounces", &LightSetting::bounces, {0, 1, 2, 3, 4, 6, 8}, {0, 1, 2, 4, 8}},
-  }};
-  add("default", own_);
-  std::vector<LightSetting> together{own_};
-  for (const LightKnob& knob : knobs) {
-    if (own_.*knob.value < 0) {
-      continue;
-    }
-    for (const int value : knob.alone) {
-      LightSetting setting = own_;
-      setting.*knob.value = value;
-      add(knob.key, setting);
-    }
-    std::vector<LightSetting> next;
-    for (const LightSetting& setting : together) {
-      for (const int value : knob.together) {
-        next.push_back(setting);
-        next.back().*knob.value = value;
-      }
-    }
-    together = std::move(next);
-  }
-  for (const LightSetting& setting : together) {
-    add("together", setting);
-  }
-  add("best", best());
-  return result;
-}
-
-void LightStudio::draw(const LightSetting& setting, std::vector<std::uint8_t>* pixels,
-                       RenderCounts* counts) const {
-  const LitDescription& lit = setting.roughness_rays == 1 ? polished_ : lit_;
-  EffectSet effects = effects_;
-  LitScene scene = lit.drawn(effects);
-  if (setting.occlusion_rays >= 0) {
-    scene.occlusion.rays = static_cast<std::uint8_t>(setting.occlusion_rays);
-  }
-  if (setting.occlusion_rays == 0) {
-    effects &= ~Effect::kAmbientOcclusion;
-  }
-  if (setting.bounces >= 0) {
-    scene.bounces = static_cast<std::uint8_t>(setting.bounces);
-  }
-  Band band;
-  band.pixels = {pixels->data(), pixels->size()};
-  band.format = PixelFormat::kRgb888;
-  band.rows = camera_.height_px();
-  LitCounts lit_counts;
-  if (render_lit_band(effects, built_.compact(), camera_, shading_, scene, band, &lit_counts) !=
-      Status::kOk) {
-    throw InputError("its light cannot be drawn: too many lights, or rays of this camera that are too long");
-  }
-  *counts = totals_of(lit_counts);
 }
 
 }  // namespace thimble::tools

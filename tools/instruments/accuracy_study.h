@@ -4,20 +4,19 @@
 #ifndef THIMBLE_TOOLS_INSTRUMENTS_ACCURACY_STUDY_H
 #define THIMBLE_TOOLS_INSTRUMENTS_ACCURACY_STUDY_H
 
+#include <array>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "instruments/timed_frames.h"
 #include "output/tables.h"
+#include "readers/progress.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"
 #include "scene/sampling.h"
 #include "scene/scene_source.h"
-#include "thimble/light/render.h"
-#include "thimble/picture/camera.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"
 
@@ -58,10 +57,18 @@ inline double chip_instructions(const RenderCounts& counts, bool cuts, int sampl
          static_cast<double>(counts.node_visits) * cost.a_visit + averaging;
 }
 
-// The knobs of light in one view of a scene: rays of ambient occlusion, rays of rough metal, bounces. Only
-// those that the scene calls for.
+/// Where the knobs stand that trade a plain picture's error for time.
+struct Setting {
+  Quality quality;
+  int direction_bits = 0;  ///< 0: automatic
 
-/// Where they stand. -1: the scene does not call for it.
+  /// Those of the options --max-depth, --cutoff, --direction-bits and --samples; 0 where one stands at its default.
+  std::array<double, 4> values() const;
+  /// The options of `thimble render` that ask for it; empty for its defaults.
+  std::string text() const;
+};
+
+/// Where the knobs of light stand. -1: the scene does not call for it.
 struct LightSetting {
   int occlusion_rays = -1;  ///< a hit: 0, 4, 8, 16 or 32
   int roughness_rays = -1;  ///< a ray that meets rough metal: 4, or 1 as if it were polished
@@ -72,81 +79,14 @@ struct LightSetting {
   std::string text() const;
 };
 
-struct LightTrial {
-  std::string group;  ///< "default", the knob that is turned alone, "together" or "best" where no other is it
-  LightSetting setting;
-};
-
-/// Draws lit pictures of a compact tree, which stays the caller's.
-class LightStudio {
- public:
-  LightStudio(const SceneSource& source, const BuiltScene& built, const EffectChoice& choice,
-              const Camera& camera, const Shading& shading);
-
-  EffectSet effects() const { return effects_; }
-  /// Every knob at its best.
-  LightSetting best() const;
-  /// All that the study tries, each once; none where no effect has a knob.
-  std::vector<LightTrial> trials() const;
-  /// Draws the whole picture into `pixels`, rows of kRgb888 without gaps, which are that large.
-  /// Throws InputError when the scene cannot be drawn.
-  void draw(const LightSetting& setting, std::vector<std::uint8_t>* pixels, RenderCounts* counts) const;
-
- private:
-  const BuiltScene& built_;
-  Camera camera_;
-  Shading shading_;
-  LitDescription lit_;
-  LitDescription polished_;
-  EffectSet effects_ = Effect::kNone;
-  LightSetting own_;
-};
-
-// The knobs that trade a picture's error for time: one table. Whoever adds a knob adds a line to it
-// and what it turns to `Setting`.
-
-/// Where every knob stands.
-struct Setting {
-  Quality quality;
-  int direction_bits = 0;  ///< 0: automatic
-
-  /// The options of `thimble render` that ask for it; empty for its defaults.
-  std::string options() const;
-};
-
-struct Knob {
-  const char* key;     ///< "cutoff"
-  const char* option;  ///< of `thimble render`
-  const char* unit;
-  const char* help;
-  /// What the study tries with the other knobs at their defaults, and together with those of the other knobs
-  /// (its default among them), in a scene of `depth`.
-  std::vector<double> (*alone)(int depth);
-  std::vector<double> (*together)(int depth);
-  void (*set)(Setting* setting, double value);
-  /// Its value; 0 where it stands at its default.
-  double (*get)(const Setting& setting);
-};
-
-const std::vector<Knob>& knobs();
-
-/// Every knob at its best for a scene of `depth`, with at most `most_across`^2 samples a pixel.
-Setting best_setting(int most_across);
-
-/// A setting and why it is tried: the key of the knob that is turned alone, "default", "together", or "best":
-/// the reference itself.
-struct Trial {
-  std::string group;
-  Setting setting;
-};
-/// All that the study tries, each setting once, with at most `most_across`^2 samples.
-std::vector<Trial> trials(int depth, int most_across);
-
 /// A pixel is visibly wrong when a channel is off by more than this, of 255.
 inline constexpr int kVisibleDifference = 8;
 
 struct AccuracyRow : DepthError, MedianTime {
-  Trial trial;
+  /// Why it is tried: the key of the knob that is turned alone, "default", "together", "best" (the reference itself)
+  /// or "anytime".
+  std::string group;
+  Setting setting;
   LightSetting light;  ///< of a lit picture
   // Against the reference; distances are those of the rays of pixels' centres.
   std::uint64_t wrong_px = 0;    ///< of another colour, by however little
@@ -198,7 +138,7 @@ struct AccuracyStudy {
 /// Tries and measures. Frames are drawn by turns, one of each setting a round, so that what else the machine
 /// does falls on all alike. Throws InputError.
 AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options,
-                             const std::function<void(double)>& progress);
+                             const Progress& progress);
 
 /// Times this near to each other are taken for equal.
 inline constexpr double kTimeNoise = 0.03;

@@ -52,6 +52,53 @@ std::string lights(const LitDescription& lit) {
   return suns + (suns.empty() || lamps.empty() ? "" : ", ") + lamps;
 }
 
+// Why the scene is drawn with `effect`, in a few words.
+std::string why_effect(const LitDescription& lit, const UsedMaterials& used, EffectSet effect) {
+  if ((called_for(lit, used) & effect) == 0) {
+    return "asked for";
+  }
+  std::string named = "the scene names it";
+  const LitScene& rest = lit.rest;
+  switch (effect) {
+    case Effect::kDirectLight:
+      return lit.lights.empty() ? named : lights(lit);
+    case Effect::kShadows:
+      return rest.has_shadows ? "its lights cast shadows" : named;
+    case Effect::kAmbientOcclusion:
+      return rest.occlusion.rays == 0 ? named
+                                      : std::to_string(rest.occlusion.rays) + " rays a face, " +
+                                            std::to_string(rest.occlusion.reach) + " voxels far";
+    case Effect::kEmission:
+      return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
+    case Effect::kMirror:
+      return materials(lit, used, SurfaceKind::kMetal, "metal", named);
+    case thimble::Effect::kGlass:
+      return materials(lit, used, SurfaceKind::kGlass, "clear", named);
+    case thimble::Effect::kMedia:
+      return materials(lit, used, SurfaceKind::kMedia, "cloud", named);
+    case thimble::Effect::kWater:
+      return rest.has_water ? "water of " + std::to_string(rest.water.width) + " x " +
+                                  std::to_string(rest.water.depth) + " columns"
+                            : named;
+    case Effect::kFog:
+      return rest.fog.density_q16 == 0
+                 ? named
+                 : "air that halves light in " + fixed(65536.0 / rest.fog.density_q16, 0) + " voxels";
+    case Effect::kSky:
+      return rest.has_sky ? "a sky behind it" : named;
+    case Effect::kDepthCue:
+      return rest.has_depth_cue ? "far is darker" : named;
+    case Effect::kSmoothNormals:
+    case Effect::kEdges:
+    case Effect::kRipples:
+      return named;
+    case Effect::kEmitterLight:
+      return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
+    default:
+      return {};
+  }
+}
+
 // Milliseconds and counts of frames with one set of effects.
 struct Variant {
   LitScene scene;
@@ -110,7 +157,7 @@ class EffectsStudio {
     band.pixels = {pixels_.data(), pixels_.size()};
     band.rows = camera_.height_px();
     variant->counts = {};
-    const Stopwatch watch;
+    const FrameWatch watch;
     const Status status =
         render_lit_band(effects, built_.compact(), camera_, shading_, variant->scene, band, &variant->counts);
     variant->ms.push_back(watch.ms());
@@ -149,9 +196,7 @@ void fill(const EffectsStudio& studio, EffectRow* row) {
   }
   row->with_ms = quantile(with.ms, 0.5);
   row->without_ms = quantile(without.ms, 0.5);
-  row->ms = quantile(more, 0.5);
-  row->ms_q25 = quantile(more, 0.25);
-  row->ms_q75 = quantile(more, 0.75);
+  row->set_times(more);
   row->ram_bytes = lit_state_bytes(with.scene, row->with) - lit_state_bytes(without.scene, row->without) -
                    (row->without == Effect::kNone ? kBaseRamBytes : 0);
   for (const EffectFlash& flash : kEffectFlash) {
@@ -167,52 +212,6 @@ std::int64_t EffectRow::all_rays() const {
     sum += number;
   }
   return sum;
-}
-
-std::string why_effect(const LitDescription& lit, const UsedMaterials& used, EffectSet effect) {
-  if ((called_for(lit, used) & effect) == 0) {
-    return "asked for";
-  }
-  std::string named = "the scene names it";
-  const LitScene& rest = lit.rest;
-  switch (effect) {
-    case Effect::kDirectLight:
-      return lit.lights.empty() ? named : lights(lit);
-    case Effect::kShadows:
-      return rest.has_shadows ? "its lights cast shadows" : named;
-    case Effect::kAmbientOcclusion:
-      return rest.occlusion.rays == 0 ? named
-                                      : std::to_string(rest.occlusion.rays) + " rays a face, " +
-                                            std::to_string(rest.occlusion.reach) + " voxels far";
-    case Effect::kEmission:
-      return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
-    case Effect::kMirror:
-      return materials(lit, used, SurfaceKind::kMetal, "metal", named);
-    case thimble::Effect::kGlass:
-      return materials(lit, used, SurfaceKind::kGlass, "clear", named);
-    case thimble::Effect::kMedia:
-      return materials(lit, used, SurfaceKind::kMedia, "cloud", named);
-    case thimble::Effect::kWater:
-      return rest.has_water ? "water of " + std::to_string(rest.water.width) + " x " +
-                                  std::to_string(rest.water.depth) + " columns"
-                            : named;
-    case Effect::kFog:
-      return rest.fog.density_q16 == 0
-                 ? named
-                 : "air that halves light in " + fixed(65536.0 / rest.fog.density_q16, 0) + " voxels";
-    case Effect::kSky:
-      return rest.has_sky ? "a sky behind it" : named;
-    case Effect::kDepthCue:
-      return rest.has_depth_cue ? "far is darker" : named;
-    case Effect::kSmoothNormals:
-    case Effect::kEdges:
-    case Effect::kRipples:
-      return named;
-    case Effect::kEmitterLight:
-      return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
-    default:
-      return {};
-  }
 }
 
 EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& options,

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <string>
 
+#include "instruments/timed_frames.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
@@ -24,7 +25,7 @@ struct EffectsOptions {
   int frames = 5;  ///< of each set of effects, by turns; at least 1
 };
 
-struct EffectRow {
+struct EffectRow : MedianTime {  ///< times: of the differences, frame by frame
   EffectSet effect = Effect::kNone;
   bool called_for = false;  ///< if not, all below is 0 and empty
   std::string why;          ///< in words: which material, light or line of the scene
@@ -34,9 +35,6 @@ struct EffectRow {
   std::int64_t node_visits = 0;                   ///< the same, of all kinds
   double with_ms = 0;                             ///< medians of the frames
   double without_ms = 0;
-  double ms = 0;      ///< median of the differences, frame by frame
-  double ms_q25 = 0;  ///< their quartiles
-  double ms_q75 = 0;
   /// State and tables (lit_state_bytes), without `EffectsStudy::base_ram_bytes`.
   std::uint64_t ram_bytes = 0;
   /// On lm3s6965evb, without `base_flash_bytes` (platform/boards/effect_flash.h).
@@ -58,9 +56,6 @@ struct EffectsStudy {
   std::uint64_t state_bytes = 0;  ///< all of it, as --memory counts it
   std::string note;
 };
-
-/// Why the scene is drawn with `effect`, in a few words.
-std::string why_effect(const LitDescription& lit, const UsedMaterials& used, EffectSet effect);
 
 /// Builds the scene, draws and measures. Throws InputError.
 EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& options,

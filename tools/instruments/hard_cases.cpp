@@ -21,26 +21,14 @@ using Components = std::array<std::int64_t, 3>;
 // A world of random voxels, for the core, the reference and the textbooks.
 struct CaseWorld {
   int level;
+  std::vector<std::uint64_t> keys;  // of the compact tree's voxels
   reference::BitGrid grid;
   reference::Pyramid pyramid;
   std::vector<std::uint8_t> bytes;
   CompactTree tree;
 
   CaseWorld(int log2_side, int one_in, std::uint64_t seed)
-      : level(log2_side), grid(filled(log2_side, one_in, seed)), pyramid(grid) {
-    std::vector<std::uint64_t> keys;
-    const int side = 1 << level;
-    for (int z = 0; z < side; ++z) {
-      for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
-          if (grid.test({x, y, z})) {
-            keys.push_back(morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                       static_cast<std::uint32_t>(z))
-                           << 8);
-          }
-        }
-      }
-    }
+      : level(log2_side), grid(filled(log2_side, one_in, seed, &keys)), pyramid(grid) {
     std::sort(keys.begin(), keys.end());
     std::size_t needed = 0;
     const Span<const std::uint64_t> sorted{keys.data(), keys.size()};
@@ -53,8 +41,9 @@ struct CaseWorld {
   CaseWorld(const CaseWorld&) = delete;
 
  private:
-  static reference::BitGrid filled(int level, int one_in, std::uint64_t seed) {
-    const int side = 1 << level;
+  static reference::BitGrid filled(int log2_side, int one_in, std::uint64_t seed,
+                                   std::vector<std::uint64_t>* keys) {
+    const int side = 1 << log2_side;
     reference::BitGrid grid({side, side, side});
     Draw draw(seed);
     for (int z = 0; z < side; ++z) {
@@ -62,6 +51,9 @@ struct CaseWorld {
         for (int x = 0; x < side; ++x) {
           if (draw.from(1, one_in) == 1) {
             grid.set({x, y, z});
+            keys->push_back(morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                        static_cast<std::uint32_t>(z))
+                            << 8);
           }
         }
       }
@@ -80,29 +72,6 @@ Components any_direction(Draw& draw) {
     for (std::int64_t& component : direction) {
       component = draw.from(-32767, 32767);
     }
-  }
-  return direction;
-}
-
-// Back from a point along a direction, so that the ray goes exactly through the point: as far as keeps it
-// near the world.
-Components before(Draw& draw, const Components& point, const Components& direction, std::int64_t side) {
-  std::int64_t most = 1;  // a direction is not zero
-  for (const std::int64_t component : direction) {
-    most = std::max(most, component < 0 ? -component : component);
-  }
-  const std::int64_t times = draw.from(0, std::max<std::int64_t>(2 * side * kOneQ8 / most, 1));
-  Components origin{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    origin[axis] = point[axis] - times * direction[axis];
-  }
-  return origin;
-}
-
-Components short_direction(Draw& draw) {
-  Components direction{};
-  for (std::int64_t& component : direction) {
-    component = draw.sign() * draw.from(1, 300);
   }
   return direction;
 }
@@ -130,6 +99,37 @@ Components inside(Draw& draw, std::int64_t side) {
   return {draw.from(0, kOneQ8 * side - 1), draw.from(0, kOneQ8 * side - 1), draw.from(0, kOneQ8 * side - 1)};
 }
 
+// From one side of the world or the other, on a line of corners along `axis`.
+Components beside_world(Draw& draw, std::int64_t side, std::size_t axis) {
+  Components origin = corner(draw, side);
+  origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
+  return origin;
+}
+
+reference::Ray any_ray(Draw& draw, std::int64_t side) {
+  return {inside(draw, side), any_direction(draw)};
+}
+
+// A ray exactly through the point, which begins as far before it as keeps it near the world.
+reference::Ray through(Draw& draw, const Components& point, std::int64_t side) {
+  Components direction{};
+  std::int64_t most = 0;
+  for (std::int64_t& component : direction) {
+    component = draw.sign() * draw.from(1, 300);
+    most = std::max(most, std::abs(component));
+  }
+  const std::int64_t times = draw.from(0, std::max<std::int64_t>(2 * side * kOneQ8 / most, 1));
+  Components origin{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    origin[axis] = point[axis] - times * direction[axis];
+  }
+  return {origin, direction};
+}
+
+reference::Ray through_corner(Draw& draw, std::int64_t side) {
+  return through(draw, corner(draw, side), side);
+}
+
 struct HardCase {
   const char* name;
   int level;
@@ -140,25 +140,14 @@ constexpr int kSmall = 6;
 constexpr int kLarge = 8;
 
 const HardCase kCases[] = {
-    {"any ray", kSmall,
-     [](Draw& draw, std::int64_t side) {
-       return reference::Ray{inside(draw, side), any_direction(draw)};
-     }},
+    {"any ray", kSmall, any_ray},
     {"through an edge", kSmall,
      [](Draw& draw, std::int64_t side) {
        Components point = corner(draw, side);
        point[static_cast<std::size_t>(draw.from(0, 2))] = draw.from(0, kOneQ8 * side);
-       const Components direction = short_direction(draw);
-       const Components origin = before(draw, point, direction, side);
-       return reference::Ray{origin, direction};
+       return through(draw, point, side);
      }},
-    {"through a corner", kSmall,
-     [](Draw& draw, std::int64_t side) {
-       const Components point = corner(draw, side);
-       const Components direction = short_direction(draw);
-       const Components origin = before(draw, point, direction, side);
-       return reference::Ray{origin, direction};
-     }},
+    {"through a corner", kSmall, through_corner},
     {"through a row of corners", kSmall,
      [](Draw& draw, std::int64_t side) {
        const Components point = corner(draw, side);
@@ -179,8 +168,7 @@ const HardCase kCases[] = {
     {"in an edge", kSmall,
      [](Draw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
-       Components origin = corner(draw, side);
-       origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
+       const Components origin = beside_world(draw, side, axis);
        Components direction{};
        direction[axis] = origin[axis] < 0 ? 1 : -1;
        return reference::Ray{origin, direction};
@@ -189,14 +177,11 @@ const HardCase kCases[] = {
      [](Draw& draw, std::int64_t side) {
        Components origin = inside(draw, side);
        origin[static_cast<std::size_t>(draw.from(0, 2))] = kOneQ8 * draw.from(0, side);
-       const Components direction = any_direction(draw);
-       return reference::Ray{origin, direction};
+       return reference::Ray{origin, any_direction(draw)};
      }},
     {"starts in a corner", kSmall,
      [](Draw& draw, std::int64_t side) {
-       const Components origin = corner(draw, side);
-       const Components direction = any_direction(draw);
-       return reference::Ray{origin, direction};
+       return reference::Ray{corner(draw, side), any_direction(draw)};
      }},
     {"starts a hair off a face", kSmall,
      [](Draw& draw, std::int64_t side) {
@@ -204,14 +189,12 @@ const HardCase kCases[] = {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
        origin[axis] = kOneQ8 * draw.from(0, side);
        origin[axis] += draw.sign();
-       const Components direction = any_direction(draw);
-       return reference::Ray{origin, direction};
+       return reference::Ray{origin, any_direction(draw)};
      }},
     {"almost along an axis", kSmall,
      [](Draw& draw, std::int64_t side) {
        const auto axis = static_cast<std::size_t>(draw.from(0, 2));
-       Components origin = corner(draw, side);
-       origin[axis] = draw.sign() < 0 ? -kOneQ8 * side : kOneQ8 * 2 * side;
+       const Components origin = beside_world(draw, side, axis);
        Components direction{};
        for (std::size_t other = 0; other < 3; ++other) {
          direction[other] = draw.from(-2, 2);
@@ -259,17 +242,8 @@ const HardCase kCases[] = {
        }
        return reference::Ray{origin, direction};
      }},
-    {"a large world, any ray", kLarge,
-     [](Draw& draw, std::int64_t side) {
-       return reference::Ray{inside(draw, side), any_direction(draw)};
-     }},
-    {"a large world, corners", kLarge,
-     [](Draw& draw, std::int64_t side) {
-       const Components point = corner(draw, side);
-       const Components direction = short_direction(draw);
-       const Components origin = before(draw, point, direction, side);
-       return reference::Ray{origin, direction};
-     }},
+    {"a large world, any ray", kLarge, any_ray},
+    {"a large world, corners", kLarge, through_corner},
 };
 
 Ray core_ray(const reference::Ray& ray) {
@@ -318,18 +292,15 @@ void trace_all(const CaseWorld& world, const reference::Ray& ray, HardCaseRow* r
   } else {
     ++tracer;
   }
-  next(reference::grid_walk<float>(world.grid, ray, 0));
-  next(reference::grid_walk<float>(world.grid, ray, kFloatEpsilon));
-  next(reference::grid_walk<double>(world.grid, ray, 0));
-  next(reference::grid_walk<double>(world.grid, ray, kDoubleEpsilon));
-  next(reference::point_steps<float>(world.grid, ray, 0));
-  next(reference::point_steps<float>(world.grid, ray, kFloatEpsilon));
-  next(reference::point_steps<double>(world.grid, ray, 0));
-  next(reference::point_steps<double>(world.grid, ray, kDoubleEpsilon));
-  next(reference::octree_descent<float>(world.pyramid, ray, 0));
-  next(reference::octree_descent<float>(world.pyramid, ray, kFloatEpsilon));
-  next(reference::octree_descent<double>(world.pyramid, ray, 0));
-  next(reference::octree_descent<double>(world.pyramid, ray, kDoubleEpsilon));
+  const auto in_each_arithmetic = [&](const auto& traverse) {
+    next(traverse(0.0F));
+    next(traverse(kFloatEpsilon));
+    next(traverse(0.0));
+    next(traverse(kDoubleEpsilon));
+  };
+  in_each_arithmetic([&](auto epsilon) { return reference::grid_walk(world.grid, ray, epsilon); });
+  in_each_arithmetic([&](auto epsilon) { return reference::point_steps(world.grid, ray, epsilon); });
+  in_each_arithmetic([&](auto epsilon) { return reference::octree_descent(world.pyramid, ray, epsilon); });
 }
 
 }  // namespace
@@ -354,8 +325,7 @@ const std::array<TracerName, kTracers>& tracer_names() {
   return kNames;
 }
 
-std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed,
-                                        const std::function<void(double)>& progress) {
+std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed, const Progress& progress) {
   const CaseWorld small(kSmall, 12, seed);
   const CaseWorld large(kLarge, 200, seed + 1);
   std::vector<HardCaseRow> rows;

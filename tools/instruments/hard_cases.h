@@ -6,12 +6,12 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "instruments/operation_errors.h"
 #include "output/tables.h"
+#include "readers/progress.h"
 
 namespace thimble::tools {
 
@@ -43,8 +43,7 @@ struct HardCaseRow {
 /// Traces about `rays` rays, shared evenly among the named cases, in worlds of random voxels. The same seed
 /// gives the same rays everywhere. 32-bit rays are those that the core's 32-bit path accepts; the others are
 /// not counted against it. Takes about 15 microseconds a ray. `progress` (may be empty) gets 0..1.
-std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed,
-                                        const std::function<void(double)>& progress);
+std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed, const Progress& progress);
 
 // What `thimble accuracy --hard-cases` found, for people and for machines.
 

@@ -10,19 +10,191 @@
 #include "readers/source.h"
 #include "scene/baking.h"
 #include "scene/built_scene.h"
+#include "scene/host_memory.h"
 #include "scene/scene_source.h"
+#include "thimble/picture/render.h"
 #include "thimble/trace/ray.h"
+#include "thimble/tree/dense_grid.h"
+#include "thimble/tree/octree.h"
+#include "thimble/tree/shared_tree.h"
 
 namespace thimble::tools {
 namespace {
 
-constexpr std::size_t kDense = static_cast<std::size_t>(MemoryStructure::kDense);
-constexpr std::size_t kPool = static_cast<std::size_t>(MemoryStructure::kPool);
-constexpr std::size_t kCompact = static_cast<std::size_t>(MemoryStructure::kCompact);
-constexpr std::size_t kShared = static_cast<std::size_t>(MemoryStructure::kShared);
+// A solid block of one material, 2^level voxels a side.
+struct SolidBlock {
+  Vec3i corner;
+  std::uint8_t level = 0;
+  std::uint8_t material = 0;
+};
+
+// The same scene `levels` depths coarser; both in Morton order.
+std::vector<SolidBlock> coarser(const std::vector<SolidBlock>& blocks, int levels) {
+  std::vector<SolidBlock> result;
+  std::array<std::uint64_t, 256> volume{};
+  for (std::size_t first = 0; first < blocks.size();) {
+    const SolidBlock& block = blocks[first];
+    const Vec3i corner{block.corner.x >> levels, block.corner.y >> levels, block.corner.z >> levels};
+    if (block.level >= levels) {
+      result.push_back({corner, static_cast<std::uint8_t>(block.level - levels), block.material});
+      ++first;
+      continue;
+    }
+    // All blocks inside one voxel follow each other.
+    std::size_t end = first;
+    volume.fill(0);
+    for (; end < blocks.size() && blocks[end].corner.x >> levels == corner.x &&
+           blocks[end].corner.y >> levels == corner.y && blocks[end].corner.z >> levels == corner.z;
+         ++end) {
+      volume[blocks[end].material] += std::uint64_t{1} << (3 * blocks[end].level);
+    }
+    const auto most = std::max_element(volume.begin(), volume.end());  // the first of equals
+    result.push_back({corner, 0, static_cast<std::uint8_t>(most - volume.begin())});
+    first = end;
+  }
+  return result;
+}
+
+// The blocks of one depth in all structures. Memory of its own, as much as it takes.
+class DepthScene {
+ public:
+  // A world of 2^world_level; the blocks' coordinates and sides are multiplied by 2^up. `one_material` makes all of them
+  // material 0. The dense grid is filled by `make_dense` only. Throws InputError when the machine or the formats cannot
+  // hold it.
+  DepthScene(const std::vector<SolidBlock>& blocks, int world_level, int up, bool one_material)
+      : pool_memory_(HostMemory::largest()) {
+    if (Octree::make(world_level, pool_memory_.bytes(), &pool_) != Status::kOk) {
+      throw InputError("a world of depth " + std::to_string(world_level) + " is beyond the limits");
+    }
+    for (const SolidBlock& block : blocks) {
+      const Vec3i corner{block.corner.x << up, block.corner.y << up, block.corner.z << up};
+      const Status status =
+          pool_.insert_block(corner, block.level + up, one_material ? std::uint8_t{0} : block.material);
+      if (status != Status::kOk) {
+        throw InputError(std::string("the scene does not go into a pool of nodes: ") + status_text(status));
+      }
+    }
+    shape_ = compact_shape(pool_);
+    const std::size_t size = compact_bytes(shape_);
+    compact_bytes_.resize(size);
+    if (size == 0 || CompactTree::make(pool_, Bytes(compact_bytes_.data(), size), &compact_) != Status::kOk) {
+      throw InputError("the scene does not go into a compact tree");
+    }
+    make_shared();
+    dense_size_ = grid_size(compact_.bounds().high, world_level);
+  }
+
+  const Octree& pool() const { return pool_; }
+  Octree& pool() { return pool_; }
+  const CompactTree& compact() const { return compact_; }
+  const SharedTree& shared() const { return shared_; }
+  const CompactShape& shape() const { return shape_; }
+  // The least grid from 0,0,0 that holds everything solid and whose world is this one.
+  Vec3i dense_size() const { return dense_size_; }
+  std::array<std::uint64_t, kMemoryStructures> bytes() const {
+    return {dense_grid_bytes(dense_size_), pool_.used_bytes(), compact_.size_bytes(), shared_.size_bytes()};
+  }
+  // The hash table that building the DAG took at the least.
+  std::uint64_t shared_work_bytes() const { return shared_build_.work_bytes; }
+
+  // Fills the dense grid from the blocks that this was made from.
+  void make_dense(const std::vector<SolidBlock>& blocks) {
+    dense_bytes_.resize(dense_grid_bytes(dense_size_));
+    if (DenseGrid::make(dense_size_, Bytes(dense_bytes_.data(), dense_bytes_.size()), &dense_) !=
+        Status::kOk) {
+      throw InputError("the scene does not go into a dense grid");
+    }
+    for (const SolidBlock& block : blocks) {
+      for_voxels(block.corner, block.level, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+        if (dense_.set({x, y, z}) != Status::kOk) {
+          throw InputError("internal error: a voxel outside the grid");
+        }
+      });
+    }
+    dense_made_ = true;
+  }
+  bool has_dense() const { return dense_made_; }
+
+  Status render(std::size_t structure, const Camera& camera, const Shading& shading, const Band& band,
+                RenderCounts* counts) const {
+    const auto render_in = [&](const auto& structure_drawn) {
+      return render_band(structure_drawn, camera, shading, band, counts, {UINT32_MAX, Width::k64});
+    };
+    return structure == kDense     ? render_in(dense_)
+           : structure == kPool    ? render_in(pool_)
+           : structure == kCompact ? render_in(compact_)
+                                   : render_in(shared_);
+  }
+
+ private:
+  void make_shared() {
+    const HostMemory work(thimble::shared_work_bytes(compact_.node_count()));
+    Status status = SharedTree::make(compact_, {}, work.bytes(), nullptr, &shared_build_);
+    if (status == Status::kOutOfMemory) {
+      shared_bytes_.resize(shared_build_.bytes);
+      status = SharedTree::make(compact_, Bytes(shared_bytes_.data(), shared_bytes_.size()), work.bytes(),
+                                &shared_, &shared_build_);
+    }
+    if (status != Status::kOk) {
+      throw InputError("the scene does not go into a shared tree");
+    }
+  }
+
+  HostMemory pool_memory_;
+  Octree pool_;
+  CompactShape shape_;
+  std::vector<std::uint8_t> compact_bytes_;
+  CompactTree compact_;
+  SharedBuild shared_build_;
+  std::vector<std::uint8_t> shared_bytes_;
+  SharedTree shared_;
+  Vec3i dense_size_;
+  std::vector<std::uint8_t> dense_bytes_;
+  DenseGrid dense_;
+  bool dense_made_ = false;
+};
+
+// What each pixel's ray met: its colour, and the distance in voxels along the unit ray, negative for a miss.
+struct TracedPicture {
+  std::vector<Rgb8> colors;
+  std::vector<double> distances;
+};
+
+// Traces every pixel. The camera is one for the tree's level.
+TracedPicture trace_picture(const CompactTree& tree, const Camera& camera, const Shading& shading) {
+  TracedPicture picture;
+  const std::size_t pixels =
+      static_cast<std::size_t>(camera.width_px()) * static_cast<std::size_t>(camera.height_px());
+  picture.colors.reserve(pixels);
+  picture.distances.reserve(pixels);
+  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
+    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
+      const Ray ray = camera.ray(x, y);
+      Hit hit;
+      if (closest_hit(tree, ray, &hit) != Status::kOk) {
+        throw InputError("the rays of this camera cannot be traced");
+      }
+      picture.colors.push_back(shade(hit, ray, camera, shading));
+      picture.distances.push_back(hit.kind == HitKind::kHit ? hit_distance(ray, hit) : -1);
+    }
+  }
+  return picture;
+}
+
+PictureError picture_error(const TracedPicture& picture, const TracedPicture& reference) {
+  PictureError error;
+  error.compare_distances(picture.distances, reference.distances);
+  for (std::size_t i = 0; i < picture.colors.size(); ++i) {
+    const Rgb8& a = picture.colors[i];
+    const Rgb8& b = reference.colors[i];
+    const bool same_hit = (picture.distances[i] < 0) == (reference.distances[i] < 0);
+    error.wrong_px += !same_hit || a.r != b.r || a.g != b.g || a.b != b.b ? 1U : 0U;
+  }
+  return error;
+}
 
 // The same view of a world with 2^levels fewer voxels a side.
-SceneCamera scaled(const SceneCamera& camera, int levels) {
+SceneCamera coarser_view(const SceneCamera& camera, int levels) {
   SceneCamera result = camera;
   for (int axis = 0; axis < 3; ++axis) {
     result.eye[axis] = Q8::from_raw(camera.eye[axis].raw >> levels);
@@ -46,8 +218,8 @@ void draw(const DepthScene& scene, const Camera& camera, const Shading& given, i
         continue;
       }
       RenderCounts counts;
-      const Stopwatch watch;
-      if (scene.render(static_cast<MemoryStructure>(i), camera, shading, band, &counts) != Status::kOk) {
+      const FrameWatch watch;
+      if (scene.render(i, camera, shading, band, &counts) != Status::kOk) {
         throw InputError("the rays of this camera cannot be traced");
       }
       times_ms[i].push_back(watch.ms());
@@ -57,9 +229,7 @@ void draw(const DepthScene& scene, const Camera& camera, const Shading& given, i
   }
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     if (!times_ms[i].empty()) {
-      const auto middle = times_ms[i].begin() + static_cast<std::ptrdiff_t>(times_ms[i].size() / 2);
-      std::nth_element(times_ms[i].begin(), middle, times_ms[i].end());
-      row->structures[i].frame_ms = *middle;
+      row->structures[i].frame_ms = quantile(times_ms[i], 0.5);
     }
   }
 }
@@ -69,16 +239,15 @@ void count_bytes(const SceneSource& source, const DepthScene& scene, const Depth
   row->grid = scene.dense_size();
   row->units = static_cast<std::uint64_t>(row->grid.x) * static_cast<std::uint64_t>(row->grid.y) *
                static_cast<std::uint64_t>(row->grid.z);
-  row->voxels = scene.voxels();
-  row->leaves = scene.leaves();
+  row->voxels = scene.pool().voxels();
+  row->leaves = std::uint64_t{scene.shape().solid_blocks} + scene.shape().voxel_bits;
   row->pool_nodes = scene.pool().nodes_used();
   row->compact_nodes = scene.compact().node_count();
   row->dag_nodes = scene.shared().node_count();
   row->dag_table_bytes = scene.shared_work_bytes();
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     StructureFigures& figures = row->structures[i];
-    const auto structure = static_cast<MemoryStructure>(i);
-    figures.bytes = scene.bytes(structure);
+    figures.bytes = scene.bytes()[i];
     std::uint64_t colored = figures.bytes;
     std::uint64_t places = row->leaves;
     if (i == kDense) {
@@ -91,7 +260,7 @@ void count_bytes(const SceneSource& source, const DepthScene& scene, const Depth
     } else if (i == kShared) {
       colored = scene.shared().bytes_with_materials();
     }
-    figures.stored_bytes[0] = bits == nullptr ? figures.bytes : bits->bytes(structure);
+    figures.stored_bytes[0] = bits == nullptr ? figures.bytes : bits->bytes()[i];
     for (std::size_t stored = 1; stored < kStoredKinds; ++stored) {
       figures.stored_bytes[stored] = colored + places * (kStoredBytes[stored] - kStoredBytes[1]);
     }
@@ -169,7 +338,9 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
   std::vector<Rgb8> palette;
   {
     const BuiltScene built(source, {}, [&](double done) { progress(0.2 * done); });
-    blocks = solid_blocks(built.compact());
+    walk_blocks(built.compact(), [&](const Vec3i& corner, int level, std::uint8_t material) {
+      blocks.push_back({corner, static_cast<std::uint8_t>(level), material});
+    });
     palette = built.palette();
   }
   int last_color = 0;
@@ -211,8 +382,8 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
     part(0.2);
     Camera view;
     if (options.frames > 0) {
-      if (set_camera(scaled(framing.kept, levels), camera.width_px(), camera.height_px(), depth, &view) ==
-          Status::kOk) {
+      if (set_camera(coarser_view(framing.kept, levels), camera.width_px(), camera.height_px(), depth,
+                     &view) == Status::kOk) {
         if (row.structures[kDense].bytes <= kMostDenseBytes) {
           scene.make_dense(coarse);
         }
@@ -250,162 +421,6 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
     progress(1 - 0.1 * static_cast<double>(i) / static_cast<double>(study.budgets.size()));
   }
   return study;
-}
-
-TracedPicture trace_picture(const CompactTree& tree, const Camera& camera, const Shading& shading) {
-  TracedPicture picture;
-  const std::size_t pixels =
-      static_cast<std::size_t>(camera.width_px()) * static_cast<std::size_t>(camera.height_px());
-  picture.colors.reserve(pixels);
-  picture.distances.reserve(pixels);
-  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
-    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
-      const Ray ray = camera.ray(x, y);
-      Hit hit;
-      if (closest_hit(tree, ray, &hit) != Status::kOk) {
-        throw InputError("the rays of this camera cannot be traced");
-      }
-      picture.colors.push_back(shade(hit, ray, camera, shading));
-      picture.distances.push_back(hit.kind == HitKind::kHit ? hit_distance(ray, hit) : -1);
-    }
-  }
-  return picture;
-}
-
-PictureError picture_error(const TracedPicture& picture, const TracedPicture& reference) {
-  PictureError error;
-  error.compare_distances(picture.distances, reference.distances);
-  for (std::size_t i = 0; i < picture.colors.size(); ++i) {
-    const Rgb8& a = picture.colors[i];
-    const Rgb8& b = reference.colors[i];
-    const bool same_hit = (picture.distances[i] < 0) == (reference.distances[i] < 0);
-    error.wrong_px += !same_hit || a.r != b.r || a.g != b.g || a.b != b.b ? 1U : 0U;
-  }
-  return error;
-}
-
-const char* structure_name(MemoryStructure structure) {
-  constexpr std::array kNames{"dense", "pool", "compact", "dag"};
-  return kNames[static_cast<std::size_t>(structure)];
-}
-
-std::vector<SolidBlock> solid_blocks(const CompactTree& tree) {
-  std::vector<SolidBlock> blocks;
-  for_each_block(tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
-    blocks.push_back({corner, static_cast<std::uint8_t>(level), material});
-  });
-  return blocks;
-}
-
-std::vector<SolidBlock> coarser(const std::vector<SolidBlock>& blocks, int levels) {
-  std::vector<SolidBlock> result;
-  std::array<std::uint64_t, 256> volume{};
-  for (std::size_t first = 0; first < blocks.size();) {
-    const SolidBlock& block = blocks[first];
-    const Vec3i corner{block.corner.x >> levels, block.corner.y >> levels, block.corner.z >> levels};
-    if (block.level >= levels) {
-      result.push_back({corner, static_cast<std::uint8_t>(block.level - levels), block.material});
-      ++first;
-      continue;
-    }
-    // All blocks inside one voxel follow each other.
-    std::size_t end = first;
-    volume.fill(0);
-    for (; end < blocks.size() && blocks[end].corner.x >> levels == corner.x &&
-           blocks[end].corner.y >> levels == corner.y && blocks[end].corner.z >> levels == corner.z;
-         ++end) {
-      volume[blocks[end].material] += std::uint64_t{1} << (3 * blocks[end].level);
-    }
-    const auto most = std::max_element(volume.begin(), volume.end());  // the first of equals
-    result.push_back({corner, 0, static_cast<std::uint8_t>(most - volume.begin())});
-    first = end;
-  }
-  return result;
-}
-
-DepthScene::DepthScene(const std::vector<SolidBlock>& blocks, int world_level, int up, bool one_material)
-    : pool_memory_(HostMemory::largest()) {
-  if (Octree::make(world_level, pool_memory_.bytes(), &pool_) != Status::kOk) {
-    throw InputError("a world of depth " + std::to_string(world_level) + " is beyond the limits");
-  }
-  for (const SolidBlock& block : blocks) {
-    const Vec3i corner{block.corner.x << up, block.corner.y << up, block.corner.z << up};
-    const Status status =
-        pool_.insert_block(corner, block.level + up, one_material ? std::uint8_t{0} : block.material);
-    if (status != Status::kOk) {
-      throw InputError(std::string("the scene does not go into a pool of nodes: ") + status_text(status));
-    }
-  }
-  shape_ = compact_shape(pool_);
-  const std::size_t size = compact_bytes(shape_);
-  compact_bytes_.resize(size);
-  if (size == 0 || CompactTree::make(pool_, Bytes(compact_bytes_.data(), size), &compact_) != Status::kOk) {
-    throw InputError("the scene does not go into a compact tree");
-  }
-  {
-    const HostMemory work(thimble::shared_work_bytes(compact_.node_count()));
-    Status status = SharedTree::make(compact_, {}, work.bytes(), nullptr, &shared_build_);
-    if (status == Status::kOutOfMemory) {
-      shared_bytes_.resize(shared_build_.bytes);
-      status = SharedTree::make(compact_, Bytes(shared_bytes_.data(), shared_bytes_.size()), work.bytes(),
-                                &shared_, &shared_build_);
-    }
-    if (status != Status::kOk) {
-      throw InputError("the scene does not go into a shared tree");
-    }
-  }
-  dense_size_ = grid_size(compact_.bounds().high, world_level);
-}
-
-std::uint64_t DepthScene::bytes(MemoryStructure structure) const {
-  switch (structure) {
-    case MemoryStructure::kDense:
-      return dense_grid_bytes(dense_size_);
-    case MemoryStructure::kPool:
-      return pool_.used_bytes();
-    case MemoryStructure::kCompact:
-      return compact_.size_bytes();
-    case MemoryStructure::kShared:
-      return shared_.size_bytes();
-  }
-  return 0;
-}
-
-void DepthScene::make_dense(const std::vector<SolidBlock>& blocks) {
-  dense_bytes_.resize(dense_grid_bytes(dense_size_));
-  if (DenseGrid::make(dense_size_, Bytes(dense_bytes_.data(), dense_bytes_.size()), &dense_) != Status::kOk) {
-    throw InputError("the scene does not go into a dense grid");
-  }
-  for (const SolidBlock& block : blocks) {
-    const std::int32_t side = std::int32_t{1} << block.level;
-    for (std::int32_t z = 0; z < side; ++z) {
-      for (std::int32_t y = 0; y < side; ++y) {
-        for (std::int32_t x = 0; x < side; ++x) {
-          if (dense_.set({block.corner.x + x, block.corner.y + y, block.corner.z + z}) != Status::kOk) {
-            throw InputError("internal error: a voxel outside the grid");
-          }
-        }
-      }
-    }
-  }
-  dense_made_ = true;
-}
-
-Status DepthScene::render(MemoryStructure structure, const Camera& camera, const Shading& shading,
-                          const Band& band, RenderCounts* counts) const {
-  TraceOptions options;
-  options.width = Width::k64;
-  switch (structure) {
-    case MemoryStructure::kDense:
-      return render_band(dense_, camera, shading, band, counts, options);
-    case MemoryStructure::kPool:
-      return render_band(pool_, camera, shading, band, counts, options);
-    case MemoryStructure::kCompact:
-      return render_band(compact_, camera, shading, band, counts, options);
-    case MemoryStructure::kShared:
-      return render_band(shared_, camera, shading, band, counts, options);
-  }
-  return Status::kBadArgument;
 }
 
 }  // namespace thimble::tools

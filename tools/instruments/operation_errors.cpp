@@ -44,6 +44,9 @@ struct Found {
 Exact3 real(const Vec3i& v) {
   return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
 }
+Exact3 real(const Vec3Q8& v) {
+  return {v.x.raw / 256.0L, v.y.raw / 256.0L, v.z.raw / 256.0L};
+}
 Exact3 unit(const Exact3& a) {
   const Real length = std::sqrt(dot(a, a));
   return {a[0] / length, a[1] / length, a[2] / length};
@@ -82,17 +85,10 @@ Real angle_urad(const Exact3& a, const Exact3& b) {
 }
 
 // How far a direction of `change` is from the one that it was made of.
-void turned_by(Draw& draw, Found* found, Vec3i (*change)(const Vec3i&)) {
+template <Vec3i (*change)(const Vec3i&)>
+void turned_by(Draw& draw, Found* found) {
   const Vec3i direction = any_vector(draw, 20);
   found->see(angle_urad(real(direction), real(change(direction))));
-}
-
-void shortened(Draw& draw, Found* found) {
-  turned_by(draw, found, [](const Vec3i& direction) { return shorten(direction); });
-}
-
-void unit_angles(Draw& draw, Found* found) {
-  turned_by(draw, found, [](const Vec3i& direction) { return unit_q14(direction); });
 }
 
 void unit_lengths(Draw& draw, Found* found) {
@@ -126,9 +122,7 @@ Vec3i near_critical(Draw& draw, const Vec3i& normal, std::uint32_t eta) {
     const Real sine = std::min(Real{1}, critical + static_cast<Real>(draw.from(-9, 9)) / 10000);
     const Exact3 across = unit(side);
     const Real cosine = std::sqrt(1 - sine * sine);
-    return rounded(
-        along(Exact3{across[0] * sine * kUnitQ14, across[1] * sine * kUnitQ14, across[2] * sine * kUnitQ14},
-              n, cosine * kUnitQ14));
+    return rounded(along(scaled(across, sine * kUnitQ14), n, cosine * kUnitQ14));
   }
 }
 
@@ -141,11 +135,11 @@ Exact3 snell(const Vec3i& direction, const Vec3i& normal, std::uint32_t eta) {
   const Exact3 sideways = along(d, n, -before);
   const Real square = dot(d, d) - ratio * ratio * dot(sideways, sideways);
   const Real after = std::sqrt(std::max(square, Real{0}));
-  return along({sideways[0] * ratio, sideways[1] * ratio, sideways[2] * ratio}, n,
-               before < 0 ? -after : after);
+  return along(scaled(sideways, ratio), n, before < 0 ? -after : after);
 }
 
-void refractions(Draw& draw, Found* found, bool bent) {
+template <bool bent>
+void refractions(Draw& draw, Found* found) {
   const int axis = draw.from32(0, 2);
   Vec3i normal;
   normal[axis] = kUnitQ14;
@@ -161,12 +155,6 @@ void refractions(Draw& draw, Found* found, bool bent) {
   if (through && eta != kOneQ12) {
     found->see(angle_urad(snell(direction, normal, eta), real(out)));
   }
-}
-void refractions_at_faces(Draw& draw, Found* found) {
-  refractions(draw, found, false);
-}
-void refractions_bent(Draw& draw, Found* found) {
-  refractions(draw, found, true);
 }
 
 void normal_shares(Draw& draw, Found* found) {
@@ -206,8 +194,6 @@ void distances(Draw& draw, Found* found) {
   }
 }
 
-// ----
-
 // --- Cameras.
 
 struct Axes {
@@ -227,8 +213,6 @@ struct Seen {
   Camera camera;
   int level = 0;
 };
-using Pinhole = Seen<PerspectiveView>;
-using Parallel = Seen<OrthographicView>;
 // Random cameras with automatic bits; those that cannot be are drawn again.
 template <class View>
 Seen<View> any_camera(Draw& draw) {
@@ -272,7 +256,7 @@ Pixel pixel_of(Draw& draw, const View& view, int number) {
 constexpr int kPixelsACamera = 16;
 
 void perspective_rays(Draw& draw, Found* found) {
-  const Pinhole made = any_camera<PerspectiveView>(draw);
+  const auto made = any_camera<PerspectiveView>(draw);
   const Axes axes(made.view.forward, made.view.up);
   const Real focal = made.view.height_px / 2.0L /
                      std::tan(static_cast<Real>(made.view.fov_degrees.raw) / Q16::kOne * kPi / 360);
@@ -289,10 +273,10 @@ void perspective_rays(Draw& draw, Found* found) {
 }
 
 void parallel_rays(Draw& draw, Found* found) {
-  const Parallel made = any_camera<OrthographicView>(draw);
+  const auto made = any_camera<OrthographicView>(draw);
   const Axes axes(made.view.forward, made.view.up);
   const Real pixel = static_cast<Real>(made.view.span.raw) / Q14::kOne / made.view.width_px;
-  const Exact3 eye{made.view.eye.x.raw / 256.0L, made.view.eye.y.raw / 256.0L, made.view.eye.z.raw / 256.0L};
+  const Exact3 eye = real(made.view.eye);
   Real furthest = 0;
   for (unsigned corner = 0; corner < 8; ++corner) {
     Exact3 point{};
@@ -306,7 +290,7 @@ void parallel_rays(Draw& draw, Found* found) {
     const Real across = (x - (made.view.width_px - 1) / 2.0L) * pixel;
     const Real above = ((made.view.height_px - 1) / 2.0L - y) * pixel;
     const Ray ray = made.camera.ray(x, y);
-    const Exact3 origin{ray.origin.x.raw / 256.0L, ray.origin.y.raw / 256.0L, ray.origin.z.raw / 256.0L};
+    const Exact3 origin = real(ray.origin);
     const Exact3 direction = real(ray.direction);
     for (const Real depth : {0.0L, furthest}) {
       const Exact3 start = along(origin, eye, -1);
@@ -319,7 +303,7 @@ void parallel_rays(Draw& draw, Found* found) {
 
 // The length, along forward, of the camera's own unrounded direction in the middle of the picture.
 void perspective_depth_per_t(Draw& draw, Found* found) {
-  const Pinhole made = any_camera<PerspectiveView>(draw);
+  const auto made = any_camera<PerspectiveView>(draw);
   const Axes axes(made.view.forward, made.view.up);
   const Camera::Affine& affine = made.camera.affine();
   Exact3 middle{};
@@ -334,7 +318,7 @@ void perspective_depth_per_t(Draw& draw, Found* found) {
 }
 
 void parallel_depth_per_t(Draw& draw, Found* found) {
-  const Parallel made = any_camera<OrthographicView>(draw);
+  const auto made = any_camera<OrthographicView>(draw);
   const Axes axes(made.view.forward, made.view.up);
   found->see(made.camera.depth_per_t_q8() - 256 * dot(real(made.camera.direction()), axes.forward));
 }
@@ -343,7 +327,7 @@ void parallel_depth_per_t(Draw& draw, Found* found) {
 
 // In units of the bound, which has two parts.
 void planar_depths(Draw& draw, Found* found) {
-  const Pinhole made = any_camera<PerspectiveView>(draw);
+  const auto made = any_camera<PerspectiveView>(draw);
   for (int i = 0; i < kPixelsACamera; ++i) {
     Hit hit;
     hit.kind = HitKind::kHit;
@@ -360,7 +344,7 @@ void planar_depths(Draw& draw, Found* found) {
 }
 
 void depth_shades(Draw& draw, Found* found) {
-  const Pinhole made = any_camera<PerspectiveView>(draw);
+  const auto made = any_camera<PerspectiveView>(draw);
   for (int i = 0; i < kPixelsACamera; ++i) {
     Hit hit;
     hit.kind = HitKind::kHit;
@@ -453,7 +437,7 @@ void fixed_numbers(Draw& draw, Found* found) {
 // --- What is left out, and what is averaged.
 
 void cutoff_reaches(Draw& draw, Found* found) {
-  const Pinhole made = any_camera<PerspectiveView>(draw);
+  const auto made = any_camera<PerspectiveView>(draw);
   const Q16 pixels = Q16::from_raw(draw.any_size(25));
   Cutoff cutoff;
   if (cutoff.set(made.camera, pixels) != Status::kOk) {
@@ -536,12 +520,12 @@ const Operation kOperations[] = {
     {"NodeColors: mean", "kNodeColorError", "1/255", kNodeColorError, node_colors},
     {"average_samples: mean", "kSampleMeanErrorQ8", "1/256 of 1/255", kSampleMeanErrorQ8, sample_means},
     // Those of thimble/light/host/optics.h.
-    {"shorten", "kShortenErrorUrad", "10^-6 rad", kShortenErrorUrad, shortened},
-    {"unit_q14: direction", "kUnitErrorUrad", "10^-6 rad", kUnitErrorUrad, unit_angles},
+    {"shorten", "kShortenErrorUrad", "10^-6 rad", kShortenErrorUrad, turned_by<shorten>},
+    {"unit_q14: direction", "kUnitErrorUrad", "10^-6 rad", kUnitErrorUrad, turned_by<unit_q14>},
     {"unit_q14: length", "kUnitLengthError", "1/16384", kUnitLengthError, unit_lengths},
     {"reflect: bent normal", "kReflectErrorUrad", "10^-6 rad", kReflectErrorUrad, reflections},
-    {"refract: at a face", "kRefractErrorUrad", "10^-6 rad", kRefractErrorUrad, refractions_at_faces},
-    {"refract: bent normal", "kRefractErrorUrad", "10^-6 rad", kRefractErrorUrad, refractions_bent},
+    {"refract: at a face", "kRefractErrorUrad", "10^-6 rad", kRefractErrorUrad, refractions<false>},
+    {"refract: bent normal", "kRefractErrorUrad", "10^-6 rad", kRefractErrorUrad, refractions<true>},
     {"r0_q16", "kNormalErrorQ16", "1/65536", kNormalErrorQ16, normal_shares},
     {"fresnel_q16", "kSchlickErrorQ16", "1/65536", kSchlickErrorQ16, fresnel_shares},
     {"transmittance_q16", "kTransmittanceErrorQ16", "1/65536", kTransmittanceErrorQ16, transmittances},
@@ -551,7 +535,7 @@ const Operation kOperations[] = {
 }  // namespace
 
 std::vector<OperationError> sweep_operations(std::uint64_t cases, std::uint64_t seed,
-                                             const std::function<void(double)>& progress) {
+                                             const Progress& progress) {
   std::vector<OperationError> errors;
   for (const Operation& operation : kOperations) {
     Draw draw(seed);

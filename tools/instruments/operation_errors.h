@@ -8,10 +8,11 @@
 #define THIMBLE_TOOLS_INSTRUMENTS_OPERATION_ERRORS_H
 
 #include <cstdint>
-#include <functional>
 #include <random>
 #include <string>
 #include <vector>
+
+#include "readers/progress.h"
 
 namespace thimble::tools {
 
@@ -48,7 +49,7 @@ struct OperationError {
 /// seed gives the same figures everywhere but for the last digits of long double. `progress` (may be empty)
 /// gets 0..1.
 std::vector<OperationError> sweep_operations(std::uint64_t cases, std::uint64_t seed,
-                                             const std::function<void(double)>& progress);
+                                             const Progress& progress);
 
 }  // namespace thimble::tools
 

@@ -37,19 +37,16 @@ Places run_particles(int substeps, int subpixel_bits) {
   PopulatedWorld populated(options, std::nullopt);
   ParticleWorld& world = populated.world();
   Places places;
-  const Stopwatch watch;
+  const FrameWatch watch;
   for (int step = 0; step < kParticleSteps; ++step) {
     world.step();
     places.moves += world.counters().moves;
   }
   places.ms = watch.ms();
-  for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
-    Particle particle;
-    if (world.particle(id, &particle)) {
-      places.x.push_back(particle.x_q16 / 65536.0);
-      places.y.push_back(particle.y_q16 / 65536.0);
-    }
-  }
+  for_each_ball(world, [&](const Particle& ball) {
+    places.x.push_back(ball.x_q16 / 65536.0);
+    places.y.push_back(ball.y_q16 / 65536.0);
+  });
   return places;
 }
 
@@ -86,7 +83,7 @@ Basin run_water(int columns, int wave_speed_q6) {
   }
   Basin basin;
   basin.columns = columns;
-  const Stopwatch watch;
+  const FrameWatch watch;
   for (int step = 0; step < water_steps(columns, wave_speed_q6); ++step) {
     water.step();
   }
@@ -153,14 +150,14 @@ std::vector<SimulationRow> water_rows() {
   return rows;
 }
 
-}  // namespace
-
+// The error that counts.
 double counted_error(SimulationWorld world, const SimulationRow& row) {
   return world == SimulationWorld::kWater ? row.error_rms : row.error_median;
 }
 
-std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds,
-                                            const std::function<void(double)>& progress) {
+}  // namespace
+
+std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds, const Progress& progress) {
   const bool is_water = world == SimulationWorld::kWater;
   std::vector<SimulationRow> rows = is_water ? water_rows() : particle_rows();
   const Places places = is_water ? Places{} : run_particles(kMostSubsteps, kFinestBits);

@@ -5,12 +5,12 @@
 #define THIMBLE_TOOLS_INSTRUMENTS_SIMULATION_STUDY_H
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "instruments/timed_frames.h"
 #include "output/tables.h"
+#include "readers/progress.h"
 
 namespace thimble::tools {
 
@@ -42,12 +42,8 @@ struct SimulationRow : MedianTime {  ///< times: of all steps together
   bool front = false;  ///< no other row is both as fast and as near to the reference
 };
 
-/// The error that counts.
-double counted_error(SimulationWorld world, const SimulationRow& row);
-
 /// Measures by turns, `rounds` times each.
-std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds,
-                                            const std::function<void(double)>& progress);
+std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds, const Progress& progress);
 
 JsonRow simulation_objects(SimulationWorld world, const std::vector<SimulationRow>& rows);
 std::string simulation_table(SimulationWorld world, const std::vector<SimulationRow>& rows);

@@ -35,13 +35,14 @@ Camera timed_camera(int level, bool orthographic, int frame);
 /// Depth shading between the planes that bound the scene.
 Shading timed_shading(const Camera& camera, const VoxelBox& bounds);
 
-/// Seconds since it was made: processor time of this thread, which other programs do not lengthen; where more
+/// Time since it was made: processor time of this thread, which other programs do not lengthen; where more
 /// threads than one draw, of the clock on the wall.
 class FrameWatch {
  public:
   explicit FrameWatch(int threads = 1)
       : clock_(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC), start_(now()) {}
   double seconds() const { return now() - start_; }
+  double ms() const { return 1000 * seconds(); }
 
  private:
   double now() const {
@@ -55,17 +56,6 @@ class FrameWatch {
 };
 
 // Times of a program on a machine that does other things too, and what many of them say.
-
-/// Time of the processor that this program got since it was made: what else runs stays out of it.
-class Stopwatch {
- public:
-  double ms() const {
-    return static_cast<double>(std::clock() - start_) * 1000 / static_cast<double>(CLOCKS_PER_SEC);
-  }
-
- private:
-  std::clock_t start_ = std::clock();
-};
 
 /// The value below which `part` (0..1) of them lie, between neighbours in proportion; at least one value.
 inline double quantile(std::vector<double> values, double part) {

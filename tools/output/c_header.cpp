@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "output/units.h"
 #include "thimble/light/scene.h"
 
 namespace thimble::tools {
@@ -71,12 +72,10 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   const auto define = [&](const char* fact, const std::string& value) {
     text += "#define " + prefix + fact + " " + value + "\n";
   };
-  std::array<char, 16> crc{};
-  std::snprintf(crc.data(), crc.size(), "0x%08xu", static_cast<unsigned>(scene.crc32()));
   text += "/* What it is, for choosing when a program is compiled. */\n";
   define("VERSION", std::to_string(kBakedVersion));
   define("BYTES", std::to_string(scene.bytes().size) + "u");
-  define("CRC32", crc.data());
+  define("CRC32", "0x" + crc_text(scene.crc32()) + "u");
   define("DEPTH", std::to_string(tree.level()));
   // A preprocessor computes in 64 bits; the suffix keeps a compiler of C90 quiet about large constants.
   define("VOXELS", std::to_string(tree.voxel_count()) + (tree.voxel_count() > UINT32_MAX ? "ull" : "ul"));

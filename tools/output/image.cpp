@@ -1,6 +1,7 @@
 #include "output/image.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cctype>
 #include <cstring>
@@ -28,33 +29,18 @@ std::string ending_of(const std::string& path) {
 }  // namespace
 
 std::optional<ImageKind> image_kind(const std::string& path) {
-  const std::string ending = ending_of(path);
-  if (ending == ".ppm" || path == "-") {
-    return ImageKind::kPpm;
-  }
-  if (ending == ".pgm") {
-    return ImageKind::kPgm;
-  }
-  if (ending == ".pbm") {
-    return ImageKind::kPbm;
-  }
-  if (ending == ".png") {
-    return ImageKind::kPng;
-  }
-  return std::nullopt;
+  constexpr std::array<std::string_view, 4> kEndings{".ppm", ".pgm", ".pbm",
+                                                     ".png"};  // in the order of `ImageKind`
+  const auto* const found =
+      std::find(kEndings.begin(), kEndings.end(), path == "-" ? ".ppm" : ending_of(path));
+  return found == kEndings.end() ? std::nullopt
+                                 : std::optional(static_cast<ImageKind>(found - kEndings.begin()));
 }
 
 PixelFormat pixel_format(ImageKind kind) {
-  switch (kind) {
-    case ImageKind::kPbm:
-      return PixelFormat::kMono1;
-    case ImageKind::kPgm:
-      return PixelFormat::kGray8;
-    case ImageKind::kPpm:
-    case ImageKind::kPng:
-      return PixelFormat::kRgb888;
-  }
-  return PixelFormat::kRgb888;
+  return kind == ImageKind::kPbm   ? PixelFormat::kMono1
+         : kind == ImageKind::kPgm ? PixelFormat::kGray8
+                                   : PixelFormat::kRgb888;
 }
 
 Image converted(const Image& image, PixelFormat format) {
@@ -119,6 +105,11 @@ void write_image(OutputFile* file, ImageKind kind, const Image& image) {
       return;
   }
   file->write(std::span<const unsigned char>(pixels));
+}
+
+void write_picture(OutputFile* file, const std::string& path, const Image& image) {
+  const ImageKind kind = image_kind(path).value();
+  write_image(file, kind, converted(image, pixel_format(kind)));
 }
 
 void write_pfm(OutputFile* file, std::int32_t width_px, std::int32_t height_px,

@@ -51,6 +51,9 @@ std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind);
 /// Writes the picture, header and all; committing is the caller's. Throws OutputError.
 void write_image(OutputFile* file, ImageKind kind, const Image& image);
 
+/// Writes the picture as a file of that name, which `image_kind` knows. Throws OutputError.
+void write_picture(OutputFile* file, const std::string& path, const Image& image);
+
 /// Writes float32 values, row by row from the top, as a little-endian PFM (whose rows go from the bottom).
 void write_pfm(OutputFile* file, std::int32_t width_px, std::int32_t height_px,
                const std::vector<float>& values);

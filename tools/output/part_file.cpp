@@ -24,6 +24,11 @@ constexpr std::string_view kMagic = "thmPART1";
 constexpr std::size_t kHeaderBytes = 48;
 constexpr std::size_t kCrcBytes = 4;
 using HeaderBytes = std::array<std::uint8_t, kHeaderBytes>;
+// Those of 32 bits in their order.
+constexpr std::size_t kNumbersAt = 12;
+constexpr std::array kNumbers{&PartHeader::width_px,     &PartHeader::height_px,    &PartHeader::first,
+                              &PartHeader::count,        &PartHeader::all,          &PartHeader::scene_crc32,
+                              &PartHeader::camera_crc32, &PartHeader::options_crc32};
 
 std::uint32_t crc_from(std::uint32_t crc, std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint32_t>(crc32_z(crc, bytes.data(), bytes.size()));
@@ -49,11 +54,8 @@ HeaderBytes bytes_of(const PartHeader& header) {
   bytes[8] = static_cast<std::uint8_t>(header.kind);
   bytes[9] = static_cast<std::uint8_t>(header.pixels);
   bytes[10] = header.has_finer_shades ? 1 : 0;
-  const std::array<std::uint32_t, 8> numbers{header.width_px,     header.height_px,    header.first,
-                                             header.count,        header.all,          header.scene_crc32,
-                                             header.camera_crc32, header.options_crc32};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    put_32(bytes.data() + 12 + 4 * i, numbers[i]);
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) {
+    put_32(bytes.data() + kNumbersAt + 4 * i, header.*kNumbers[i]);
   }
   put_32(bytes.data() + 44, crc_from(0, std::span(bytes).first(44)));
   return bytes;
@@ -68,15 +70,9 @@ bool parse(const HeaderBytes& bytes, PartHeader* header) {
   header->kind = static_cast<PartKind>(bytes[8]);
   header->pixels = static_cast<PartPixels>(bytes[9]);
   header->has_finer_shades = bytes[10] == 1;
-  const auto number = [&](std::size_t i) { return number_at(bytes.data() + 12 + 4 * i); };
-  header->width_px = number(0);
-  header->height_px = number(1);
-  header->first = number(2);
-  header->count = number(3);
-  header->all = number(4);
-  header->scene_crc32 = number(5);
-  header->camera_crc32 = number(6);
-  header->options_crc32 = number(7);
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) {
+    header->*kNumbers[i] = number_at(bytes.data() + kNumbersAt + 4 * i);
+  }
   const bool is_picture = header->kind == PartKind::kRows;
   const auto is_side = [](std::uint32_t side) { return side >= 1 && side <= kMaxPicturePx; };
   return is_side(header->width_px) && is_side(header->height_px) &&

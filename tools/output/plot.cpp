@@ -40,12 +40,35 @@ std::string polyline(const std::string& style, const Points& points, const Place
   return svg + "\"/>\n";
 }
 
-constexpr double kPlotWidth = 760;
+constexpr double kWidth = 760;
+
+// Where the axes of a plot lie, and what is written along them.
+struct Axes {
+  double left;
+  double right;
+  double top;
+  double bottom;
+
+  double width() const { return right - left; }
+  double height() const { return bottom - top; }
+  std::string x_mark(double x, const std::string& text) const {
+    return line(x, top, x, bottom, "grid") + label(x, bottom + 18, "middle", text);
+  }
+  std::string y_mark(double y, const std::string& text) const {
+    return line(left, y, right, y, "grid") + label(left - 8, y + 4, "end", text);
+  }
+  std::string lines() const {
+    return line(left, top, left, bottom, "axis") + line(left, bottom, right, bottom, "axis");
+  }
+  std::string names(const std::string& x_name, const std::string& y_name) const {
+    const double middle = (top + bottom) / 2;
+    return label((left + right) / 2, bottom + 40, "middle", x_name) +
+           label(20, middle, "middle", y_name, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
+  }
+};
+
 constexpr double kHeight = 460;
-constexpr double kPlotLeft = 84;
-constexpr double kPlotRight = 20;
-constexpr double kPlotTop = 44;
-constexpr double kBottom = 112;
+constexpr Axes kLogAxes{84, kWidth - 20, 44, kHeight - 112};
 
 // A range of whole decades.
 struct Decades {
@@ -84,10 +107,15 @@ std::string log_plot_text(const Plot& plot) {
   Decades x_range;
   Decades y_range;
   bool first = true;
+  // On a linear axis: the whole numbers from the least to the greatest.
+  double least = 0;
+  double greatest = 1;
   for (const Series& series : plot.series) {
     for (const auto& [x, y] : series.points) {
       x_range.hold(x, first);
       y_range.hold(y, first);
+      least = first ? x : std::min(least, x);
+      greatest = first ? x : std::max(greatest, x);
       first = false;
     }
   }
@@ -95,53 +123,31 @@ std::string log_plot_text(const Plot& plot) {
     y_range.hold(mark.y, first);
     first = false;
   }
-  // On a linear axis: the whole numbers from the least to the greatest.
-  double least = 0;
-  double greatest = 1;
-  bool any = false;
-  for (const Series& series : plot.series) {
-    for (const auto& point : series.points) {
-      least = any ? std::min(least, point.first) : point.first;
-      greatest = any ? std::max(greatest, point.first) : point.first;
-      any = true;
-    }
-  }
   greatest = std::max(greatest, least + 1);
   const auto x_part = [&](double x) {
     return plot.whole_x ? (x - least) / (greatest - least) : x_range.part(x);
   };
-  const auto x_at = [&](double x) { return kPlotLeft + x_part(x) * (kPlotWidth - kPlotLeft - kPlotRight); };
-  const auto y_at = [&](double y) {
-    return kHeight - kBottom - y_range.part(y) * (kHeight - kPlotTop - kBottom);
-  };
+  const Axes& axes = kLogAxes;
+  const auto x_at = [&](double x) { return axes.left + x_part(x) * axes.width(); };
+  const auto y_at = [&](double y) { return axes.bottom - y_range.part(y) * axes.height(); };
 
-  std::string svg = svg_begin(kPlotWidth, kHeight, ".mark { stroke: #888888; stroke-dasharray: 2 3 }",
+  std::string svg = svg_begin(kWidth, kHeight, ".mark { stroke: #888888; stroke-dasharray: 2 3 }",
                               ".axis { stroke: #e6e6e6 }");
-  svg += label(kPlotWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
+  svg += label(kWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
   for (double whole = least; plot.whole_x && whole <= greatest; whole += 1) {
-    svg += line(x_at(whole), kPlotTop, x_at(whole), kHeight - kBottom, "grid") +
-           label(x_at(whole), kHeight - kBottom + 18, "middle", std::to_string(std::lround(whole)));
+    svg += axes.x_mark(x_at(whole), std::to_string(std::lround(whole)));
   }
   for (int decade = x_range.low; !plot.whole_x && decade <= x_range.high; ++decade) {
-    const double x = x_at(std::pow(10, decade));
-    svg += line(x, kPlotTop, x, kHeight - kBottom, "grid") +
-           label(x, kHeight - kBottom + 18, "middle", decade_text(decade));
+    svg += axes.x_mark(x_at(std::pow(10, decade)), decade_text(decade));
   }
   for (int decade = y_range.low; decade <= y_range.high; ++decade) {
-    const double y = y_at(std::pow(10, decade));
-    svg += line(kPlotLeft, y, kPlotWidth - kPlotRight, y, "grid") +
-           label(kPlotLeft - 8, y + 4, "end", decade_text(decade));
+    svg += axes.y_mark(y_at(std::pow(10, decade)), decade_text(decade));
   }
-  svg += line(kPlotLeft, kPlotTop, kPlotLeft, kHeight - kBottom, "axis") +
-         line(kPlotLeft, kHeight - kBottom, kPlotWidth - kPlotRight, kHeight - kBottom, "axis");
-  svg += label((kPlotLeft + kPlotWidth - kPlotRight) / 2, kHeight - kBottom + 40, "middle", plot.x_label);
-  const double middle = (kPlotTop + kHeight - kBottom) / 2;
-  svg += label(20, middle, "middle", plot.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
-
+  svg += axes.lines() + axes.names(plot.x_label, plot.y_label);
   for (const Mark& mark : plot.marks) {
     const double y = y_at(mark.y);
-    svg += line(kPlotLeft, y, kPlotWidth - kPlotRight, y, "mark") +
-           label(kPlotLeft + 6, y - 4, "start", mark.name, " font-size=\"11\"");
+    svg += line(axes.left, y, axes.right, y, "mark") +
+           label(axes.left + 6, y - 4, "start", mark.name, " font-size=\"11\"");
   }
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& series = plot.series[i];
@@ -156,8 +162,8 @@ std::string log_plot_text(const Plot& plot) {
              "\"/>\n";
     }
     const std::size_t legend_row = i / 2;
-    const double column = kPlotLeft + static_cast<double>(i % 2) * (kPlotWidth - kPlotLeft - kPlotRight) / 2;
-    const double row = kHeight - kBottom + 62 + 18 * static_cast<double>(legend_row);
+    const double column = axes.left + static_cast<double>(i % 2) * axes.width() / 2;
+    const double row = axes.bottom + 62 + 18 * static_cast<double>(legend_row);
     svg += "<line x1=\"" + number(column) + "\" y1=\"" + number(row - 4) + "\" x2=\"" + number(column + 28) +
            "\" y2=\"" + number(row - 4) + "\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + "/>\n";
     svg += label(column + 36, row, "start", series.name);
@@ -168,7 +174,6 @@ std::string log_plot_text(const Plot& plot) {
 
 namespace {
 
-constexpr double kBarsWidth = 760;
 constexpr double kBarsLeft = 150;
 constexpr double kBarsRight = 190;
 constexpr double kBarsTop = 48;
@@ -203,14 +208,13 @@ std::string bar_chart_text(const BarChart& chart) {
   const auto first = static_cast<int>(std::floor(least / tick));
   const auto last = static_cast<int>(std::ceil(most / tick));
   const auto x_at = [&](double value) {
-    return kBarsLeft +
-           (value - first * tick) / ((last - first) * tick) * (kBarsWidth - kBarsLeft - kBarsRight);
+    return kBarsLeft + (value - first * tick) / ((last - first) * tick) * (kWidth - kBarsLeft - kBarsRight);
   };
   const double bottom = kBarsTop + kStep * static_cast<double>(chart.bars.size());
   const double height = bottom + 52;
-  std::string svg = svg_begin(kBarsWidth, height, ".bar { fill: #0072b2 }",
-                              ".axis { stroke: #e6e6e6 } .bar { fill: #56b4e9 }");
-  svg += label(kBarsWidth / 2, 24, "middle", chart.title, " font-size=\"15\"");
+  std::string svg =
+      svg_begin(kWidth, height, ".bar { fill: #0072b2 }", ".axis { stroke: #e6e6e6 } .bar { fill: #56b4e9 }");
+  svg += label(kWidth / 2, 24, "middle", chart.title, " font-size=\"15\"");
   for (int step = first; step <= last; ++step) {
     const double x = x_at(step * tick);
     svg +=
@@ -231,19 +235,14 @@ std::string bar_chart_text(const BarChart& chart) {
     y += kStep;
   }
   svg += line(x_at(0), kBarsTop, x_at(0), bottom, "axis");
-  svg += label((kBarsLeft + kBarsWidth - kBarsRight) / 2, bottom + 38, "middle", chart.x_label);
+  svg += label((kBarsLeft + kWidth - kBarsRight) / 2, bottom + 38, "middle", chart.x_label);
   return svg + "</svg>\n";
 }
 
 namespace {
 
-constexpr double kScatterWidth = 760;
-constexpr double kScatterLeft = 72;
-constexpr double kScatterRight = 24;
-constexpr double kScatterTop = 52;
-constexpr double kPlotHeight = 330;
+constexpr Axes kScatterAxes{72, kWidth - 24, 52, 52 + 330};
 constexpr double kLineHeight = 18;
-constexpr double kPlotBottom = kScatterTop + kPlotHeight;
 // Names in two columns where there are many.
 constexpr std::size_t kManyNames = 8;
 
@@ -307,10 +306,12 @@ struct Scales {
     high = (std::floor(y_high / step) + 1) * step;
   }
   double x_at(double x) const {
-    return kScatterLeft + std::log(x / x_ticks.front()) / std::log(x_ticks.back() / x_ticks.front()) *
-                              (kScatterWidth - kScatterLeft - kScatterRight);
+    return kScatterAxes.left +
+           std::log(x / x_ticks.front()) / std::log(x_ticks.back() / x_ticks.front()) * kScatterAxes.width();
   }
-  double y_at(double y) const { return kPlotBottom - (std::min(y, high) - low) / (high - low) * kPlotHeight; }
+  double y_at(double y) const {
+    return kScatterAxes.bottom - (std::min(y, high) - low) / (high - low) * kScatterAxes.height();
+  }
 };
 
 // Numbers at points, each in the nearest place round its point that neither another number nor another point
@@ -366,36 +367,29 @@ std::string scatter_text(const Scatter& scatter) {
   const std::size_t legend_rows = (scatter.clouds.size() + 3) / 4;
   const std::size_t columns = scatter.front.size() > kManyNames ? 2 : 1;
   const std::size_t name_rows = (scatter.front.size() + columns - 1) / columns;
-  const double legend = kPlotBottom + 64;
+  const Axes& axes = kScatterAxes;
+  const double legend = axes.bottom + 64;
   const double names = legend + kLineHeight * static_cast<double>(legend_rows) + 8;
   const double height =
       names + kLineHeight * static_cast<double>(scatter.front.empty() ? 0 : name_rows + 1) + 8;
 
-  std::string svg = svg_begin(kScatterWidth, height,
+  std::string svg = svg_begin(kWidth, height,
                               ".front { fill: none; stroke: #222222; stroke-width: 1.5 } .ring { fill: none; "
                               "stroke: #222222 }",
                               ".axis, .front, .ring { stroke: #e6e6e6 }");
-  svg += label(kScatterWidth / 2, 26, "middle", scatter.title, " font-size=\"15\"");
+  svg += label(kWidth / 2, 26, "middle", scatter.title, " font-size=\"15\"");
   for (const double tick : scales.x_ticks) {
-    const double x = scales.x_at(tick);
-    svg += line(x, kScatterTop, x, kPlotBottom, "grid") + label(x, kPlotBottom + 18, "middle", rounded(tick));
+    svg += axes.x_mark(scales.x_at(tick), rounded(tick));
   }
   for (int i = 0; scales.low + i * scales.step <= scales.high + scales.step / 2; ++i) {
     const double value = scales.low + i * scales.step;
-    const double y = scales.y_at(value);
-    svg += line(kScatterLeft, y, kScatterWidth - kScatterRight, y, "grid") +
-           label(kScatterLeft - 8, y + 4, "end", rounded(value));
+    svg += axes.y_mark(scales.y_at(value), rounded(value));
   }
-  svg += line(kScatterLeft, kScatterTop, kScatterLeft, kPlotBottom, "axis") +
-         line(kScatterLeft, kPlotBottom, kScatterWidth - kScatterRight, kPlotBottom, "axis");
+  svg += axes.lines();
   if (infinite) {
-    svg += label(kScatterLeft + 6, kScatterTop - 6, "start", scatter.infinite_name, " font-size=\"11\"");
+    svg += label(axes.left + 6, axes.top - 6, "start", scatter.infinite_name, " font-size=\"11\"");
   }
-  svg +=
-      label((kScatterLeft + kScatterWidth - kScatterRight) / 2, kPlotBottom + 40, "middle", scatter.x_label);
-  const double middle = kScatterTop + kPlotHeight / 2;
-  svg += label(20, middle, "middle", scatter.y_label, " transform=\"rotate(-90 20 " + number(middle) + ")\"");
-
+  svg += axes.names(scatter.x_label, scatter.y_label);
   if (!scatter.front.empty()) {
     svg += polyline("class=\"front\"", scatter.front, [&](const FrontPoint& point) {
       return std::pair{scales.x_at(point.x), scales.y_at(point.y)};
@@ -412,14 +406,13 @@ std::string scatter_text(const Scatter& scatter) {
     for (const auto& [x, y] : scatter.clouds[i].points) {
       svg += dot(scales.x_at(x), scales.y_at(y), 4, fill);
     }
-    const double column =
-        kScatterLeft + static_cast<double>(i % 4) * (kScatterWidth - kScatterLeft - kScatterRight) / 4;
+    const double column = axes.left + static_cast<double>(i % 4) * axes.width() / 4;
     const std::size_t legend_row = i / 4;
     const double row = legend + kLineHeight * static_cast<double>(legend_row);
     svg += dot(column + 5, row - 4, 4, fill) + label(column + 16, row, "start", scatter.clouds[i].name);
   }
   if (!scatter.front.empty()) {
-    svg += label(kScatterLeft, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
+    svg += label(axes.left, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
   }
   std::vector<std::pair<double, double>> rings;
   for (const FrontPoint& point : scatter.front) {
@@ -433,8 +426,7 @@ std::string scatter_text(const Scatter& scatter) {
     svg += dot(x, y, 6, "class=\"ring\"");
     svg += numbers.label_at(x, y, std::to_string(i + 1));
     const std::size_t name_column = i / name_rows;
-    const double column =
-        kScatterLeft + static_cast<double>(name_column) * (kScatterWidth - kScatterLeft - kScatterRight) / 2;
+    const double column = axes.left + static_cast<double>(name_column) * axes.width() / 2;
     svg += label(column, names + kLineHeight * (static_cast<double>(i % name_rows) + 1.5), "start",
                  std::to_string(i + 1) + "  " + point.name, " font-size=\"11\"");
   }
@@ -445,15 +437,15 @@ std::string stacked(const std::vector<std::string>& plots) {
   std::string inner;
   double height = 0;
   for (const std::string& plot : plots) {
-    const std::string box = "viewBox=\"0 0 " + number(kScatterWidth) + " ";
+    const std::string box = "viewBox=\"0 0 " + number(kWidth) + " ";
     const std::size_t at = plot.find(box);
     const double own = std::strtod(plot.c_str() + at + box.size(), nullptr);
-    inner += "<svg y=\"" + number(height) + "\" width=\"" + number(kScatterWidth) + "\" height=\"" +
-             number(own) + "\" " + plot.substr(at);
+    inner += "<svg y=\"" + number(height) + "\" width=\"" + number(kWidth) + "\" height=\"" + number(own) +
+             "\" " + plot.substr(at);
     height += own;
   }
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kScatterWidth) + " " +
-         number(height) + "\">\n" + inner + "</svg>\n";
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
+         "\">\n" + inner + "</svg>\n";
 }
 
 std::string number(double value) {

@@ -28,6 +28,13 @@ class ProgressBar {
   std::chrono::steady_clock::time_point next_;
 };
 
+/// What `work` gives, which says in a bar of that label how far it is.
+template <class Work>
+auto with_progress(const std::string& label, bool quiet, const Work& work) {
+  ProgressBar bar(label, quiet);
+  return work([&bar](double done) { bar.update(done); });
+}
+
 }  // namespace thimble::tools
 
 #endif

@@ -30,7 +30,7 @@ std::size_t typing_distance(std::string_view from, std::string_view to) {
 
 }  // namespace
 
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
+std::string suggestion(std::string_view word, const std::vector<std::string>& words) {
   std::string nearest;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : words) {
@@ -40,11 +40,6 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
       nearest = candidate;
     }
   }
-  return nearest;
-}
-
-std::string suggestion(std::string_view word, const std::vector<std::string>& words) {
-  const std::string nearest = nearest_word(word, words);
   return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 

@@ -9,11 +9,8 @@
 
 namespace thimble::tools {
 
-/// The one of `words` that somebody who typed `word` most likely meant: at most a third of its letters are
-/// missing, too many, wrong or swapped with their neighbour. Empty for none.
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
-
-/// " (did you mean render?)", or nothing.
+/// " (did you mean render?)": the one of `words` that somebody who typed `word` most likely meant. At most a third of
+/// its letters are missing, too many, wrong or swapped with their neighbour; where there is none, nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string>& words);
 
 }  // namespace thimble::tools

@@ -15,6 +15,12 @@ namespace thimble::tools {
 
 using JsonRow = nlohmann::ordered_json;
 
+/// What a pointer or an optional leads to; null where it leads nowhere.
+template <class Maybe>
+JsonRow json_of(const Maybe& value) {
+  return value ? JsonRow(*value) : JsonRow(nullptr);
+}
+
 /// An array of objects with the same names in the same order, at least one: a line of names, then a line
 /// each. null is an empty cell; texts with commas, quotes or line feeds are quoted.
 std::string csv_of(const JsonRow& rows);

@@ -1,5 +1,6 @@
 #include "output/units.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdio>
@@ -98,6 +99,21 @@ std::string fixed(double value, int digits) {
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
   return fixed(whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole), 2);
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view between) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += text.empty() ? "" : between;
+    text += word;
+  }
+  return text;
+}
+
+bool ends_in(std::string_view name, std::string_view ending) {
+  return name.size() > ending.size() &&
+         std::equal(ending.rbegin(), ending.rend(), name.rbegin(),
+                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
 }
 
 std::string crc_text(std::uint32_t crc) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace thimble::tools {
 
@@ -24,6 +25,11 @@ std::string shortest(double number);
 std::string fixed(double value, int digits);
 /// How many per cent of `whole` a part is, with two digits behind the point; of nothing "0.00".
 std::string percent(std::uint64_t part, std::uint64_t whole);
+
+/// The words one after the other with `between` between them.
+std::string joined(const std::vector<std::string>& words, std::string_view between);
+/// Whether a name ends in `ending`, which is in small letters, in any case, with more before it.
+bool ends_in(std::string_view name, std::string_view ending);
 
 /// A CRC-32 as 8 hex digits.
 std::string crc_text(std::uint32_t crc);

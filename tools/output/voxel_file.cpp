@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstddef>
+#include <initializer_list>
 #include <map>
 #include <span>
 #include <string>
@@ -241,36 +242,29 @@ void write_model(Writer* to, const VoxModel& model) {
 // The chunks of the scene graph: a root, a group, and for each model its place and itself.
 std::string scene_graph(const std::map<std::array<std::int32_t, 3>, VoxModel>& models) {
   std::string bytes;
+  const auto words_of = [](std::initializer_list<std::uint32_t> words) {
+    std::string content;
+    for (const std::uint32_t word : words) {
+      put_little(&content, word);
+    }
+    return content;
+  };
+  const auto sized = [&](const std::string& content) {
+    return words_of({static_cast<std::uint32_t>(content.size())}) + content;
+  };
   const auto add = [&](const char* name, const std::string& content) {
-    bytes += name;
-    put_little(&bytes, static_cast<std::uint32_t>(content.size()));
-    put_little(&bytes, 0);
-    bytes += content;
+    bytes += name + words_of({static_cast<std::uint32_t>(content.size()), 0}) + content;
   };
   // A transformation of `child`, in no layer, with one frame.
   const auto transform = [&](std::uint32_t id, std::uint32_t child, const std::string& translation) {
-    std::string content;
-    put_little(&content, id);
-    put_little(&content, 0);
-    put_little(&content, child);
-    put_little(&content, UINT32_MAX);
-    put_little(&content, UINT32_MAX);
-    put_little(&content, 1);
-    put_little(&content, translation.empty() ? 0 : 1);
-    if (!translation.empty()) {
-      for (const std::string& word : {std::string("_t"), translation}) {
-        put_little(&content, static_cast<std::uint32_t>(word.size()));
-        content += word;
-      }
-    }
-    add("nTRN", content);
+    const std::string frame =
+        translation.empty() ? words_of({0}) : words_of({1}) + sized("_t") + sized(translation);
+    add("nTRN", words_of({id, 0, child, UINT32_MAX, UINT32_MAX, 1}) + frame);
   };
+  const auto count = static_cast<std::uint32_t>(models.size());
   transform(0, 1, "");
-  std::string group;
-  put_little(&group, 1);
-  put_little(&group, 0);
-  put_little(&group, static_cast<std::uint32_t>(models.size()));
-  for (std::uint32_t i = 0; i < models.size(); ++i) {
+  std::string group = words_of({1, 0, count});
+  for (std::uint32_t i = 0; i < count; ++i) {
     put_little(&group, 2 + 2 * i);
   }
   add("nGRP", group);
@@ -283,13 +277,7 @@ std::string scene_graph(const std::map<std::array<std::int32_t, 3>, VoxModel>& m
       translation += (axis == 0 ? "" : " ") + std::to_string(corner + model.size[axis] / 2);
     }
     transform(2 + 2 * number, 3 + 2 * number, translation);
-    std::string shape;
-    put_little(&shape, 3 + 2 * number);
-    put_little(&shape, 0);
-    put_little(&shape, 1);
-    put_little(&shape, number);
-    put_little(&shape, 0);
-    add("nSHP", shape);
+    add("nSHP", words_of({3 + 2 * number, 0, 1, number, 0}));
     ++number;
   }
   return bytes;
@@ -347,10 +335,7 @@ void write_vox(Writer* to, const CompactTree& tree, const Palette& palette, cons
 std::optional<VoxelFormat> voxel_format(std::string_view path) {
   constexpr std::array<std::string_view, 4> kEndings{".vox", ".npy", ".ply", ".csv"};
   for (std::size_t i = 0; i < kEndings.size(); ++i) {
-    const std::string_view ending = kEndings[i];
-    if (path.size() > ending.size() &&
-        std::equal(ending.begin(), ending.end(), path.end() - static_cast<std::ptrdiff_t>(ending.size()),
-                   [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b + 32 : b); })) {
+    if (ends_in(path, kEndings[i])) {
       return static_cast<VoxelFormat>(i);
     }
   }

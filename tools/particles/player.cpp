@@ -7,15 +7,25 @@
 #include <utility>
 
 #include "output/units.h"
+#include "particles/line_words.h"
 #include "particles/populated_world.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {
 
-constexpr std::array<const char*, 6> kToolNames{"drag", "attract", "repel", "spawn", "erase", "draw wall"};
-// Cells: how near a ball must be to be taken, how far forces reach, how thick what is erased and drawn is.
-constexpr std::array<std::int32_t, 6> kReaches{12, 120, 120, 1, 12, 3};
+struct ToolFacts {
+  const char* name;
+  PointerMode mode;
+  std::int32_t
+      reach;  // cells: how near a ball must be to be taken, how far forces reach, how thick what is drawn is
+};
+constexpr std::array<ToolFacts, 6> kTools{{{"drag", PointerMode::kDrag, 12},
+                                           {"attract", PointerMode::kAttract, 120},
+                                           {"repel", PointerMode::kRepel, 120},
+                                           {"spawn", PointerMode::kSpawn, 1},
+                                           {"erase", PointerMode::kErase, 12},
+                                           // Drawn at every event, so that a quick stroke keeps its corners.
+                                           {"draw wall", PointerMode::kNone, 3}}};
 constexpr std::int32_t kMostReach = 1024;
 constexpr std::int32_t kStrengthQ16 = 32768;
 constexpr std::int32_t kGravityStepQ16 = 1311;  // 0.02
@@ -26,47 +36,28 @@ std::size_t index_of(Tool tool) {
   return static_cast<std::size_t>(tool);
 }
 
-PointerMode mode_of(Tool tool) {
-  switch (tool) {
-    case Tool::kDrag:
-      return PointerMode::kDrag;
-    case Tool::kAttract:
-      return PointerMode::kAttract;
-    case Tool::kRepel:
-      return PointerMode::kRepel;
-    case Tool::kSpawn:
-      return PointerMode::kSpawn;
-    case Tool::kErase:
-      return PointerMode::kErase;
-    case Tool::kWall:
-      break;  // drawn at every event, so that a quick stroke keeps its corners
-  }
-  return PointerMode::kNone;
-}
-
 // The cell of the nearest ball's centre within `reach`, or `at`.
 Vec2i nearest_ball(const ParticleWorld& world, Vec2i at, std::int32_t reach) {
   Vec2i best = at;
   std::int64_t least = std::int64_t{reach} * reach + 1;
-  for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
-    Particle ball;
-    if (world.particle(id, &ball)) {
-      const Vec2i cell{ball.x_q16 >> 16, ball.y_q16 >> 16};
-      const std::int64_t dx = cell.x - at.x;
-      const std::int64_t dy = cell.y - at.y;
-      if (dx * dx + dy * dy < least) {
-        least = dx * dx + dy * dy;
-        best = cell;
-      }
+  for_each_ball(world, [&](const Particle& ball) {
+    const Vec2i cell{ball.x_q16 >> 16, ball.y_q16 >> 16};
+    const std::int64_t dx = cell.x - at.x;
+    const std::int64_t dy = cell.y - at.y;
+    if (dx * dx + dy * dy < least) {
+      least = dx * dx + dy * dy;
+      best = cell;
     }
-  }
+  });
   return best;
 }
 
 }  // namespace
 
 Player::Player(PopulatedWorld* world, std::int32_t rate)
-    : world_(world), settings_(world->options()), rate_(rate), reach_(kReaches) {
+    : world_(world), settings_(world->options()), rate_(rate) {
+  std::transform(kTools.begin(), kTools.end(), reach_.begin(),
+                 [](const ToolFacts& tool) { return tool.reach; });
   strong_gravity_ = settings_.gravity_q16 == Vec2i{} ? kDefaultGravityQ16 : settings_.gravity_q16;
 }
 
@@ -124,8 +115,8 @@ void Player::tick() {
   ParticleWorld& world = world_->world();
   if (!stands()) {
     const Tool tool = held_tool();
-    world.set_pointer(is_held() ? mode_of(tool) : PointerMode::kNone, place_, reach_[index_of(tool)],
-                      kStrengthQ16);
+    world.set_pointer(is_held() ? kTools[index_of(tool)].mode : PointerMode::kNone, place_,
+                      reach_[index_of(tool)], kStrengthQ16);
     world.step();
     const StepCounters& step = world.counters();
     ++counts_.steps;
@@ -307,7 +298,7 @@ std::string Player::figures_line(double eps) const {
 std::string Player::tool_text() const {
   const Tool tool = is_held() ? held_tool() : tool_;
   const std::string reach = tool == Tool::kSpawn ? "" : " within " + std::to_string(reach_[index_of(tool)]);
-  return "mouse: " + std::string(kToolNames[index_of(tool)]) + reach + (is_held() ? " *" : "");
+  return "mouse: " + std::string(kTools[index_of(tool)].name) + reach + (is_held() ? " *" : "");
 }
 
 std::string Player::world_text() const {
@@ -358,97 +349,62 @@ bool is_key(std::string_view word) {
                      [&](const auto& named) { return word == named.first; });
 }
 
-// Reads one line.
-class EventReader {
- public:
-  EventReader(std::uint64_t number, std::string_view line) : number_(number), line_(line), rest_(line) {}
+void read_place(LineWords* words, InputEvent* event) {
+  const std::string_view both = words->word("the place X,Y");
+  const std::size_t comma = both.find(',');
+  if (comma == std::string_view::npos) {
+    words->fail(both, "the place is " + quoted(both) + ", which is not X,Y");
+  }
+  const auto cell = [&](std::string_view text, const char* what) {
+    return static_cast<std::int32_t>(words->whole_of(text, what, -kFarthest, kFarthest));
+  };
+  event->x = cell(both.substr(0, comma), "x");
+  event->y = cell(both.substr(comma + 1), "y");
+}
 
-  InputEvent read() {
-    InputEvent event;
-    const std::size_t colon = line_.find(':');
-    if (colon == std::string_view::npos) {
-      fail(line_, "a line is TICK: key|move|press|release|wheel|end ...");
+InputEvent read_event(std::string_view line, LineWords* words) {
+  InputEvent event;
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos) {
+    words->fail(line, "a line is TICK: key|move|press|release|wheel|end ...");
+  }
+  words->enter(line.substr(0, colon));
+  event.tick = static_cast<std::uint64_t>(words->whole("the tick", 0, kMostTicks));
+  words->end(" is too much after the tick");
+  words->enter(line.substr(colon + 1));
+  const std::string_view verb = words->word("an event: key, move, press, release, wheel or end");
+  if (verb == "key") {
+    event.kind = InputKind::kKey;
+    const std::string_view key = words->word("the key");
+    if (!is_key(key)) {
+      words->fail(key, quoted(key) +
+                           " is not a key: one character, or space, up, down, left, right, enter, tab, " +
+                           "escape or backspace");
     }
-    rest_ = line_.substr(0, colon);
-    event.tick = static_cast<std::uint64_t>(whole("the tick", 0, kMostTicks));
-    no_more("the tick");
-    rest_ = line_.substr(colon + 1);
-    const std::string_view verb = word("an event: key, move, press, release, wheel or end");
-    if (verb == "key") {
-      event.kind = InputKind::kKey;
-      const std::string_view key = word("the key");
-      if (!is_key(key)) {
-        fail(key, quoted(key) +
-                      " is not a key: one character, or space, up, down, left, right, enter, tab, " +
-                      "escape or backspace");
-      }
-      event.key = key;
-    } else if (verb == "move") {
-      event.kind = InputKind::kMove;
-      place(&event);
-    } else if (verb == "press" || verb == "release") {
-      event.kind = verb == "press" ? InputKind::kPress : InputKind::kRelease;
-      const std::string_view button = word("the button: left, middle or right");
-      const auto* const found = std::find(kButtons.begin() + 1, kButtons.end(), button);
-      if (found == kButtons.end()) {
-        fail(button, quoted(button) + " is not left, middle or right");
-      }
-      event.button = static_cast<std::uint8_t>(found - kButtons.begin());
-      place(&event);
-    } else if (verb == "wheel") {
-      event.kind = InputKind::kWheel;
-      event.steps =
-          static_cast<std::int32_t>(whole("the number of steps", -kMostWheelSteps, kMostWheelSteps));
-      place(&event);
-    } else if (verb != "end") {
-      fail(verb, quoted(verb) + " is not key, move, press, release, wheel or end");
+    event.key = key;
+  } else if (verb == "move") {
+    event.kind = InputKind::kMove;
+    read_place(words, &event);
+  } else if (verb == "press" || verb == "release") {
+    event.kind = verb == "press" ? InputKind::kPress : InputKind::kRelease;
+    const std::string_view button = words->word("the button: left, middle or right");
+    const auto* const found = std::find(kButtons.begin() + 1, kButtons.end(), button);
+    if (found == kButtons.end()) {
+      words->fail(button, quoted(button) + " is not left, middle or right");
     }
-    no_more("the event");
-    return event;
+    event.button = static_cast<std::uint8_t>(found - kButtons.begin());
+    read_place(words, &event);
+  } else if (verb == "wheel") {
+    event.kind = InputKind::kWheel;
+    event.steps =
+        static_cast<std::int32_t>(words->whole("the number of steps", -kMostWheelSteps, kMostWheelSteps));
+    read_place(words, &event);
+  } else if (verb != "end") {
+    words->fail(verb, quoted(verb) + " is not key, move, press, release, wheel or end");
   }
-  [[noreturn]] void fail(std::string_view where, const std::string& sentence) const {
-    fail_at_word(number_, line_, where, sentence);
-  }
-
- private:
-  std::string_view word(const char* what) {
-    const std::string_view taken = take_word(rest_);
-    if (taken.empty()) {
-      fail(rest_, std::string(what) + " is missing");
-    }
-    return taken;
-  }
-  std::int64_t whole(const char* what, std::int64_t low, std::int64_t high) {
-    return whole(word(what), what, low, high);
-  }
-  std::int64_t whole(std::string_view text, const char* what, std::int64_t low, std::int64_t high) const {
-    std::int64_t value = 0;
-    if (!parse_integer(text, value) || value < low || value > high) {
-      fail(text, std::string(what) + " is " + quoted(text) + ", which is not a whole number from " +
-                     std::to_string(low) + " to " + std::to_string(high));
-    }
-    return value;
-  }
-  void place(InputEvent* event) {
-    const std::string_view both = word("the place X,Y");
-    const std::size_t comma = both.find(',');
-    if (comma == std::string_view::npos) {
-      fail(both, "the place is " + quoted(both) + ", which is not X,Y");
-    }
-    event->x = static_cast<std::int32_t>(whole(both.substr(0, comma), "x", -kFarthest, kFarthest));
-    event->y = static_cast<std::int32_t>(whole(both.substr(comma + 1), "y", -kFarthest, kFarthest));
-  }
-  void no_more(const char* after) {
-    const std::string_view more = take_word(rest_);
-    if (!more.empty()) {
-      fail(more, quoted(more) + " is too much after " + after);
-    }
-  }
-
-  std::uint64_t number_;
-  std::string_view line_;
-  std::string_view rest_;
-};
+  words->end(" is too much after the event");
+  return event;
+}
 
 }  // namespace
 
@@ -533,14 +489,14 @@ std::vector<InputEvent> read_input(std::string_view text) {
     if (first.empty() || first.front() == '#') {
       continue;
     }
-    EventReader reader(lines.line_number(), line);
-    InputEvent event = reader.read();
+    LineWords words(lines.line_number(), line);
+    InputEvent event = read_event(line, &words);
     if (!events.empty() && event.tick < events.back().tick) {
-      reader.fail(first, "tick " + std::to_string(event.tick) + " comes after tick " +
-                             std::to_string(events.back().tick));
+      words.fail(first, "tick " + std::to_string(event.tick) + " comes after tick " +
+                            std::to_string(events.back().tick));
     }
     if (!events.empty() && events.back().kind == InputKind::kEnd) {
-      reader.fail(first, "an event follows the end");
+      words.fail(first, "an event follows the end");
     }
     events.push_back(std::move(event));
   }

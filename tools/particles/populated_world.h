@@ -37,10 +37,6 @@ struct Bodies {
 /// of 0 or less, and fewer or more lines than announced.
 Bodies read_bodies(std::string_view text);
 
-/// Throws InputError "line LINE, column COLUMN: SENTENCE", the column being where `word` begins in `line`.
-[[noreturn]] void fail_at_word(std::uint64_t line_number, std::string_view line, std::string_view word,
-                               const std::string& sentence);
-
 /// The gravity of the paper's world in this project: 0.1 cells a step a step, down the picture.
 inline constexpr Vec2i kDefaultGravityQ16{0, 6554};
 
@@ -102,6 +98,17 @@ class PopulatedWorld {
   Placing placing_;
   ParticleWorld world_;
 };
+
+/// Calls `visit` with each ball in order of number.
+template <class Visit>
+void for_each_ball(const ParticleWorld& world, const Visit& visit) {
+  for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
+    Particle ball;
+    if (world.particle(id, &ball)) {
+      visit(ball);
+    }
+  }
+}
 
 /// What restitution a bounciness of 0 .. 1 is.
 std::uint32_t restitution_q16(double bounciness);

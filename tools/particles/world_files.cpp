@@ -15,16 +15,12 @@ namespace thimble::tools {
 std::string state_csv(const ParticleWorld& world) {
   std::string text(kStateColumns);
   text += '\n';
-  for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
-    Particle ball;
-    if (!world.particle(id, &ball)) {
-      continue;
-    }
+  for_each_ball(world, [&](const Particle& ball) {
     std::array<char, 128> line{};
-    std::snprintf(line.data(), line.size(), "%u,%d,%d,%d,%d,%d,%d\n", static_cast<unsigned>(id), ball.x_q16,
-                  ball.y_q16, ball.vx_q16, ball.vy_q16, ball.radius_q16, ball.asleep ? 1 : 0);
+    std::snprintf(line.data(), line.size(), "%u,%d,%d,%d,%d,%d,%d\n", static_cast<unsigned>(ball.id),
+                  ball.x_q16, ball.y_q16, ball.vx_q16, ball.vy_q16, ball.radius_q16, ball.asleep ? 1 : 0);
     text += line.data();
-  }
+  });
   return text;
 }
 
@@ -88,11 +84,7 @@ void draw_world(const PopulatedWorld& populated, std::vector<std::uint8_t>* rgb)
           is_set ? apps::kWallColor : kGround);
     }
   }
-  for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
-    Particle ball;
-    if (!world.particle(id, &ball)) {
-      continue;
-    }
+  for_each_ball(world, [&](const Particle& ball) {
     const Rgb8 color = populated.color_of(ball);
     const std::uint32_t* const rows = small_disc_rows(ball.diameter);
     for (std::int32_t row = 0; row < ball.diameter; ++row) {
@@ -105,7 +97,7 @@ void draw_world(const PopulatedWorld& populated, std::vector<std::uint8_t>* rgb)
         }
       }
     }
-  }
+  });
 }
 
 void draw_figures(std::int32_t width_px, std::int32_t height_px, std::string_view text,

@@ -1,0 +1,75 @@
+/// @file line_words.h
+/// A line of words and numbers whose errors say where in it they are.
+#ifndef THIMBLE_TOOLS_PARTICLES_LINE_WORDS_H
+#define THIMBLE_TOOLS_PARTICLES_LINE_WORDS_H
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "readers/text.h"
+
+namespace thimble::tools {
+
+/// All errors are InputError "line LINE, column COLUMN: SENTENCE".
+class LineWords {
+ public:
+  LineWords(std::uint64_t number, std::string_view line) : number_(number), line_(line), rest_(line) {}
+
+  std::string_view rest() const { return rest_; }
+  /// Goes on with `part` of the line.
+  void enter(std::string_view part) { rest_ = part; }
+  /// The column is where `word` begins.
+  [[noreturn]] void fail(std::string_view word, const std::string& sentence) const {
+    throw InputError("line " + std::to_string(number_) + ", column " +
+                     std::to_string(word.data() - line_.data() + 1) + ": " + sentence);
+  }
+  /// The next word; `what` names it in the error that there is none.
+  std::string_view word(const std::string& what) {
+    const std::string_view word = take_word(rest_);
+    if (word.empty()) {
+      fail(rest_, what + " is missing");
+    }
+    return word;
+  }
+  std::int64_t whole(const std::string& what, std::int64_t low, std::int64_t high) {
+    return whole_of(word(what), what, low, high);
+  }
+  /// A word, or a part of one, as a number.
+  std::int64_t whole_of(std::string_view text, const std::string& what, std::int64_t low,
+                        std::int64_t high) const {
+    std::int64_t value = 0;
+    if (!parse_integer(text, value) || value < low || value > high) {
+      fail(text, what + " is " + quoted(text) + ", which is not a whole number from " + std::to_string(low) +
+                     " to " + std::to_string(high));
+    }
+    return value;
+  }
+  double number(const std::string& what, bool is_above_0 = false) {
+    const std::string_view text = word(what);
+    double value = 0;
+    const NumberKind kind = parse_number(text, value);
+    if (kind != NumberKind::kFinite || (is_above_0 && value <= 0)) {
+      fail(text, what + " is " + quoted(text) + ", which is not " +
+                     (kind == NumberKind::kFinite      ? "above 0"
+                      : kind == NumberKind::kNotFinite ? "a finite number"
+                                                       : "a number"));
+    }
+    return value;
+  }
+  /// Nothing may follow; `fault` says of a word that does what is wrong with it.
+  void end(const std::string& fault) {
+    if (const std::string_view more = take_word(rest_); !more.empty()) {
+      fail(more, quoted(more) + fault);
+    }
+  }
+
+ private:
+  std::uint64_t number_;
+  std::string_view line_;
+  std::string_view rest_;
+};
+
+}  // namespace thimble::tools
+
+#endif
