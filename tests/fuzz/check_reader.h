@@ -12,8 +12,7 @@
 #include <string>
 #include <variant>
 
-#include "readers/shared_bytes.h"
-#include "readers/source.h"
+#include "readers/formats.h"
 
 namespace thimble::tools::test {
 
@@ -24,11 +23,10 @@ inline void require(bool condition) {
 }
 
 /// Aborts when a promise of source.h is broken or anything but an InputError is thrown; returns 0.
-inline int check_reader(Source (*read)(const SharedBytes&, const Progress&),
-                        std::span<const std::uint8_t> bytes) {
+inline int check_reader(FormatReader* read, std::span<const std::uint8_t> bytes) {
   Source source;
   try {
-    source = read({bytes, nullptr}, {});
+    source = read({bytes, nullptr}, {}, {});
   } catch (const InputError& error) {
     const std::string what = error.what();
     require(!what.empty() && what.back() != '.' && what.find('\n') == std::string::npos);

@@ -12,6 +12,7 @@
 #include <string>
 #include <variant>
 
+#include "readers/formats.h"
 #include "readers/scene_text.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -23,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   };
   try {
-    const Source source = read_scene_text({{data, size}, nullptr});
+    const Source source = read_scene_text({{data, size}, nullptr}, {}, {});
     const SceneText& scene = *std::get<std::shared_ptr<const SceneText>>(source);
     require(!scene.parts.empty() && scene.parts.size() <= kSceneTextParts);
     require(scene.materials.size() <= kSceneTextMaterials && scene.lights.size() <= kMaxLights);

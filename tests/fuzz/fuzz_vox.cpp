@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "readers/vox.h"
+#include "readers/formats.h"
 
 namespace {
 
@@ -21,7 +21,8 @@ struct Enough {};  // thrown out of for_each: a small file may place very many v
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace thimble::tools;
   try {
-    const std::unique_ptr<VoxelModel> model = read_vox(share(FileBytes::copy_of({data, size})));
+    const Source source = read_vox({{data, size}, nullptr}, {}, {});
+    const auto& model = std::get<std::unique_ptr<VoxelModel>>(source);
     const auto sides = model->size();
     int visited = 0;
     model->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {

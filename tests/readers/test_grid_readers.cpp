@@ -6,15 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "readers/binvox.h"
 #include "readers/block_colors.h"
-#include "readers/height_grid.h"
-#include "readers/kvx.h"
-#include "readers/mts.h"
-#include "readers/npy.h"
-#include "readers/qb.h"
+#include "readers/formats.h"
 #include "readers/read_any.h"
-#include "readers/schematic.h"
 #include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 
@@ -234,8 +228,8 @@ TEST_CASE("blocks: names -> colours by what they are") {
   }
 }
 
-static Source read_height_rows(const SharedBytes& file, const Progress& progress) {
-  return read_npy_as(ArrayAs::kHeights, file, progress);
+static Source read_height_rows(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
+  return read_npy(file, {"", {}, ArrayAs::kHeights}, progress);
 }
 
 TEST_CASE("npy: shapes -> voxels, colours, points, heights") {

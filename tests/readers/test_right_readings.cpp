@@ -12,17 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "readers/las.h"
-#include "readers/npy.h"
-#include "readers/obj.h"
-#include "readers/off.h"
-#include "readers/pcd.h"
-#include "readers/ply.h"
+#include "readers/formats.h"
 #include "readers/read_any.h"
-#include "readers/stl.h"
-#include "readers/vox.h"
 #include "readers/vox_palette.h"
-#include "readers/xyz.h"
 #include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
@@ -42,9 +34,12 @@ constexpr Rgb kRed{255, 0, 0};
 constexpr Rgb kGreen{0, 255, 0};
 constexpr Rgb kBlue{0, 0, 255};
 
-template <class Read>
-Source source_of(const Read& read, const std::string& text) {
-  return read(SharedBytes::own(text), {});
+Source source_of(FormatReader* read, const std::string& text) {
+  return read(SharedBytes::own(text), {}, {});
+}
+
+Source array_of(ArrayAs as, const std::string& text) {
+  return read_npy(SharedBytes::own(text), {"", {}, as}, {});
 }
 
 bool notes_hold(const Source& source, const std::string& part) {
@@ -95,14 +90,12 @@ TEST_CASE("npy: N x 3 to N x 9 numbers of any type -> points, heights only by --
     CHECK(points_of(points) == 4);
     CHECK(colors_of(points).empty() == (columns < 6));
     CHECK(notes_hold(points, "columns") == (columns != 3 && columns != 6));
-    CHECK(points_of(read_npy_as(ArrayAs::kPoints, SharedBytes::own(file))) == 4);
-    CHECK(std::holds_alternative<std::unique_ptr<VoxelGrid>>(
-              read_npy_as(ArrayAs::kHeights, SharedBytes::own(file))) !=
-          std::holds_alternative<std::unique_ptr<PointCloud>>(
-              read_npy_as(ArrayAs::kHeights, SharedBytes::own(file))));
+    CHECK(points_of(array_of(ArrayAs::kPoints, file)) == 4);
+    CHECK(std::holds_alternative<std::unique_ptr<VoxelGrid>>(array_of(ArrayAs::kHeights, file)) !=
+          std::holds_alternative<std::unique_ptr<PointCloud>>(array_of(ArrayAs::kHeights, file)));
   }
   const std::string heights = npy("<f4", "4, 10", numbers(std::vector<float>(40, 1)));
-  CHECK_THROWS_AS(read_npy_as(ArrayAs::kPoints, SharedBytes::own(heights)), InputError);
+  CHECK_THROWS_AS(array_of(ArrayAs::kPoints, heights), InputError);
 }
 
 TEST_CASE("npy: halves -> read by every kind of number; 65 dimensions -> refused in a short sentence") {
@@ -297,9 +290,7 @@ TEST_CASE("obj: materials beside it -> colours of faces; what is missing or not 
   folder.write("a b.mtl",
                "newmtl my red\nKd 1 0 0\nd 1\nnewmtl air\nKd 0 1 0\nd 0\nnewmtl photo\nmap_Kd p.jpg\nKd 0 0 "
                "1\nTr 1\n");
-  const auto read = [&](const std::string& text) {
-    return read_scene_file({folder.write("x.obj", text), std::nullopt, ArrayAs::kByShape});
-  };
+  const auto read = [&](const std::string& text) { return read_scene_file({folder.write("x.obj", text)}); };
   const Source source = read("mtllib a b.mtl\n" + square +
                              "f 1 2 3\nusemtl my red\nf 1 3 4\nusemtl air\nf 1 2 4\nusemtl photo\nf 2 3 4\n");
   const auto& mesh = std::get<TriangleMesh>(source);
@@ -330,16 +321,17 @@ TEST_CASE("vox: models packed by zlib, a palette of sixteen entries -> read") {
            vox_chunk("MAIN", "",
                      vox_chunk("SIZE", size) + model + vox_chunk("RGBA", std::string(16 * 4, '\x40')));
   };
-  const Source source = read_any("a.vox", SharedBytes::own(file(vox_chunk("TDCZ", size + packed))));
+  const Source source = read_any({"a.vox"}, SharedBytes::own(file(vox_chunk("TDCZ", size + packed))));
   const auto& model = *std::get<std::unique_ptr<VoxelModel>>(source);
   std::vector<std::array<std::int32_t, 4>> seen;
   model.for_each([&](auto x, auto y, auto z, auto material) { seen.push_back({x, y, z, material}); });
   CHECK(seen == std::vector<std::array<std::int32_t, 4>>{{0, 0, 0, 1}, {1, 2, 0, 2}, {1, 2, 1, 3}});
   CHECK(model.palette()[16].color == Rgb{64, 64, 64});
   CHECK(model.palette()[17].color == vox_default_palette()[17].color);
-  CHECK_THROWS_AS(read_any("a.vox", SharedBytes::own(file(vox_chunk("TDCZ", size + packed.substr(0, 9))))),
+  CHECK_THROWS_AS(read_any({"a.vox"}, SharedBytes::own(file(vox_chunk("TDCZ", size + packed.substr(0, 9))))),
                   InputError);
-  CHECK_THROWS_AS(read_any("a.vox", SharedBytes::own(
-                                        file(vox_chunk("TDCZ", numbers<std::uint32_t>({2, 2, 2}) + packed)))),
-                  InputError);
+  CHECK_THROWS_AS(
+      read_any({"a.vox"},
+               SharedBytes::own(file(vox_chunk("TDCZ", numbers<std::uint32_t>({2, 2, 2}) + packed)))),
+      InputError);
 }

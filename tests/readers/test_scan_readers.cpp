@@ -8,12 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "readers/gltf.h"
+#include "readers/formats.h"
 #include "readers/gltf_file.h"
-#include "readers/las.h"
-#include "readers/pcd.h"
 #include "readers/read_any.h"
-#include "readers/stl.h"
 #include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
@@ -82,10 +79,6 @@ std::string stl(const std::string& title, std::uint32_t count, const std::string
   std::string head = title;
   head.resize(80);
   return head + little(count, 4) + triangles;
-}
-
-Source read_alone(const SharedBytes& file, const Progress& progress) {
-  return read_gltf(file, "", progress);
 }
 
 /// Three corners and their indices, in a buffer of 48 bytes.
@@ -282,7 +275,7 @@ TEST_CASE("gltf: embedded, binary and beside -> the same triangle with its trans
   const std::string binary = glb(gltf_json("", nodes, red), triangle_buffer());
   for (const std::string& file : {embedded, binary}) {
     CHECK(looks_like_gltf(SharedBytes::own(file).bytes));
-    const TriangleMesh mesh = read_mesh(read_alone, file);
+    const TriangleMesh mesh = read_mesh(read_gltf, file);
     REQUIRE(mesh.triangles.size() == 1);
     CHECK(mesh.colors[0] == Rgb{255, 0, 127});
     // (1,0,0) scaled by 2, turned a quarter about z, moved by 10.
@@ -290,15 +283,15 @@ TEST_CASE("gltf: embedded, binary and beside -> the same triangle with its trans
     CHECK(std::fabs(mesh.positions[1][1] - 2) < 1e-12);
     CHECK(std::fabs(mesh.positions[2][0] - 4) < 1e-12);
   }
-  for (const std::size_t length : accepted_lengths(read_alone, binary)) {
+  for (const std::size_t length : accepted_lengths(read_gltf, binary)) {
     CHECK(length > binary.size() - 7);  // the buffer's padding
   }
-  CHECK(accepted_lengths(read_alone, embedded).empty());
+  CHECK(accepted_lengths(read_gltf, embedded).empty());
 
   const thimble::tests::TemporaryFolder folder;
   folder.write("a b.bin", triangle_buffer());
   const std::string path = folder.write("scene.gltf", gltf_json("a%20b.bin", nodes));
-  const Source source = read_scene_file({path, std::nullopt});
+  const Source source = read_scene_file({path});
   CHECK(std::get<TriangleMesh>(source).triangles.size() == 1);
   CHECK(std::get<TriangleMesh>(source).colors.empty());
 }
@@ -307,33 +300,33 @@ TEST_CASE("gltf: what leaves its place, is not there or comes round again -> a s
   const std::string node = R"([{"mesh":0}])";
   for (const char* uri : {"../a.bin", "/etc/passwd", "http://a/b.bin", "a/../../b.bin"}) {
     INFO(std::string(uri));
-    CHECK(contains(
-        error_of([](const SharedBytes& file, const Progress& p) { return read_gltf(file, "/tmp/x.gltf", p); },
-                 gltf_json(uri, node)),
-        "no file in the folder"));
+    CHECK(contains(error_of([](const SharedBytes& file, const ReadOptions&,
+                               const Progress& p) { return read_gltf(file, {"/tmp/x.gltf"}, p); },
+                            gltf_json(uri, node)),
+                   "no file in the folder"));
   }
-  CHECK(contains(error_of(read_alone, gltf_json("data:;base64,AAAA", node)), "not in its buffer of 3"));
-  CHECK(contains(error_of(read_alone, gltf_json("data:;base64,!!!!", node)), "base64"));
-  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{"children":[0],"mesh":0}])")), "node"));
-  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{"children":[7]}])")), "node 0"));
-  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{"mesh":4}])")), "no entry 4"));
-  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{}])")), "neither triangles nor points"));
-  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, node, "{}", R"(,"mode":"x")")), "mode"));
-  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, node, "{}",
-                                                R"(,"extensions":{"KHR_draco_mesh_compression":{}})")),
+  CHECK(contains(error_of(read_gltf, gltf_json("data:;base64,AAAA", node)), "not in its buffer of 3"));
+  CHECK(contains(error_of(read_gltf, gltf_json("data:;base64,!!!!", node)), "base64"));
+  CHECK(contains(error_of(read_gltf, gltf_json(kTriangleData, R"([{"children":[0],"mesh":0}])")), "node"));
+  CHECK(contains(error_of(read_gltf, gltf_json(kTriangleData, R"([{"children":[7]}])")), "node 0"));
+  CHECK(contains(error_of(read_gltf, gltf_json(kTriangleData, R"([{"mesh":4}])")), "no entry 4"));
+  CHECK(contains(error_of(read_gltf, gltf_json(kTriangleData, R"([{}])")), "neither triangles nor points"));
+  CHECK(contains(error_of(read_gltf, gltf_json(kTriangleData, node, "{}", R"(,"mode":"x")")), "mode"));
+  CHECK(contains(error_of(read_gltf, gltf_json(kTriangleData, node, "{}",
+                                               R"(,"extensions":{"KHR_draco_mesh_compression":{}})")),
                  "draco"));
-  CHECK(contains(error_of(read_alone, gltf_json(kTriangleData, R"([{"mesh":0,"matrix":[1,2]}])")),
+  CHECK(contains(error_of(read_gltf, gltf_json(kTriangleData, R"([{"mesh":0,"matrix":[1,2]}])")),
                  "16 numbers"));
   CHECK(contains(
-      error_of(read_alone,
+      error_of(read_gltf,
                gltf_json(kTriangleData, R"([{"mesh":0,"scale":[1e308,1e308,1],"translation":[1e999,0,0]}])")),
       "JSON"));
-  CHECK(contains(error_of(read_alone, "{\"asset\":{}}"), "neither"));
-  CHECK(contains(error_of(read_alone, "{\"asset\":"), "broken at its byte"));
-  CHECK(contains(error_of(read_alone, "{" + std::string(1000, '[')), "deeper"));
-  CHECK(contains(error_of(read_alone, "{\"a\":[" + std::string(600000, ',')), "values"));
-  CHECK(contains(error_of(read_alone, "text"), "glTF"));
-  CHECK(contains(error_of(read_alone, "glTF" + little(1, 4) + little(0, 4)), "version 1"));
+  CHECK(contains(error_of(read_gltf, "{\"asset\":{}}"), "neither"));
+  CHECK(contains(error_of(read_gltf, "{\"asset\":"), "broken at its byte"));
+  CHECK(contains(error_of(read_gltf, "{" + std::string(1000, '[')), "deeper"));
+  CHECK(contains(error_of(read_gltf, "{\"a\":[" + std::string(600000, ',')), "values"));
+  CHECK(contains(error_of(read_gltf, "text"), "glTF"));
+  CHECK(contains(error_of(read_gltf, "glTF" + little(1, 4) + little(0, 4)), "version 1"));
   // A mesh placed very often costs few bytes in the file and is limited by them.
   std::string many = "[{\"children\":[";
   std::string rest;
@@ -341,7 +334,7 @@ TEST_CASE("gltf: what leaves its place, is not there or comes round again -> a s
     many += (i > 1 ? "," : "") + std::to_string(i);
     rest += ",{\"mesh\":0}";
   }
-  CHECK(outcome_of(read_alone, gltf_json(kTriangleData, many + "]}" + rest + "]")) == 450000);
+  CHECK(outcome_of(read_gltf, gltf_json(kTriangleData, many + "]}" + rest + "]")) == 450000);
 }
 
 TEST_CASE(
@@ -350,12 +343,11 @@ TEST_CASE(
     return glb(gltf_with("\"extensionsRequired\":[" + names + "],", "", "", R"([{"mesh":0}])"),
                triangle_buffer());
   };
-  CHECK(
-      contains(error_of(read_alone, file(R"("KHR_texture_transform","EXT_none")")), "extension 'EXT_none'"));
-  CHECK(contains(error_of(read_alone, file("7")), "extension ''"));
-  CHECK(error_of(read_alone, file("\"" + std::string(5000, 'x') + "\"")).size() < 300);
+  CHECK(contains(error_of(read_gltf, file(R"("KHR_texture_transform","EXT_none")")), "extension 'EXT_none'"));
+  CHECK(contains(error_of(read_gltf, file("7")), "extension ''"));
+  CHECK(error_of(read_gltf, file("\"" + std::string(5000, 'x') + "\"")).size() < 300);
   const auto notes = [&](const std::string& names) {
-    const TriangleMesh mesh = read_mesh(read_alone, file(names));
+    const TriangleMesh mesh = read_mesh(read_gltf, file(names));
     CHECK(mesh.triangles.size() == 1);
     return mesh.notes;
   };
@@ -384,14 +376,14 @@ TEST_CASE("gltf: instances of a mesh -> all of them, each in its place") {
         gltf_with(R"("extensionsRequired":["EXT_mesh_gpu_instancing"],)", accessors, views, node(attributes)),
         binary);
   };
-  const TriangleMesh mesh = read_mesh(read_alone, file(R"({"TRANSLATION":2,"SCALE":3})"));
+  const TriangleMesh mesh = read_mesh(read_gltf, file(R"({"TRANSLATION":2,"SCALE":3})"));
   REQUIRE(mesh.triangles.size() == 2);
   CHECK(mesh.positions[1] == std::array<double, 3>{12, 0, 5});
   CHECK(mesh.positions[2] == std::array<double, 3>{10, 4, 5});
   CHECK(mesh.positions[4] == std::array<double, 3>{12, 0, 0});
-  CHECK(contains(error_of(read_alone, file(R"({"ROTATION":2})")),
-                 "ROTATION of its instances has 3 components"));
-  CHECK(contains(error_of(read_alone, file(R"({"TRANSLATION":0,"SCALE":3})")), "3 and 2 values"));
+  CHECK(
+      contains(error_of(read_gltf, file(R"({"ROTATION":2})")), "ROTATION of its instances has 3 components"));
+  CHECK(contains(error_of(read_gltf, file(R"({"TRANSLATION":0,"SCALE":3})")), "3 and 2 values"));
 }
 
 TEST_CASE("gltf: sparse accessors, and those without bytes -> their values; hostile ones -> a sentence") {
@@ -408,12 +400,12 @@ TEST_CASE("gltf: sparse accessors, and those without bytes -> their values; host
     return glb(json, binary);
   };
   using Place = std::array<double, 3>;
-  const TriangleMesh mesh = read_mesh(read_alone, file(R"("bufferView":0,)", "3"));
+  const TriangleMesh mesh = read_mesh(read_gltf, file(R"("bufferView":0,)", "3"));
   CHECK(mesh.positions == std::vector<Place>{{0, 0, 0}, {4, 5, 6}, {7, 8, 9}});
-  CHECK(read_mesh(read_alone, file("", "3")).positions == mesh.positions);  // of zeros
-  CHECK(contains(error_of(read_alone, file("", "2")), "sparse value 0 has the index 2"));
-  CHECK(contains(error_of(read_alone, file("", "3", "3")), "not in its buffer view"));
-  CHECK(contains(error_of(read_alone, file("", "999999999999")), "sparse values take more than the limit"));
+  CHECK(read_mesh(read_gltf, file("", "3")).positions == mesh.positions);  // of zeros
+  CHECK(contains(error_of(read_gltf, file("", "2")), "sparse value 0 has the index 2"));
+  CHECK(contains(error_of(read_gltf, file("", "3", "3")), "not in its buffer view"));
+  CHECK(contains(error_of(read_gltf, file("", "999999999999")), "sparse values take more than the limit"));
 }
 
 TEST_CASE(

@@ -26,7 +26,7 @@ using tests::TemporaryFolder;
 using tools::test::contains;
 
 std::shared_ptr<const SceneText> parse(const std::string& text) {
-  return std::get<std::shared_ptr<const SceneText>>(read_scene_text(SharedBytes::own(text)));
+  return std::get<std::shared_ptr<const SceneText>>(read_scene_text(SharedBytes::own(text), {}, {}));
 }
 
 std::string error_of(const std::string& text) {

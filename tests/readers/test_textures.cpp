@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "output/png.h"
-#include "readers/gltf.h"
+#include "readers/formats.h"
 #include "readers/read_any.h"
 #include "readers/texture.h"
 #include "scene/mesh_shade.h"
@@ -110,7 +110,7 @@ struct Quad {
     return "glTF" + little(2, 4) + little(28 + json.size() + binary.size(), 4) + little(json.size(), 4) +
            "JSON" + json + little(binary.size(), 4) + std::string("BIN\0", 4) + binary;
   }
-  Source source() const { return read_gltf(SharedBytes::own(glb()), ""); }
+  Source source() const { return read_gltf(SharedBytes::own(glb()), {}, {}); }
 };
 
 using Place = std::array<std::int32_t, 2>;
@@ -146,7 +146,7 @@ std::string columns_of(const Source& source, int level = 4) {
 }
 
 Source read_beside(const TemporaryFolder& folder, const std::string& name, const std::string& text) {
-  return read_scene_file({folder.write(name, text), std::nullopt, ArrayAs::kByShape});
+  return read_scene_file({folder.write(name, text)});
 }
 
 }  // namespace
@@ -318,8 +318,7 @@ TEST_CASE("gltf: alpha -> with MASK and BLEND what is clear is nothing, with OPA
   CHECK(with(R"(,"alphaMode":"BLEND")") == "    rrrrrrrrrrrr");
   const auto fault = [&](const std::string& material) {
     quad.material = material;
-    return error_of([](const SharedBytes& file, const Progress& p) { return read_gltf(file, "", p); },
-                    quad.glb());
+    return error_of(read_gltf, quad.glb());
   };
   CHECK(contains(fault(R"({"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,0]}})"),
                  "clear"));

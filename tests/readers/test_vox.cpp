@@ -17,7 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "readers/vox.h"
+#include "readers/file_bytes.h"
+#include "readers/read_any.h"
 
 using namespace thimble::tools;
 
@@ -146,8 +147,8 @@ Dictionary moved(int x, int y, int z) {
 
 // ---- reading it back ----
 
-std::unique_ptr<VoxelModel> read(const Bytes& bytes) {
-  return read_vox(share(FileBytes::copy_of(bytes)));
+std::unique_ptr<VoxelModel> read(const Bytes& bytes, const ReadOptions& options = {}) {
+  return std::get<std::unique_ptr<VoxelModel>>(read_vox(share(FileBytes::copy_of(bytes)), options, {}));
 }
 
 Voxels voxels_of(const VoxelModel& model) {
@@ -570,9 +571,7 @@ TEST_CASE("vox: animations -> their first frame") {
 }
 
 TEST_CASE("vox: --frame -> what its keys say, in a box that holds all frames") {
-  const auto at = [](const Bytes& bytes, std::uint32_t frame) {
-    return read_vox(share(FileBytes::copy_of(bytes)), {}, frame);
-  };
+  const auto at = [](const Bytes& bytes, std::uint32_t frame) { return read(bytes, {"", frame}); };
   const Bytes models = model_chunks({1, 1, 1}, {{0, 0, 0, 1}}) + model_chunks({3, 1, 1}, {{2, 0, 0, 2}});
   // Without a scene graph: model by model, each about its middle.
   const Bytes film = file(models, 150);
@@ -728,12 +727,12 @@ TEST_CASE("vox: a chain of 50,000 nested groups -> read without recursion") {
 TEST_CASE("vox: progress -> rises to 1, and what it throws ends the reading") {
   const Bytes bytes = file(model_chunks({1, 1, 1}, Voxels(500'000, {0, 0, 0, 1})));
   std::vector<double> seen;
-  read_vox(share(FileBytes::copy_of(bytes)), [&](double done) { seen.push_back(done); });
+  read_any({"a.vox"}, share(FileBytes::copy_of(bytes)), [&](double done) { seen.push_back(done); });
   CHECK(seen.size() > 3);
   CHECK(std::is_sorted(seen.begin(), seen.end()));
   CHECK(seen.front() > 0);
   CHECK(seen.back() == 1);
-  CHECK_THROWS_AS(read_vox(share(FileBytes::copy_of(bytes)), [](double) { throw 42; }), int);
+  CHECK_THROWS_AS(read_vox(share(FileBytes::copy_of(bytes)), {}, [](double) { throw 42; }), int);
 }
 
 namespace {
@@ -855,7 +854,7 @@ TEST_CASE("vox: real files -> the voxels that another program finds in them") {
   }
   for (const RealFile& real : kRealFiles) {
     CAPTURE(real.path);
-    const auto model = read_vox(share(load_file(folder + real.path)));
+    const auto model = std::get<std::unique_ptr<VoxelModel>>(read_scene_file({folder + real.path}));
     // That program counts from the least solid voxel, the reader from the corner of the declared boxes.
     Sides low = model->size();
     Sides high{};

@@ -16,7 +16,7 @@ namespace thimble::tools::test {
 namespace {
 
 Source read(Reader reader, std::string text) {
-  return reader(SharedBytes::own(std::move(text)), {});
+  return reader(SharedBytes::own(std::move(text)), {}, {});
 }
 
 bool is_sentence(const std::string& what) {

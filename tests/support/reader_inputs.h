@@ -10,12 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "readers/shared_bytes.h"
-#include "readers/source.h"
+#include "readers/formats.h"
 
 namespace thimble::tools::test {
 
-using Reader = Source (*)(const SharedBytes&, const Progress&);
+using Reader = FormatReader*;
 
 /// Path of THIMBLE_DATA, or empty after saying on stderr that the calling test is skipped.
 std::filesystem::path data_folder();

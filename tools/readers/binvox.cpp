@@ -1,4 +1,14 @@
-#include "readers/binvox.h"
+// `.binvox` grids: one bit a voxel, run by run.
+//
+// What is read: the line `#binvox 1`, the lines `dim`, `translate` and `scale` in any order (the last two
+// are held to nothing and not used), `data`, and pairs of bytes, a value (0 or 1) and how often it comes (1
+// to 255). Y comes fastest, then z, then x.
+//
+// The axes are those of the mesh that the grid was made from, and the file does not say which of them is up;
+// z is taken to be.
+//
+// Source of the format: Patrick Min, "BINVOX voxel file format specification".
+#include "readers/formats.h"
 
 #include <memory>
 #include <string>
@@ -40,7 +50,6 @@ class BinvoxGrid final : public VoxelGrid {
     if (solid == 0) {
       throw InputError("the grid holds no solid voxel");
     }
-    meter.done();
   }
 
   void for_each(const Visit& visit) const override {
@@ -111,8 +120,10 @@ bool looks_like_binvox(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= kBinvoxMagic.size() && SharedBytes{bytes, nullptr}.text().starts_with(kBinvoxMagic);
 }
 
-Source read_binvox(const SharedBytes& file, const Progress& progress) {
-  return std::unique_ptr<VoxelGrid>(std::make_unique<BinvoxGrid>(file, progress));
+/// @throws InputError  another version; no `dim` before `data`, a side of 0 or over `kGridSideLimit`; a value
+///   other than 0 and 1, runs that end before or after the grid does; no solid voxel
+Source read_binvox(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
+  return std::make_unique<BinvoxGrid>(file, progress);
 }
 
 }  // namespace thimble::tools

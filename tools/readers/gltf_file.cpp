@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "readers/file_bytes.h"
-#include "readers/gltf.h"
+#include "readers/formats.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -16,6 +16,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::uint64_t kGltfValueLimit = std::uint64_t{1} << 19;
+constexpr int kGltfDepthLimit = 64;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 

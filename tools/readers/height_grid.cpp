@@ -1,3 +1,9 @@
+// Landscapes of heights, and `.asc` files (ESRI ASCII grid), which hold such.
+//
+// Of an `.asc`: the lines `ncols`, `nrows`, and in any order `xllcorner` or `xllcenter`, the same of y,
+// `cellsize` (or `dx` and `dy`), `NODATA_value`; then as many numbers as these say, laid out in any way.
+//
+// Source of the format: Esri, "ASCII raster format".
 #include "readers/height_grid.h"
 
 #include <algorithm>
@@ -7,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "readers/formats.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -139,7 +146,7 @@ Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightA
     throw InputError("a grid of " + std::to_string(columns) + " x " + std::to_string(rows) +
                      " heights is no landscape; 2 x 2 is the least");
   }
-  return std::unique_ptr<VoxelGrid>(std::make_unique<Landscape>(columns, rows, height));
+  return std::make_unique<Landscape>(columns, rows, height);
 }
 
 bool looks_like_height_grid(std::span<const std::uint8_t> bytes) {
@@ -147,7 +154,9 @@ bool looks_like_height_grid(std::span<const std::uint8_t> bytes) {
   return equals_ignoring_case(word, "ncols");
 }
 
-Source read_height_grid(const SharedBytes& file, const Progress& progress) {
+/// Memory: 4 bytes a height.
+/// @throws InputError  naming the line: a number that is none, too few or too many of them
+Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
   if (!looks_like_height_grid(file.bytes)) {
     throw InputError("is no grid of heights: it does not begin with the word ncols");
   }
@@ -196,7 +205,6 @@ Source read_height_grid(const SharedBytes& file, const Progress& progress) {
     throw InputError("the header announces " + std::to_string(columns * rows) +
                      " heights, but the file holds " + std::to_string(heights.size()));
   }
-  meter.done();
   return height_landscape(columns, rows, [&](std::uint64_t column, std::uint64_t row) {
     return static_cast<double>(heights[static_cast<std::size_t>(row * columns + column)]);
   });

@@ -1,23 +1,17 @@
 /// @file height_grid.h
-/// Heights on a regular grid as a landscape of voxels; and `.asc` files (ESRI ASCII grid), which hold such.
+/// Heights on a regular grid as a landscape of voxels.
 ///
-/// Heights: the grid becomes 512 voxels along its longer side, or as many as it has points where these are
+/// The grid becomes 512 voxels along its longer side, or as many as it has points where these are
 /// more, up to 2048; heights between points lie on the surface through the four around them. What the units
 /// are, no file says reliably, so the range of heights is drawn as a sixth of the longer side, whatever it
 /// is. The first row is the farthest (the greatest y, north); colours go with height, from green over brown
 /// to white. Where there is no height (NaN, the file's NODATA_value) there is a hole. The landscape is a
 /// shell: its surface, and walls down to the lowest height around it.
-///
-/// Of an `.asc`: the lines `ncols`, `nrows`, and in any order `xllcorner` or `xllcenter`, the same of y,
-/// `cellsize` (or `dx` and `dy`), `NODATA_value`; then as many numbers as these say, laid out in any way.
-///
-/// Source of the format: Esri, "ASCII raster format".
 #ifndef THIMBLE_TOOLS_READERS_HEIGHT_GRID_H
 #define THIMBLE_TOOLS_READERS_HEIGHT_GRID_H
 
 #include <functional>
 
-#include "readers/shared_bytes.h"
 #include "readers/source.h"
 
 namespace thimble::tools {
@@ -28,12 +22,6 @@ using HeightAt = std::function<double(std::uint64_t column, std::uint64_t row)>;
 /// The landscape. `height` is called twice for some points, and not kept. Memory: 2 bytes a column of voxels.
 /// @throws InputError  fewer than 2 x 2 points, no height at all
 Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightAt& height);
-
-bool looks_like_height_grid(std::span<const std::uint8_t> bytes);
-
-/// Reads an `.asc`. Memory: 4 bytes a height.
-/// @throws InputError  naming the line: a number that is none, too few or too many of them
-Source read_height_grid(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

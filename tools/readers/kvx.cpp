@@ -1,4 +1,12 @@
-#include "readers/kvx.h"
+// `.kvx` models (Ken Silverman's Build engine).
+//
+// What is read: the first, finest of the models in the file, and the palette of six bits a channel at its
+// end. The file holds the visible voxels only, so the model is hollow. In the file z is down; here it is up,
+// and y turns with it, which keeps the hand.
+//
+// From the specification alone: no file of another program was at hand. Source of the format: Ken Silverman,
+// "SLAB6.TXT".
+#include "readers/formats.h"
 
 #include <memory>
 #include <string>
@@ -100,12 +108,10 @@ class KvxGrid final : public VoxelGrid {
 
 }  // namespace
 
-Source read_kvx(const SharedBytes& file, const Progress& progress) {
-  auto grid = std::make_unique<KvxGrid>(file);
-  if (progress) {
-    progress(1);
-  }
-  return std::unique_ptr<VoxelGrid>(std::move(grid));
+/// @throws InputError  a size of 0 or over `kGridSideLimit`, columns or slabs that leave their place, no
+///   palette, no voxel
+Source read_kvx(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<KvxGrid>(file);
 }
 
 }  // namespace thimble::tools

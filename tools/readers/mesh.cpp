@@ -228,7 +228,7 @@ Source mesh_or_points(TriangleMesh mesh, std::uint64_t face_count) {
     throw InputError("the file holds no vertices");
   }
   if (face_count == 0) {
-    return std::unique_ptr<PointCloud>(std::make_unique<VertexCloud>(std::move(mesh)));
+    return std::make_unique<VertexCloud>(std::move(mesh));
   }
   return mesh;
 }

@@ -1,4 +1,11 @@
-#include "readers/mts.h"
+// `.mts` schematics of Minetest, versions 1 to 4.
+//
+// What is read: the size, the names of the nodes, and which node is where; nodes that a schematic leaves to
+// chance are there unless the chance is 0. Nodes have the colours of block_colors.h, all as whole cubes. In
+// the file y is up; here z is: (x, y, z) -> (x, -z, y).
+//
+// Source of the format: Minetest, comment of `src/mapgen/mg_schematic.h`.
+#include "readers/formats.h"
 
 #include <algorithm>
 #include <memory>
@@ -105,12 +112,11 @@ bool looks_like_mts(std::span<const std::uint8_t> bytes) {
   return SharedBytes{bytes, nullptr}.text().starts_with(kMtsMagic);
 }
 
-Source read_mts(const SharedBytes& file, const Progress& progress) {
-  auto grid = std::make_unique<MtsGrid>(file);
-  if (progress) {
-    progress(1);
-  }
-  return std::unique_ptr<VoxelGrid>(std::move(grid));
+/// Memory: 4 bytes a node of the schematic, as many as it unpacks to.
+/// @throws InputError  another version, a side of 0 or over `kGridSideLimit`, damaged deflated data or not as
+///   much of it as the size says, a node without a name, nothing but air
+Source read_mts(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<MtsGrid>(file);
 }
 
 }  // namespace thimble::tools

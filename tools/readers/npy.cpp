@@ -1,4 +1,18 @@
-#include "readers/npy.h"
+// NumPy arrays: `.npy`, and of an `.npz` the member with the most numbers among those of two dimensions and
+// more.
+//
+// What an array is, its shape says:
+// - N x 3 to N x 9 numbers: points, unless `ArrayAs::kHeights`. Of 6, 7 or 9 columns the last three, of 8 the fourth
+//   to sixth are a colour where all of them are from 0 to 1 or whole numbers up to 255. Points that are not finite
+//   are left out.
+// - H x W numbers: heights, the first row the farthest (height_grid.h).
+// - X x Y x Z: voxels, solid where a number is not 0 (a float: 0.5 or more).
+// - X x Y x Z x 3 bytes: colours, black is empty; x 4: empty where the fourth is 0.
+// Numbers are booleans, integers or floats of 2, 4 or 8 bytes, of either byte order, in C or Fortran order. In
+// arrays of voxels z is up.
+//
+// Source of the format: NumPy, "NEP 1 - A Simple File Format for NumPy Arrays".
+#include "readers/formats.h"
 
 #include <algorithm>
 #include <bit>
@@ -298,7 +312,7 @@ Source source_of(Array array, ArrayAs as) {
   const std::size_t dimensions = header.shape.size();
   const bool has_rows_of_points = dimensions == 2 && header.shape[1] >= 3 && header.shape[1] <= 9;
   if (has_rows_of_points && as != ArrayAs::kHeights) {
-    return std::unique_ptr<PointCloud>(std::make_unique<ArrayPoints>(std::move(array)));
+    return std::make_unique<ArrayPoints>(std::move(array));
   }
   if (as == ArrayAs::kPoints) {
     throw InputError("--as-points: points are N x 3 to N x 9 numbers, and this is " + shape_of(header));
@@ -311,7 +325,7 @@ Source source_of(Array array, ArrayAs as) {
   const bool is_color = dimensions == 4 && header.type == 'u' && header.size_bytes == 1 &&
                         (header.shape[3] == 3 || header.shape[3] == 4);
   if (dimensions == 3 || is_color) {
-    return std::unique_ptr<VoxelGrid>(std::make_unique<ArrayGrid>(std::move(array)));
+    return std::make_unique<ArrayGrid>(std::move(array));
   }
   throw InputError(
       "an array of " + shape_of(header) +
@@ -343,6 +357,7 @@ SharedBytes largest_member(std::span<const std::uint8_t> file) {
 
 }  // namespace
 
+/// True for a `.npy` and for a `.zip` whose first member's name ends so.
 bool looks_like_npy(std::span<const std::uint8_t> bytes) {
   const std::string_view text = SharedBytes{bytes, nullptr}.text();
   constexpr std::size_t kNameLength = 26;
@@ -354,17 +369,13 @@ bool looks_like_npy(std::span<const std::uint8_t> bytes) {
   return text.starts_with(kNpyMagic);
 }
 
-Source read_npy(const SharedBytes& file, const Progress& progress) {
-  return read_npy_as(ArrayAs::kByShape, file, progress);
-}
-
-Source read_npy_as(ArrayAs as, const SharedBytes& file, const Progress& progress) {
+/// Of an archive the result keeps the member unpacked.
+/// @throws InputError  a broken header, a type or a shape that is none of these, fewer bytes than the shape
+///   takes, a side of voxels over `kGridSideLimit`, no point that is finite, nothing solid;
+///   an array that is not what the options say
+Source read_npy(const SharedBytes& file, const ReadOptions& options, const Progress&) {
   const SharedBytes bytes = file.text().starts_with(kZipMagic) ? largest_member(file.bytes) : file;
-  Source source = source_of(Array(read_npy_header(bytes.bytes), bytes), as);
-  if (progress) {
-    progress(1);
-  }
-  return source;
+  return source_of(Array(read_npy_header(bytes.bytes), bytes), options.as);
 }
 
 }  // namespace thimble::tools

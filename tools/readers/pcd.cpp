@@ -1,4 +1,13 @@
-#include "readers/pcd.h"
+// `.pcd` point clouds (Point Cloud Library), as text, as binary and as compressed binary.
+//
+// What is read: headers of versions .5 to .7; of the fields x, y and z, of any type, and `rgb` or `rgba`,
+// four bytes that hold a colour (as an integer, or as the float with these bytes). All other fields are
+// passed over. Points whose position is not finite mark where the sensor saw nothing and are left out.
+// Compressed data (LZF) is unpacked once and kept. z is up, as it is in the file.
+//
+// Source of the format: Point Cloud Library, "The PCD (Point Cloud Data) file format"; of LZF: Marc Lehmann,
+// "LibLZF", whose stream this reads with code of its own.
+#include "readers/formats.h"
 
 #include <algorithm>
 #include <array>
@@ -225,12 +234,10 @@ class PcdCloud final : public PointCloud {
       throw InputError("the fields r, g and b hold values that are no colors");
     }
     note_left_out(notes, count_ - finite);
-    meter.done();
   }
 
   void for_each(const Visit& visit) const override {
-    const Progress no_progress;
-    ProgressMeter meter(no_progress, 0);
+    ProgressMeter meter;
     walk(
         [&](CloudPoint& point, const Components& components) {
           if (has_parts_) {
@@ -421,6 +428,8 @@ class PcdCloud final : public PointCloud {
 
 }  // namespace
 
+/// True when the first word that is no comment is one that a header begins with, or the first comment says
+/// it.
 bool looks_like_pcd(std::span<const std::uint8_t> bytes) {
   const std::string_view text = SharedBytes{bytes, nullptr}.text();
   if (text.starts_with("# .PCD")) {
@@ -430,8 +439,11 @@ bool looks_like_pcd(std::span<const std::uint8_t> bytes) {
   return word == "VERSION" || word == "FIELDS" || word == "COLUMNS";
 }
 
-Source read_pcd(const SharedBytes& file, const Progress& progress) {
-  return std::unique_ptr<PointCloud>(std::make_unique<PcdCloud>(file, progress));
+/// Checks the whole file once; the result keeps `file`, or what it unpacks to, and streams from it.
+/// @throws InputError  a broken header, a field's type or size that there is not, a count that the bytes
+///   cannot hold, a line with too few values, damaged LZF, no finite point
+Source read_pcd(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
+  return std::make_unique<PcdCloud>(file, progress);
 }
 
 }  // namespace thimble::tools

@@ -1,4 +1,20 @@
-#include "readers/ply.h"
+// `.ply` files: meshes and point clouds, as text and as binary of either byte order.
+//
+// What is read: any elements and properties of any scalar type (old names such as `uchar`, new ones such as
+// `uint8`) and lists anywhere; of these are used
+// - element `vertex`: x, y, z; and red, green, blue (also `diffuse_red` ..., or `r`, `g`, `b`) when all
+//   three are there: integers from 0 to 255 (ushort: 0 to 65535), float and double from 0 to 1, clamped;
+// - element `face`: the list `vertex_indices` or `vertex_index`, a polygon;
+// - element `tristrips`: a list of the same name, strips separated by -1.
+// All else is passed over, colours of faces included. A file with faces or strips becomes a mesh, any other
+// a point cloud that streams from the file's bytes.
+//
+// Header lines may end with LF, CRLF or CR; lines with an unknown first word are passed over like comments,
+// because exporters have written such. Values of a text file may be laid out on lines in any way, but there
+// must be exactly as many as the header declares. Bytes after the last binary element are ignored.
+//
+// Source of the format: Greg Turk, "The PLY Polygon File Format", 1994.
+#include "readers/formats.h"
 
 #include <algorithm>
 #include <array>
@@ -461,8 +477,7 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
       });
       if (colored) {
         mesh.colors.reserve(static_cast<std::size_t>(element.count));
-        const Progress no_progress;
-        ProgressMeter again(no_progress, 0);
+        ProgressMeter again;
         read_vertices(first, element, again,
                       [&](const PlyVertex& vertex) { mesh.colors.push_back(parts.color(vertex)); });
       }
@@ -510,8 +525,7 @@ class PlyCloud final : public PointCloud {
 
   void for_each(const Visit& visit) const override {
     Body body = body_;
-    const Progress no_progress;
-    ProgressMeter meter(no_progress, 0);
+    ProgressMeter meter;
     CloudPoint point;
     std::uint64_t number = 0;
     read_vertices(body, vertices_, meter, [&](const PlyVertex& vertex) {
@@ -566,7 +580,6 @@ Source read_body(const SharedBytes& file, const std::string& path, const PlyHead
   if (has_polygons) {
     TriangleMesh mesh = read_mesh(body, header, *vertices, meter);
     add_pictures(path, header, mesh);
-    meter.done();
     return mesh;
   }
   std::unique_ptr<PointCloud> cloud;
@@ -578,27 +591,35 @@ Source read_body(const SharedBytes& file, const std::string& path, const PlyHead
     }
   }
   body.finish();
-  meter.done();
   return cloud;
 }
 
 }  // namespace
 
+/// True when the bytes begin with the line "ply".
 bool looks_like_ply(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 4 && bytes[0] == 'p' && bytes[1] == 'l' && bytes[2] == 'y' &&
          (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
 }
 
-Source read_ply(const SharedBytes& file, const Progress& progress) {
-  return read_ply_at("", file, progress);
-}
-
-Source read_ply_at(const std::string& path, const SharedBytes& file, const Progress& progress) {
+/// Checks the whole file; a mesh is returned as read, a point cloud keeps `file` and reads it again each
+/// time.
+///
+/// Pictures of a mesh (`comment TextureFile`) lie beside the file; coordinates on them are those of corners (`texcoord`
+/// of faces, with `texnumber` where there are several), or else those of vertices (`u v`, `s t`, `texture_u texture_v`).
+/// A mesh whose picture is there has its colours alone.
+///
+/// Memory beyond the file: a mesh holds 24 bytes a vertex (27 with colour) and 12 a triangle, with pictures 8 more a
+/// place on them and 16 a triangle; a point cloud some bytes a header line. A count of the header is held against the bytes that follow before anything is
+/// allocated for it.
+/// @throws InputError  a broken header; a count that the bytes cannot hold; a file that ends early; text that
+///   is no number; a coordinate that is not finite; an index out of range; no vertex
+Source read_ply(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
   const PlyHeader header = read_ply_header(file.text());
   if (header.encoding == PlyEncoding::kAscii) {
-    return read_body<AsciiBody>(file, path, header, progress);
+    return read_body<AsciiBody>(file, options.path, header, progress);
   }
-  return read_body<BinaryBody>(file, path, header, progress);
+  return read_body<BinaryBody>(file, options.path, header, progress);
 }
 
 }  // namespace thimble::tools

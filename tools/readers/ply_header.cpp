@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "readers/ply.h"
+#include "readers/formats.h"
 #include "readers/text.h"
 
 namespace thimble::tools {

@@ -1,4 +1,12 @@
-#include "readers/qb.h"
+// `.qb` models (Qubicle Binary), version 1.1.0.0, packed or not.
+//
+// What is read: all matrices at their positions, colours as RGBA or BGRA; a voxel whose alpha (or mask of
+// visible sides) is 0 is empty. In the file y is up and z to the left or to the right; here z is up,
+// (x, y, z) -> (x, -z, y), and the lowest corner of all matrices is 0,0,0.
+//
+// From the specification alone: no file of another program was at hand. Source of the format: Minddesk,
+// "Qubicle Binary File Format".
+#include "readers/formats.h"
 
 #include <algorithm>
 #include <memory>
@@ -22,7 +30,7 @@ struct Matrix {
 
 class QbGrid final : public VoxelGrid {
  public:
-  QbGrid(const SharedBytes& file, const Progress& progress) : file_(file) {
+  explicit QbGrid(const SharedBytes& file) : file_(file) {
     ByteReader reader(file.bytes, "the header");
     if (file.bytes.size() < 4 || reader.u32() != kVersion) {
       throw InputError("is not a Qubicle file of version 1.1: it does not begin with the bytes 1, 1, 0, 0");
@@ -58,9 +66,6 @@ class QbGrid final : public VoxelGrid {
       matrices_.push_back(matrix);
     }
     place();
-    if (progress) {
-      progress(1);
-    }
   }
 
   void for_each(const Visit& visit) const override {
@@ -170,8 +175,10 @@ class QbGrid final : public VoxelGrid {
 
 }  // namespace
 
-Source read_qb(const SharedBytes& file, const Progress& progress) {
-  return std::unique_ptr<VoxelGrid>(std::make_unique<QbGrid>(file, progress));
+/// @throws InputError  another version, a code that there is not, matrices or slices that the bytes do not
+///   hold, a scene over `kGridSideLimit` on a side, no voxel
+Source read_qb(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<QbGrid>(file);
 }
 
 }  // namespace thimble::tools

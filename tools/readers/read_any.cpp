@@ -4,73 +4,21 @@
 #include <array>
 #include <utility>
 
-#include "readers/binvox.h"
 #include "readers/file_bytes.h"
-#include "readers/gadget.h"
-#include "readers/gltf.h"
-#include "readers/height_grid.h"
-#include "readers/kvx.h"
-#include "readers/las.h"
-#include "readers/mts.h"
-#include "readers/npy.h"
-#include "readers/obj.h"
-#include "readers/oct.h"
-#include "readers/off.h"
-#include "readers/pcd.h"
-#include "readers/ply.h"
-#include "readers/qb.h"
-#include "readers/scene_text.h"
-#include "readers/schematic.h"
-#include "readers/stl.h"
 #include "readers/text.h"
-#include "readers/vox.h"
-#include "readers/xyz.h"
 
 namespace thimble::tools {
 
 namespace {
 
-bool looks_like_vox(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kMagic = "VOX ";
-  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
-}
-
-Source read_vox_source(const SharedBytes& file, const Progress& progress) {
-  return read_vox(file, progress);
-}
-
-Source read_vox_frame(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
-  return read_vox(file, progress, options.frame);
-}
-
-Source read_npy_asked(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
-  return read_npy_as(options.as, file, progress);
-}
-
-Source read_obj_beside(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
-  return read_obj_at(options.path, file, progress);
-}
-
-Source read_ply_beside(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
-  return read_ply_at(options.path, file, progress);
-}
-
-Source read_gltf_source(const SharedBytes& file, const Progress& progress) {
-  return read_gltf(file, "", progress);
-}
-
-Source read_gltf_beside(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
-  return read_gltf(file, options.path, progress);
-}
-
 // The one place that knows all formats. Where two recognise the same bytes, the first one counts.
 constexpr std::array<ReaderRow, 22> kRows{{
-    {".vox", "MagicaVoxel model", read_vox_source, looks_like_vox, Beginning::kMagic, read_vox_frame},
-    {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic, read_ply_beside},
-    {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText, read_obj_beside},
+    {".vox", "MagicaVoxel model", read_vox, looks_like_vox, Beginning::kMagic},
+    {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic},
+    {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText},
     {".off", "OFF mesh", read_off, looks_like_off, Beginning::kText},
     {".stl", "STL mesh", read_stl, looks_like_stl},
-    {".glb .gltf", "glTF scene", read_gltf_source, looks_like_gltf, Beginning::kMagic, read_gltf_beside},
+    {".glb .gltf", "glTF scene", read_gltf, looks_like_gltf, Beginning::kMagic},
     {".xyz .csv .txt .tsv .pts", "points, one a line", read_xyz, nullptr, Beginning::kText},
     {".pcd", "PCL point cloud", read_pcd, looks_like_pcd, Beginning::kMagic},
     {".las", "LAS laser scan", read_las, looks_like_las, Beginning::kMagic},
@@ -79,8 +27,8 @@ constexpr std::array<ReaderRow, 22> kRows{{
     {".oct", "baked scene", read_oct, looks_like_oct, Beginning::kMagic},
     {".scene", "scene text", read_scene_text, nullptr, Beginning::kText},
     {".binvox", "binvox grid", read_binvox, looks_like_binvox, Beginning::kMagic},
-    {".npy", "NumPy array", read_npy, looks_like_npy, Beginning::kMagic, read_npy_asked},
-    {".npz", "NumPy archive", read_npy, nullptr, Beginning::kAny, read_npy_asked},
+    {".npy", "NumPy array", read_npy, looks_like_npy, Beginning::kMagic},
+    {".npz", "NumPy archive", read_npy, nullptr, Beginning::kAny},
     {".asc", "grid of heights", read_height_grid, looks_like_height_grid, Beginning::kMagic},
     {".mts", "Minetest schematic", read_mts, looks_like_mts, Beginning::kMagic},
     {".schematic", "Minecraft schematic", read_schematic, looks_like_schematic, Beginning::kMagic},
@@ -160,7 +108,7 @@ std::string reader_endings() {
 void check_beginning(std::string_view path, std::span<const std::uint8_t> first) {
   const ReaderRow& row = row_for(path, first);
   if (row.beginning == Beginning::kMagic && (row.looks_like == nullptr || !row.looks_like(first))) {
-    row.read({first, nullptr}, {});  // says how such a file begins
+    row.read({first, nullptr}, {}, {});  // says how such a file begins
   }
   if (row.beginning == Beginning::kText) {
     check_text(first, row.name);
@@ -169,18 +117,18 @@ void check_beginning(std::string_view path, std::span<const std::uint8_t> first)
 
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress) {
   const ReaderRow& row = row_for(options.path, file.bytes);
-  if (options.frame && row.read != read_vox_source) {
+  if (options.frame && row.read != read_vox) {
     throw InputError("--frame is for .vox files with frames, and this is a " + std::string(row.name));
   }
   if (options.as != ArrayAs::kByShape && row.read != read_npy) {
     throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a " +
                      std::string(row.name));
   }
-  return row.read_with != nullptr ? row.read_with(file, options, progress) : row.read(file, progress);
-}
-
-Source read_any(std::string_view path, const SharedBytes& file, const Progress& progress) {
-  return read_any(ReadOptions{std::string(path), std::nullopt}, file, progress);
+  Source source = row.read(file, options, progress);
+  if (progress) {
+    progress(1);
+  }
+  return source;
 }
 
 Source read_scene_file(const ReadOptions& options, const Progress& progress) {

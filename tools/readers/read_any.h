@@ -1,27 +1,18 @@
 /// @file read_any.h
 /// Which reader reads which file: the one table of scene formats that come as bytes.
 ///
-/// A new format is a new file beside this one and a row in the table of `read_any.cpp`.
+/// A new format is a new file beside this one, its reader in formats.h, and a row in the table of `read_any.cpp`.
 #ifndef THIMBLE_TOOLS_READERS_READ_ANY_H
 #define THIMBLE_TOOLS_READERS_READ_ANY_H
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "readers/shared_bytes.h"
-#include "readers/source.h"
+#include "readers/formats.h"
 
 namespace thimble::tools {
-
-/// What a reader needs beside the bytes.
-struct ReadOptions {
-  std::string path;                    ///< of the file, for the other files that it names; may be empty
-  std::optional<std::uint32_t> frame;  ///< of an animation; the first by default
-  ArrayAs as = ArrayAs::kByShape;      ///< of an array of numbers
-};
 
 /// How a file of a format begins.
 enum class Beginning : std::uint8_t {
@@ -34,13 +25,9 @@ enum class Beginning : std::uint8_t {
 struct ReaderRow {
   const char* endings;  ///< lower case with their points, separated by blanks; may be empty
   const char* name;     ///< what the format is called in help and errors
-  Source (*read)(const SharedBytes& file, const Progress& progress);
-  /// Recognises the format by the file's first bytes, whatever its name; null where they do not tell.
-  bool (*looks_like)(std::span<const std::uint8_t> bytes);
+  FormatReader* read;
+  FormatLook* looks_like;  ///< counts for more than the name; null where the first bytes do not tell
   Beginning beginning = Beginning::kAny;
-  /// The same as `read`, for a format that has a use for the options; else null.
-  Source (*read_with)(const SharedBytes& file, const ReadOptions& options,
-                      const Progress& progress) = nullptr;
 };
 
 /// The table's rows, in the order in which they are tried.
@@ -58,12 +45,10 @@ std::string reader_endings();
 /// @throws InputError  no reader knows the file, or the one that does says how such a file begins
 void check_beginning(std::string_view path, std::span<const std::uint8_t> first);
 
-/// Reads `file`, the contents of `options.path` already decompressed.
+/// Reads `file`, the contents of `options.path` already decompressed. `progress` ends with 1.
 /// @throws InputError  no reader knows the file, `frame` of a format that has none, or the reader's
 ///   own errors
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress = {});
-/// The same, without options but for the path.
-Source read_any(std::string_view path, const SharedBytes& file, const Progress& progress = {});
 
 /// Loads the file and reads it. A file that no reader knows is refused by its first bytes.
 Source read_scene_file(const ReadOptions& options, const Progress& progress = {});

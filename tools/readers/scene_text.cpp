@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "output/units.h"
+#include "readers/formats.h"
 #include "readers/scene_statements.h"
 #include "readers/text.h"
 
@@ -78,7 +79,10 @@ void fail_at(const TextPlace& place, const std::string& sentence) {
                    sentence);
 }
 
-Source read_scene_text(const SharedBytes& file, const Progress& progress) {
+/// @throws InputError  naming line and column: a word that is not known, one that is missing, a number that
+///   is none, not finite or out of its range, something said twice, a name that is not defined, more than a
+///   limit above, bytes that are not UTF-8; and a file that shows nothing
+Source read_scene_text(const SharedBytes& file, const ReadOptions&, const Progress&) {
   std::string_view text = file.text();
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   if (text.starts_with(kMark)) {
@@ -101,9 +105,6 @@ Source read_scene_text(const SharedBytes& file, const Progress& progress) {
     fail_at({number, 1}, "the file ends and shows nothing: there is no model, box or ball in it");
   }
   scene->rest.has_shadows = !scene->lights.empty();
-  if (progress) {
-    progress(1);
-  }
   return std::shared_ptr<const SceneText>(scene);
 }
 

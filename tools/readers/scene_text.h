@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "readers/shared_bytes.h"
 #include "readers/source.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
@@ -96,12 +95,6 @@ struct SceneText {
   EffectSet on = Effect::kNone;
   EffectSet off = Effect::kNone;
 };
-
-/// Parses the whole file.
-/// @throws InputError  naming line and column: a word that is not known, one that is missing, a number that
-///   is none, not finite or out of its range, something said twice, a name that is not defined, more than a
-///   limit above, bytes that are not UTF-8; and a file that shows nothing
-Source read_scene_text(const SharedBytes& file, const Progress& progress = {});
 
 }  // namespace thimble::tools
 

@@ -1,4 +1,14 @@
-#include "readers/schematic.h"
+// Minecraft schematics: `.schematic` (MCEdit) and `.schem` (Sponge, versions 1 to 3).
+//
+// What is read: Width (x), Height (y, up) and Length (z) and the blocks. Of a `.schematic`: Blocks,
+// AddBlocks (four more bits each) and the colour in Data. Of a `.schem`: Palette and BlockData, on the first
+// level or, as version 3 has it, within Schematic and Blocks. Blocks have the colours of block_colors.h and
+// all are whole cubes; entities, biomes and what chests hold are passed over. Here z is up: (x, y, z) -> (x,
+// -z, y).
+//
+// Sources of the formats: Minecraft Wiki, "Schematic file format"; SpongePowered, "Sponge Schematic
+// Specification" 1 to 3.
+#include "readers/formats.h"
 
 #include <algorithm>
 #include <memory>
@@ -16,7 +26,7 @@ namespace {
 
 class SchematicGrid final : public VoxelGrid {
  public:
-  SchematicGrid(const SharedBytes& file, const Progress& progress) : file_(file) {
+  explicit SchematicGrid(const SharedBytes& file) : file_(file) {
     if (!looks_like_schematic(file.bytes)) {
       throw InputError("is no schematic: it does not begin with a compound tag named Schematic");
     }
@@ -25,9 +35,6 @@ class SchematicGrid final : public VoxelGrid {
     nbt_head(reader, &name);
     read_compound(reader);
     check();
-    if (progress) {
-      progress(1);
-    }
   }
 
   void for_each(const Visit& visit) const override {
@@ -172,6 +179,7 @@ class SchematicGrid final : public VoxelGrid {
 
 }  // namespace
 
+/// True for a compound of the names that such files begin with, unpacked.
 bool looks_like_schematic(std::span<const std::uint8_t> bytes) {
   const std::string_view text = SharedBytes{bytes, nullptr}.text();
   constexpr std::string_view kNamed("\x0A\x00\x09Schematic", 12);
@@ -180,8 +188,11 @@ bool looks_like_schematic(std::span<const std::uint8_t> bytes) {
   return text.starts_with(kNamed) || text.starts_with(kNested);
 }
 
-Source read_schematic(const SharedBytes& file, const Progress& progress) {
-  return std::unique_ptr<VoxelGrid>(std::make_unique<SchematicGrid>(file, progress));
+/// Memory: 4 bytes a palette entry.
+/// @throws InputError  broken tags; a size that is missing, 0 or over `kGridSideLimit`; not as many blocks as
+///   the size says; a block that the palette does not have; nothing but air
+Source read_schematic(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<SchematicGrid>(file);
 }
 
 }  // namespace thimble::tools

@@ -1,4 +1,14 @@
-#include "readers/stl.h"
+// `.stl` meshes, as text and as binary.
+//
+// A file is binary when it does not begin with the word `solid`, or holds a zero byte in its first
+// `kFirstLookBytes`: exporters have written binary files that begin so. Of a text all `vertex` lines count, three a
+// facet, of any number of solids; of a binary file bytes behind the last triangle are noted, and colours are ignored, which programs write in ways that contradict each other. Normals are not
+// used. Corners are not joined: each triangle has three positions of its own.
+//
+// z is up, as the programs have it that make such files.
+//
+// Source of the format: 3D Systems, "StereoLithography Interface Specification", 1989.
+#include "readers/formats.h"
 
 #include <cmath>
 #include <string>
@@ -120,13 +130,17 @@ TriangleMesh read_text(std::string_view text, ProgressMeter& meter) {
 
 }  // namespace
 
+/// Recognises the text form; a binary file does not say what it is.
 bool looks_like_stl(std::span<const std::uint8_t> bytes) {
   const std::string_view text = SharedBytes{bytes, nullptr}.text();
   return begins_with_solid(text) && text.substr(0, kFirstLookBytes).find("facet") != std::string_view::npos &&
          text.substr(0, kFirstLookBytes).find('\0') == std::string_view::npos;
 }
 
-Source read_stl(const SharedBytes& file, const Progress& progress) {
+/// Memory: 84 bytes a triangle, which takes at least 50 in the file.
+/// @throws InputError  a count that the bytes cannot hold, a facet that has not three corners, a coordinate
+///   that is no finite number, no triangle
+Source read_stl(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
   ProgressMeter meter(progress, file.bytes.size());
   // Many binary files begin with "solid", too; no text holds a zero byte.
   const std::string_view first = file.text().substr(0, kFirstLookBytes);
@@ -136,7 +150,6 @@ Source read_stl(const SharedBytes& file, const Progress& progress) {
     throw InputError("the file holds no triangles");
   }
   mesh.is_z_up = true;
-  meter.done();
   return mesh;
 }
 

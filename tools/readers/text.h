@@ -111,27 +111,24 @@ class WordReader {
 /// Calls a `Progress` about once a quarter of a megabyte, so that asking costs nothing.
 class ProgressMeter {
  public:
+  /// Of what nobody waits for.
+  ProgressMeter() = default;
   ProgressMeter(const Progress& progress, std::size_t total_bytes)
-      : progress_(progress), total_bytes_(total_bytes) {}
+      : progress_(&progress), total_bytes_(total_bytes) {}
 
   void at(std::size_t offset) {
     if (offset >= due_) {
       due_ = offset + kStepBytes;
-      if (progress_) {
-        progress_(static_cast<double>(offset) / static_cast<double>(total_bytes_ + 1));
+      if (progress_ != nullptr && *progress_) {
+        (*progress_)(static_cast<double>(offset) / static_cast<double>(total_bytes_ + 1));
       }
-    }
-  }
-  void done() const {
-    if (progress_) {
-      progress_(1);
     }
   }
 
  private:
   static constexpr std::size_t kStepBytes = 1 << 18;
-  const Progress& progress_;
-  std::size_t total_bytes_;
+  const Progress* progress_ = nullptr;
+  std::size_t total_bytes_ = 0;
   std::size_t due_ = kStepBytes;
 };
 

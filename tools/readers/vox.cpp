@@ -1,4 +1,21 @@
-#include "readers/vox.h"
+// MagicaVoxel `.vox` files, versions 150 and 200.
+//
+// What is read: all models (SIZE, XYZI), the palette (RGBA, or MagicaVoxel's default one), materials (MATT,
+// MATL), layers (LAYR) and the scene graph (nTRN, nGRP, nSHP) with translations, rotations and mirrors,
+// shared and nested groups, hidden nodes and hidden layers. Of an animation one frame is taken, the first
+// by default. With a scene graph a node is as its key with the greatest `_f` up to the frame
+// says, and holds still until the next one; in a file without one, several models only ever are frames. What
+// is placed stays where it is from frame to frame: the lowest corner is that of all frames together. IMAP
+// orders the colours of the editor's palette window and nothing else, so colours do not depend on it; it is
+// skipped as cameras, lights, notes and unknown chunks are.
+//
+// Conventions: the axes are the file's, z up, right-handed. A model of size s turns about the lattice point
+// floor(s / 2), which its node's translation places; voxels turn by their centres, as MagicaVoxel does.
+// Colour index c of a voxel is entry c - 1 of RGBA and `palette()[c]` here; a voxel of index 0 is empty
+// space and is left out.
+//
+// Source of the format: ephtracy, "MagicaVoxel .vox File Format" and its extension.
+#include "readers/formats.h"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +29,7 @@
 #include <utility>
 #include <vector>
 
+#include "readers/text.h"
 #include "readers/vox_chunk.h"
 #include "readers/vox_palette.h"
 #include "readers/vox_scene.h"
@@ -20,8 +38,16 @@ namespace thimble::tools {
 
 namespace {
 
+/// Longest side of one model: XYZI holds a position in a byte an axis.
+constexpr std::uint32_t kVoxModelSideLimit = 256;
+/// Most models placed in a scene. Groups may be shared, so a few bytes can ask for 2^n of them.
+constexpr std::uint32_t kVoxInstanceLimit = 65536;
+/// Most nodes entered to find how far an animation reaches.
+constexpr std::uint64_t kVoxAnimationLimit = std::uint64_t{1} << 22;
+/// Most voxels in all placed models together: what one call of `for_each` may have to do.
+constexpr std::uint64_t kVoxPlacedVoxelLimit = std::uint64_t{1} << 31;
+constexpr std::string_view kVoxMagic = "VOX ";
 constexpr std::size_t kVoxelBytes = 4;  // x, y, z, colour index
-constexpr std::uint64_t kReportEveryBytes = 256 * 1024;
 
 /// One SIZE and XYZI or TDCZ pair.
 struct Model {
@@ -49,38 +75,14 @@ Instance make_instance(std::uint32_t number, const Model& model, const VoxTransf
   return instance;
 }
 
-/// Tells the caller how far reading is, at most once every `kReportEveryBytes`.
-class Reporter {
- public:
-  Reporter(const Progress& progress, std::size_t total_bytes)
-      : progress_(progress), total_bytes_(total_bytes) {}
-  void at(std::uint64_t offset) {
-    if (progress_ && offset >= next_) {
-      progress_(static_cast<double>(offset) / static_cast<double>(total_bytes_));
-      next_ = offset + kReportEveryBytes;
-    }
-  }
-  void done() const {
-    if (progress_) {
-      progress_(1);
-    }
-  }
-
- private:
-  const Progress& progress_;
-  std::size_t total_bytes_;
-  std::uint64_t next_ = kReportEveryBytes;
-};
-
 class VoxFile final : public VoxelModel {
  public:
   VoxFile(SharedBytes file, const Progress& progress, std::optional<std::uint32_t> frame)
       : file_(std::move(file)), frame_(frame) {
-    Reporter reporter(progress, file_.bytes.size());
-    read_chunks(reporter);
+    ProgressMeter meter(progress, file_.bytes.size());
+    read_chunks(meter);
     place_models();
     move_to_origin();
-    reporter.done();
   }
 
   void for_each(const Visit& visit) const override {
@@ -103,10 +105,10 @@ class VoxFile final : public VoxelModel {
   std::uint32_t frames() const override { return frames_; }
 
  private:
-  void read_chunks(Reporter& reporter);
+  void read_chunks(ProgressMeter& meter);
   void read_size(ByteReader& chunk);
-  void read_voxels(ByteReader& chunk, Reporter& reporter);
-  void read_packed(ByteReader& chunk, Reporter& reporter);
+  void read_voxels(ByteReader& chunk, ProgressMeter& meter);
+  void read_packed(ByteReader& chunk, ProgressMeter& meter);
   Model take_size(ByteReader& chunk);
   void check_size_used() const;
   void place_models();
@@ -158,13 +160,12 @@ ChunkHead read_head(ByteReader& reader) {
   return head;
 }
 
-void VoxFile::read_chunks(Reporter& reporter) {
+void VoxFile::read_chunks(ProgressMeter& meter) {
   ByteReader file(file_.bytes);
-  constexpr std::array<std::uint8_t, 4> kMagic{'V', 'O', 'X', ' '};
-  if (file.remaining() < kMagic.size() ||
-      !std::equal(kMagic.begin(), kMagic.end(), file.take(kMagic.size()).begin())) {
+  if (!looks_like_vox(file_.bytes)) {
     throw InputError("is not a MagicaVoxel file: it does not begin with \"VOX \"");
   }
+  file.skip(kVoxMagic.size());
   const std::uint32_t version = file.u32();
   if (version != 150 && version != 200) {
     throw InputError("version " + std::to_string(version) +
@@ -183,9 +184,9 @@ void VoxFile::read_chunks(Reporter& reporter) {
     if (head.id == "SIZE") {
       read_size(chunk);
     } else if (head.id == "XYZI") {
-      read_voxels(chunk, reporter);
+      read_voxels(chunk, meter);
     } else if (head.id == "TDCZ") {
-      read_packed(chunk, reporter);
+      read_packed(chunk, meter);
     } else if (head.id == "RGBA") {
       vox_read_rgba(chunk, palette_);
     } else if (head.id == "MATT") {
@@ -202,7 +203,7 @@ void VoxFile::read_chunks(Reporter& reporter) {
       scene_.add_layer(chunk);
     }
     // PACK only repeats the number of models, which their chunks tell better.
-    reporter.at(chunks.offset());
+    meter.at(static_cast<std::size_t>(chunks.offset()));
   }
   check_size_used();
   if (models_.empty()) {
@@ -240,7 +241,7 @@ Model VoxFile::take_size(ByteReader& chunk) {
 }
 
 /// As the game Teardown writes it: the size again, then a byte a voxel, x the fastest, by zlib.
-void VoxFile::read_packed(ByteReader& chunk, Reporter& reporter) {
+void VoxFile::read_packed(ByteReader& chunk, ProgressMeter& meter) {
   Model model = take_size(chunk);
   std::uint64_t count = 1;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -275,10 +276,10 @@ void VoxFile::read_packed(ByteReader& chunk, Reporter& reporter) {
   model.empty = voxels.empty();
   model.voxels = unpacked_.emplace_back(std::move(voxels));
   models_.push_back(model);
-  reporter.at(chunk.offset());
+  meter.at(static_cast<std::size_t>(chunk.offset()));
 }
 
-void VoxFile::read_voxels(ByteReader& chunk, Reporter& reporter) {
+void VoxFile::read_voxels(ByteReader& chunk, ProgressMeter& meter) {
   Model model = take_size(chunk);
   const std::uint32_t count = chunk.u32();
   if (chunk.remaining() / kVoxelBytes < count) {
@@ -297,9 +298,7 @@ void VoxFile::read_voxels(ByteReader& chunk, Reporter& reporter) {
       }
     }
     model.empty = model.empty && voxel[3] == 0;
-    if (at % kReportEveryBytes == 0) {
-      reporter.at(first_offset + at);
-    }
+    meter.at(static_cast<std::size_t>(first_offset) + at);
   }
   models_.push_back(model);
 }
@@ -398,9 +397,22 @@ void VoxFile::move_to_origin() {
 
 }  // namespace
 
-std::unique_ptr<VoxelModel> read_vox(SharedBytes file, const Progress& progress,
-                                     std::optional<std::uint32_t> frame) {
-  return std::make_unique<VoxFile>(std::move(file), progress, frame);
+bool looks_like_vox(std::span<const std::uint8_t> bytes) {
+  return SharedBytes{bytes, nullptr}.text().starts_with(kVoxMagic);
+}
+
+/// Beyond the file, memory is a small multiple of the chunks in the file (some 100 bytes a node or model) plus 24 bytes
+/// a placed model. Voxels come model by model in the scene graph's order (depth first, children as listed), each in the
+/// order of its XYZI chunk. A scene whose models are all hidden is read and holds no voxels.
+///
+/// Of an animation of more than `kVoxAnimationLimit` nodes in all frames together, the lowest corner is that
+/// of the frame taken.
+///
+/// @throws InputError  wrong magic or version; no model; a chunk, string or count that leaves its place; a
+///   side over 256; a voxel outside its model; a scene graph without node 0, with an id used twice, a missing
+///   node or model or a cycle; a rotation byte that is none; a frame that there is not; any of the limits above
+Source read_vox(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return std::make_unique<VoxFile>(file, progress, options.frame);
 }
 
 }  // namespace thimble::tools

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "readers/vox.h"
 #include "readers/vox_chunk.h"
 
 namespace thimble::tools {
@@ -15,6 +14,10 @@ namespace thimble::tools {
 namespace {
 
 constexpr std::array<std::string_view, 3> kChunkNames{"nTRN", "nGRP", "nSHP"};  // by Node::Kind
+/// Largest translation, alone or summed over nested groups, on any axis and in either direction.
+constexpr std::int32_t kVoxTranslationLimit = 1 << 24;
+/// Most scene graph nodes entered while placing them, for shared groups that hold nothing.
+constexpr std::uint32_t kVoxVisitLimit = 1 << 20;
 constexpr std::uint32_t kNoNode = UINT32_MAX;
 
 /// `_t`: three whole numbers with blanks between them.

@@ -48,7 +48,7 @@ class VoxScene {
   /// by `kVoxVisitLimit`. Hidden nodes, and nodes of hidden layers, are left out with all below them. A node
   /// is as its last key up to `frame` says, as its first where none comes so early.
   /// @return how many nodes were entered
-  /// @throws InputError  a missing root, child or unique id; a cycle; a limit of vox.h
+  /// @throws InputError  a missing root, child or unique id; a cycle; a limit on translations or nodes entered
   std::uint32_t place_models(std::int64_t frame, const Place& place);
 
  private:

@@ -1,6 +1,5 @@
 // What the page does without: glTF needs a JSON parser, and pictures need two decoders. The table of readers
 // (readers/read_any.cpp) knows the format still, so that the sentence names it, and meshes note their pictures.
-#include "readers/gltf.h"
 #include "readers/read_any.h"
 #include "readers/texture.h"
 #include "scene/mesh_shade.h"
@@ -13,7 +12,7 @@ bool looks_like_gltf(std::span<const std::uint8_t> bytes) {
 bool has_gltf_reader() {
   return false;
 }
-Source read_gltf(const SharedBytes& /*file*/, const std::string& /*path*/, const Progress& /*progress*/) {
+Source read_gltf(const SharedBytes& /*file*/, const ReadOptions& /*options*/, const Progress& /*progress*/) {
   throw InputError("is a glTF scene, which takes the thimble command; this page reads " + reader_endings());
 }
 

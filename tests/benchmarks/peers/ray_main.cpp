@@ -16,7 +16,6 @@
 
 #include "benchmarks/peers/contest.h"
 #include "output/output_file.h"
-#include "readers/file_bytes.h"
 #include "readers/read_any.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
@@ -149,7 +148,7 @@ std::size_t count_wrong(const Answers& expected, const Answers& found) {
 // The mesh's triangles where its voxels are; none where the scene is no mesh with y up.
 std::vector<float> corners_of(const std::string& path, int level) {
   std::vector<float> corners;
-  const tools::Source source = tools::read_any(path, tools::share(tools::load_file(path)));
+  const tools::Source source = tools::read_scene_file({path});
   const auto* const mesh = std::get_if<tools::TriangleMesh>(&source);
   if (mesh == nullptr || mesh->is_z_up) {
     return corners;

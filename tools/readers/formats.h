@@ -1,0 +1,43 @@
+/// @file formats.h
+/// The readers of scene formats, one a file of this folder; what each reads of its format, and what it refuses, stands
+/// there. Which of them reads which file: read_any.h.
+#ifndef THIMBLE_TOOLS_READERS_FORMATS_H
+#define THIMBLE_TOOLS_READERS_FORMATS_H
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "readers/source.h"
+
+namespace thimble::tools {
+
+/// What a reader needs beside the bytes; most need none of it.
+struct ReadOptions {
+  std::string path{};                    ///< of the file, for the other files that it names; may be empty
+  std::optional<std::uint32_t> frame{};  ///< of an animation; by default the earliest key of each node
+  ArrayAs as = ArrayAs::kByShape;        ///< of an array of numbers
+};
+
+/// Reads all of `file`, already decompressed, and checks it. What streams (points, voxels) keeps the file and reads it
+/// again each time; a mesh keeps none of it.
+/// @param progress  may be empty; may throw, which ends the reading
+/// @throws InputError  what is wrong, and where
+using FormatReader = Source(const SharedBytes& file, const ReadOptions& options, const Progress& progress);
+FormatReader read_binvox, read_gadget, read_gltf, read_height_grid, read_kvx, read_las, read_mts, read_npy,
+    read_obj, read_oct, read_off, read_pcd, read_ply, read_qb, read_scene_text, read_schematic, read_stl,
+    read_vox, read_xyz;
+
+/// Whether a file that begins so is of the format.
+using FormatLook = bool(std::span<const std::uint8_t> bytes);
+FormatLook looks_like_binvox, looks_like_gadget, looks_like_gltf, looks_like_height_grid, looks_like_las,
+    looks_like_mts, looks_like_npy, looks_like_oct, looks_like_off, looks_like_pcd, looks_like_ply,
+    looks_like_schematic, looks_like_stl, looks_like_vox;
+
+/// Whether this program reads glTF: the page does without (tools/web/left_out.cpp).
+bool has_gltf_reader();
+
+}  // namespace thimble::tools
+
+#endif
