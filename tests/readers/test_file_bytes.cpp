@@ -265,10 +265,13 @@ TEST_CASE("ByteReader: numbers of each width and order -> their values") {
   ByteReader floats(reals);
   CHECK(floats.f32() == 1.5f);
   CHECK(floats.f64() == -1.5);
-  CHECK(floats.f32_be() == 1.5f);
-  CHECK(floats.f64_be() == -1.5);
+  CHECK(load_number(floats.take(4).data(), {'f', 4}, true) == 1.5);
+  CHECK(load_number(floats.take(8).data(), {'f', 8}, true) == -1.5);
   CHECK(std::isnan(floats.f32()));
   CHECK(floats.u32_be() == 0x80000000u);
+  CHECK(load_number(bytes.data(), {'i', 2}, true) == 511);
+  CHECK(load_number(bytes.data() + 1, {'i', 1}, false) == -1);
+  CHECK(load_number(bytes.data() + 1, {'u', 1}, false) == 255);
 }
 
 TEST_CASE("ByteReader: a read past the end -> an error with place and offset, and the cursor stays") {

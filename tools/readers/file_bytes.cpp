@@ -1,8 +1,35 @@
 #include "readers/file_bytes.h"
 
 #include <bit>
+#include <cmath>
 
 namespace thimble::tools {
+namespace {
+
+/// IEEE 754's binary16: a sign, five bits of exponent, ten of fraction.
+double half(unsigned bits) {
+  const auto exponent = static_cast<int>(bits >> 10 & 31U);
+  const double fraction = bits & 1023U;
+  const double size = exponent == 31  ? (fraction == 0 ? HUGE_VAL : std::nan(""))
+                      : exponent == 0 ? std::ldexp(fraction, -24)
+                                      : std::ldexp(1024 + fraction, exponent - 25);
+  return (bits & 0x8000U) != 0 ? -size : size;
+}
+
+}  // namespace
+
+double load_number(const std::uint8_t* first, const NumberType& type, bool is_big_endian) {
+  const std::uint64_t bits = load_bits(first, type.size_bytes, is_big_endian);
+  if (type.kind == 'f') {
+    return type.size_bytes == 2 ? half(static_cast<unsigned>(bits))
+           : type.size_bytes == 4
+               ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
+               : std::bit_cast<double>(bits);
+  }
+  const std::size_t unused = 64 - 8 * type.size_bytes;
+  return type.kind == 'i' ? static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused)
+                          : static_cast<double>(bits);
+}
 
 std::span<const std::uint8_t> ByteReader::take(std::uint64_t count) {
   if (count > remaining()) {
@@ -21,37 +48,6 @@ ByteReader ByteReader::sub(std::uint64_t count, std::string_view place) {
 
 void ByteReader::fail(const std::string& sentence) const {
   throw InputError(place_ + ": " + sentence);
-}
-
-std::uint64_t ByteReader::little(std::size_t count) {
-  std::uint64_t value = 0;
-  int shift = 0;
-  for (const std::uint8_t byte : take(count)) {
-    value |= std::uint64_t{byte} << shift;
-    shift += 8;
-  }
-  return value;
-}
-
-std::uint64_t ByteReader::big(std::size_t count) {
-  std::uint64_t value = 0;
-  for (const std::uint8_t byte : take(count)) {
-    value = (value << 8) | byte;
-  }
-  return value;
-}
-
-float ByteReader::f32() {
-  return std::bit_cast<float>(u32());
-}
-double ByteReader::f64() {
-  return std::bit_cast<double>(u64());
-}
-float ByteReader::f32_be() {
-  return std::bit_cast<float>(u32_be());
-}
-double ByteReader::f64_be() {
-  return std::bit_cast<double>(u64_be());
 }
 
 }  // namespace thimble::tools

@@ -7,6 +7,7 @@
 #ifndef THIMBLE_TOOLS_READERS_FILE_BYTES_H
 #define THIMBLE_TOOLS_READERS_FILE_BYTES_H
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -98,6 +99,25 @@ FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, st
 /// The first `count` bytes of what `packed` holds, or all where it holds fewer or is damaged behind them.
 FileBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count);
 
+/// How a number is written in binary.
+struct NumberType {
+  char kind = 'f';             ///< u (or b, a truth), i (two's complement) or f (IEEE 754)
+  std::size_t size_bytes = 4;  ///< 1, 2, 4 or 8; of f not 1
+  friend bool operator==(const NumberType&, const NumberType&) = default;
+};
+
+/// The bits of a number of `size_bytes` at `first`.
+inline std::uint64_t load_bits(const std::uint8_t* first, std::size_t size_bytes, bool is_big_endian) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < size_bytes; ++i) {
+    bits = bits << 8 | first[is_big_endian ? i : size_bytes - 1 - i];
+  }
+  return bits;
+}
+
+/// The number at `first`, NaN included.
+double load_number(const std::uint8_t* first, const NumberType& type, bool is_big_endian);
+
 /// A cursor over bytes that somebody else owns. Each read checks that its bytes are there and moves past
 /// them; a read that does not fit throws and leaves the cursor where it was.
 ///
@@ -118,16 +138,14 @@ class ByteReader {
   std::uint32_t u32() { return static_cast<std::uint32_t>(little(4)); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
   std::uint64_t u64() { return little(8); }
-  float f32();
-  double f64();
+  float f32() { return std::bit_cast<float>(u32()); }
+  double f64() { return std::bit_cast<double>(u64()); }
 
   std::uint16_t u16_be() { return static_cast<std::uint16_t>(big(2)); }
   std::int16_t i16_be() { return static_cast<std::int16_t>(u16_be()); }
   std::uint32_t u32_be() { return static_cast<std::uint32_t>(big(4)); }
   std::int32_t i32_be() { return static_cast<std::int32_t>(u32_be()); }
   std::uint64_t u64_be() { return big(8); }
-  float f32_be();
-  double f64_be();
 
   /// Offset in the file of the next byte.
   std::uint64_t offset() const { return first_offset_ + next_; }
@@ -144,8 +162,8 @@ class ByteReader {
   [[noreturn]] void fail(const std::string& sentence) const;
 
  private:
-  std::uint64_t little(std::size_t count);
-  std::uint64_t big(std::size_t count);
+  std::uint64_t little(std::size_t count) { return load_bits(take(count).data(), count, false); }
+  std::uint64_t big(std::size_t count) { return load_bits(take(count).data(), count, true); }
 
   std::span<const std::uint8_t> bytes_;
   std::string place_;

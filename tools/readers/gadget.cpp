@@ -17,13 +17,13 @@
 #include "readers/formats.h"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "readers/file_bytes.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -44,18 +44,6 @@ constexpr std::uint32_t kGadgetHeaderBytes = 256;
 constexpr std::size_t kMarkerBytes = 4;
 constexpr std::size_t kParticleTypes = 6;
 
-enum class ByteOrder : std::uint8_t { kLittle, kBig };
-
-std::uint64_t load(std::span<const std::uint8_t> bytes, std::size_t offset, std::size_t count,
-                   ByteOrder order) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t shift = 8 * (order == ByteOrder::kBig ? count - 1 - i : i);
-    value |= std::uint64_t{bytes[offset + i]} << shift;
-  }
-  return value;
-}
-
 /// A record's data, without the markers.
 struct Record {
   std::size_t offset = 0;
@@ -64,20 +52,21 @@ struct Record {
 };
 
 /// The record whose first marker is at `offset`; both markers are in the file and agree.
-Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, ByteOrder order) {
+Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, bool is_big_endian) {
   const std::string place = "record at byte offset " + std::to_string(offset);
   if (bytes.size() - offset < kMarkerBytes) {
     throw InputError(place + ": the file ends in its marker");
   }
   Record record;
   record.offset = offset + kMarkerBytes;
-  record.size_bytes = static_cast<std::uint32_t>(load(bytes, offset, kMarkerBytes, order));
+  record.size_bytes = static_cast<std::uint32_t>(load_bits(&bytes[offset], kMarkerBytes, is_big_endian));
   const std::uint64_t left = bytes.size() - record.offset;
   if (std::uint64_t{record.size_bytes} + kMarkerBytes > left) {
     throw InputError(place + ": its length is " + std::to_string(record.size_bytes) + " bytes, but " +
                      std::to_string(left) + " bytes are left");
   }
-  const std::uint64_t marker = load(bytes, record.offset + record.size_bytes, kMarkerBytes, order);
+  const std::uint64_t marker =
+      load_bits(&bytes[record.offset + record.size_bytes], kMarkerBytes, is_big_endian);
   if (marker != record.size_bytes) {
     throw InputError(place + ": its length is " + std::to_string(record.size_bytes) +
                      " before the data and " + std::to_string(marker) + " after it");
@@ -88,7 +77,7 @@ Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, ByteOr
 class GadgetCloud final : public PointCloud {
  public:
   SharedBytes file;
-  ByteOrder order = ByteOrder::kLittle;
+  bool is_big_endian = false;
   std::array<std::uint32_t, kParticleTypes> counts{};
   std::size_t positions_offset = 0;
   std::size_t number_bytes = sizeof(float);
@@ -112,20 +101,17 @@ class GadgetCloud final : public PointCloud {
 
  private:
   double number(std::size_t offset) const {
-    const std::uint64_t bits = load(file.bytes, offset, number_bytes, order);
-    if (number_bytes == sizeof(float)) {
-      return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-    }
-    return std::bit_cast<double>(bits);
+    return load_number(&file.bytes[offset], {'f', number_bytes}, is_big_endian);
   }
 };
 
-ByteOrder byte_order(std::span<const std::uint8_t> bytes) {
+/// By the first marker.
+bool is_file_big_endian(std::span<const std::uint8_t> bytes) {
   if (bytes.size() >= kMarkerBytes) {
-    for (const ByteOrder order : {ByteOrder::kLittle, ByteOrder::kBig}) {
-      const std::uint64_t marker = load(bytes, 0, kMarkerBytes, order);
+    for (const bool is_big_endian : {false, true}) {
+      const std::uint64_t marker = load_bits(&bytes[0], kMarkerBytes, is_big_endian);
       if (marker == kGadgetHeaderBytes) {
-        return order;
+        return is_big_endian;
       }
       if (marker == 8 && bytes.size() >= 8 && bytes[4] == 'H' && bytes[5] == 'E') {
         throw InputError("this is a Gadget snapshot of format 2; only format 1 is supported");
@@ -143,9 +129,10 @@ bool looks_like_gadget(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kMarkerBytes + kGadgetHeaderBytes + kMarkerBytes) {
     return false;
   }
-  for (const ByteOrder order : {ByteOrder::kLittle, ByteOrder::kBig}) {
-    if (load(bytes, 0, kMarkerBytes, order) == kGadgetHeaderBytes &&
-        load(bytes, kMarkerBytes + kGadgetHeaderBytes, kMarkerBytes, order) == kGadgetHeaderBytes) {
+  for (const bool is_big_endian : {false, true}) {
+    if (load_bits(&bytes[0], kMarkerBytes, is_big_endian) == kGadgetHeaderBytes &&
+        load_bits(&bytes[kMarkerBytes + kGadgetHeaderBytes], kMarkerBytes, is_big_endian) ==
+            kGadgetHeaderBytes) {
       return true;
     }
   }
@@ -159,17 +146,18 @@ bool looks_like_gadget(std::span<const std::uint8_t> bytes) {
 Source read_gadget(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
   auto cloud = std::make_unique<GadgetCloud>();
   const std::span<const std::uint8_t> bytes = file.bytes;
-  cloud->order = byte_order(bytes);
-  const Record header = record_at(bytes, 0, cloud->order);
+  cloud->is_big_endian = is_file_big_endian(bytes);
+  const Record header = record_at(bytes, 0, cloud->is_big_endian);
   std::uint64_t particles = 0;
   for (std::size_t type = 0; type < kParticleTypes; ++type) {
-    cloud->counts[type] = static_cast<std::uint32_t>(load(bytes, header.offset + 4 * type, 4, cloud->order));
+    cloud->counts[type] =
+        static_cast<std::uint32_t>(load_bits(&bytes[header.offset + 4 * type], 4, cloud->is_big_endian));
     particles += cloud->counts[type];
   }
   if (particles == 0) {
     throw InputError("the header counts no particles");
   }
-  const Record positions = record_at(bytes, header.end(), cloud->order);
+  const Record positions = record_at(bytes, header.end(), cloud->is_big_endian);
   if (positions.size_bytes == particles * 3 * sizeof(float)) {
     cloud->number_bytes = sizeof(float);
   } else if (positions.size_bytes == particles * 3 * sizeof(double)) {
@@ -184,7 +172,7 @@ Source read_gadget(const SharedBytes& file, const ReadOptions&, const Progress& 
   cloud->positions_offset = positions.offset;
   cloud->file = file;
   for (std::size_t offset = positions.end(); offset < bytes.size();) {
-    offset = record_at(bytes, offset, cloud->order).end();
+    offset = record_at(bytes, offset, cloud->is_big_endian).end();
   }
   ProgressMeter meter(progress, bytes.size());
   const std::size_t point_bytes = 3 * cloud->number_bytes;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -21,28 +20,24 @@ constexpr int kGltfDepthLimit = 64;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 
-/// Types of components.
-enum : std::uint32_t { kI8 = 5120, kU8, kI16, kU16, kU32 = 5125, kF32 };
-
-std::uint32_t bytes_of(std::uint32_t component_type) {
-  switch (component_type) {
-    case kI8:
-    case kU8:
-      return 1;
-    case kI16:
-    case kU16:
-      return 2;
-    case kU32:
-    case kF32:
-      return 4;
+/// Of 0 bytes where it is none.
+NumberType component_type_of(const json& object, const std::string& place) {
+  switch (gltf_number(object, "componentType", place).value_or(0)) {
+    case 5120:
+      return {'i', 1};
+    case 5121:
+      return {'u', 1};
+    case 5122:
+      return {'i', 2};
+    case 5123:
+      return {'u', 2};
+    case 5125:
+      return {'u', 4};
+    case 5126:
+      return {'f', 4};
     default:
-      return 0;
+      return {'u', 0};
   }
-}
-
-std::uint32_t component_type_of(const json& object, const std::string& place) {
-  const std::uint64_t type = gltf_number(object, "componentType", place).value_or(0);
-  return type <= kF32 ? static_cast<std::uint32_t>(type) : 0;
 }
 
 /// Counts what a parser would make of the text, so that no text is parsed that makes too much.
@@ -184,38 +179,17 @@ void gltf_real(const json& object, const char* name, double& value, const std::s
   value = member->get<double>();
 }
 
-std::uint64_t GltfAccessor::element_bytes() const {
-  return std::uint64_t{components} * bytes_of(component_type);
-}
-
 double GltfAccessor::real(std::uint64_t i, std::uint32_t component) const {
-  const std::uint32_t size = bytes_of(component_type);
-  ByteReader reader(
-      bytes.subspan(static_cast<std::size_t>(i * stride + std::uint64_t{component} * size), size));
-  switch (component_type) {
-    case kI8: {
-      const double value = reader.i8();
-      return normalized ? std::fmax(value / 127, -1) : value;
-    }
-    case kU8:
-      return normalized ? reader.u8() / 255.0 : reader.u8();
-    case kI16: {
-      const double value = reader.i16();
-      return normalized ? std::fmax(value / 32767, -1) : value;
-    }
-    case kU16:
-      return normalized ? reader.u16() / 65535.0 : reader.u16();
-    case kU32:
-      return reader.u32();
-    default:
-      return static_cast<double>(reader.f32());
+  const double value = load_number(&bytes[i * stride + component * type.size_bytes], type, false);
+  if (!normalized || type.kind == 'f' || type.size_bytes == 4) {
+    return value;
   }
+  const int bits = static_cast<int>(8 * type.size_bytes) - (type.kind == 'i' ? 1 : 0);
+  return std::fmax(value / ((1 << bits) - 1), -1);
 }
 
 std::uint32_t GltfAccessor::index(std::uint64_t i) const {
-  const std::uint32_t size = bytes_of(component_type);
-  ByteReader reader(bytes.subspan(static_cast<std::size_t>(i * stride), size));
-  return size == 1 ? reader.u8() : (size == 2 ? reader.u16() : reader.u32());
+  return static_cast<std::uint32_t>(load_bits(&bytes[i * stride], type.size_bytes, false));
 }
 
 GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
@@ -393,10 +367,8 @@ std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor
     GltfAccessor indices;
     indices.components = 1;
     indices.count = gltf_number(*sparse, "count", place).value_or(0);
-    indices.component_type = where == nullptr ? 0 : component_type_of(*where, place);
-    const bool is_unsigned =
-        indices.component_type == kU8 || indices.component_type == kU16 || indices.component_type == kU32;
-    if (!index_view || !value_view || !is_unsigned) {
+    indices.type = where == nullptr ? NumberType{'u', 0} : component_type_of(*where, place);
+    if (!index_view || !value_view || indices.type.kind != 'u' || indices.type.size_bytes == 0) {
       throw InputError(place + ": its sparse values lack their indices or themselves");
     }
     GltfAccessor values = accessor;
@@ -429,7 +401,7 @@ GltfAccessor GltfFile::accessor(std::uint64_t i) {
       accessor.components = components;
     }
   }
-  accessor.component_type = component_type_of(entry, place);
+  accessor.type = component_type_of(entry, place);
   if (accessor.element_bytes() == 0) {
     throw InputError(place + ": its type or componentType is missing or none of numbers and vectors");
   }

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "readers/shared_bytes.h"
+#include "readers/file_bytes.h"
 
 namespace thimble::tools {
 
@@ -20,12 +20,12 @@ struct GltfAccessor {
   std::span<const std::uint8_t> bytes;  ///< from the first component on
   std::uint64_t stride = 0;
   std::uint64_t count = 0;
-  std::uint32_t component_type = 0;
+  NumberType type;
   std::uint32_t components = 0;
   bool normalized = false;
 
   /// Of one vector; 0 where the type is none.
-  std::uint64_t element_bytes() const;
+  std::uint64_t element_bytes() const { return components * type.size_bytes; }
   /// A component as a number; normalised integers become 0 to 1 or -1 to 1.
   double real(std::uint64_t i, std::uint32_t component) const;
   /// A component of an unsigned type.

@@ -91,8 +91,7 @@ class MtsGrid final : public VoxelGrid {
 
  private:
   unsigned number(std::uint64_t i) const {
-    const std::uint8_t* at = nodes_.bytes().data() + 2 * i;
-    return static_cast<unsigned>(at[0] << 8 | at[1]);
+    return static_cast<unsigned>(load_bits(nodes_.bytes().data() + 2 * i, 2, true));
   }
   bool is_there(std::uint64_t i, std::uint64_t cells) const {
     const unsigned chance = nodes_.bytes()[static_cast<std::size_t>(2 * cells + i)] & chance_bits_;

@@ -15,7 +15,6 @@
 #include "readers/formats.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -25,6 +24,7 @@
 #include <vector>
 
 #include "readers/color_scale.h"
+#include "readers/file_bytes.h"
 #include "readers/height_grid.h"
 #include "readers/text.h"
 #include "readers/zip.h"
@@ -39,8 +39,7 @@ constexpr std::size_t kMostDimensions = 64;
 
 /// What a header says.
 struct NpyHeader {
-  char type = 'u';  ///< b, u, i or f
-  std::size_t size_bytes = 1;
+  NumberType type{'u', 1};
   bool is_big_endian = false;
   bool is_fortran = false;
   std::vector<std::uint64_t> shape;
@@ -82,8 +81,8 @@ void read_type(std::string_view value, NpyHeader& header) {
     throw InputError("the type of the array's numbers, " + quoted(value.substr(0, value.find(','))) +
                      ", is none of booleans, integers, and floats of 2, 4 or 8 bytes");
   }
-  header.type = type[0] == '?' ? 'b' : type[0];
-  header.size_bytes = type.size() < 2 ? 1 : static_cast<std::size_t>(type[1] - '0');
+  header.type.kind = type[0] == '?' ? 'b' : type[0];
+  header.type.size_bytes = type.size() < 2 ? 1 : static_cast<std::size_t>(type[1] - '0');
   header.is_big_endian = has_order && text[0] == '>';
 }
 
@@ -130,16 +129,6 @@ NpyHeader read_npy_header(std::span<const std::uint8_t> bytes) {
   return header;
 }
 
-/// IEEE 754's binary16: a sign, five bits of exponent, ten of fraction.
-double half(unsigned bits) {
-  const auto exponent = static_cast<int>(bits >> 10 & 31U);
-  const double fraction = bits & 1023U;
-  const double size = exponent == 31  ? (fraction == 0 ? HUGE_VAL : std::nan(""))
-                      : exponent == 0 ? std::ldexp(fraction, -24)
-                                      : std::ldexp(1024 + fraction, exponent - 25);
-  return (bits & 0x8000U) != 0 ? -size : size;
-}
-
 /// An array's numbers.
 struct Array {
   NpyHeader header;
@@ -147,10 +136,10 @@ struct Array {
   std::vector<std::uint64_t> strides;  ///< in numbers
 
   Array(NpyHeader read, SharedBytes file) : header(std::move(read)), bytes(std::move(file)) {
-    const std::uint64_t room = (bytes.bytes.size() - header.data_offset) / header.size_bytes;
+    const std::uint64_t room = (bytes.bytes.size() - header.data_offset) / header.type.size_bytes;
     if (numbers_of(header) > room) {
       throw InputError("the array's shape takes " + std::to_string(numbers_of(header)) + " numbers of " +
-                       std::to_string(header.size_bytes) + " bytes, but the file has room for " +
+                       std::to_string(header.type.size_bytes) + " bytes, but the file has room for " +
                        std::to_string(room));
     }
     strides.resize(header.shape.size());
@@ -163,23 +152,8 @@ struct Array {
   }
 
   double at(std::uint64_t index) const {
-    const std::uint8_t* first = bytes.bytes.data() + header.data_offset + index * header.size_bytes;
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < header.size_bytes; ++i) {
-      bits = bits << 8 | first[header.is_big_endian ? i : header.size_bytes - 1 - i];
-    }
-    if (header.type == 'f' && header.size_bytes == 2) {
-      return half(static_cast<unsigned>(bits));
-    }
-    if (header.type == 'f') {
-      return header.size_bytes == 4
-                 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
-                 : std::bit_cast<double>(bits);
-    }
-    const auto unused = static_cast<int>(64 - 8 * header.size_bytes);
-    return header.type == 'i'
-               ? static_cast<double>(static_cast<std::int64_t>(bits << (unused & 63)) >> (unused & 63))
-               : static_cast<double>(bits);
+    const std::uint8_t* first = bytes.bytes.data() + header.data_offset + index * header.type.size_bytes;
+    return load_number(first, header.type, header.is_big_endian);
   }
 };
 
@@ -283,8 +257,8 @@ class ArrayGrid final : public VoxelGrid {
                                 static_cast<std::uint64_t>(z) * array_.strides[2];
     if (channels_ == 0) {
       const double value = array_.at(first);
-      return value != 0 && (array_.header.type != 'f' || value >= 0.5) ? std::optional<Rgb>(Rgb{})
-                                                                       : std::nullopt;
+      return value != 0 && (array_.header.type.kind != 'f' || value >= 0.5) ? std::optional<Rgb>(Rgb{})
+                                                                            : std::nullopt;
     }
     const auto channel = [&](std::uint64_t i) {
       return static_cast<std::uint8_t>(array_.at(first + i * array_.strides[3]));
@@ -322,8 +296,8 @@ Source source_of(Array array, ArrayAs as) {
       return array.at(row * array.strides[0] + column * array.strides[1]);
     });
   }
-  const bool is_color = dimensions == 4 && header.type == 'u' && header.size_bytes == 1 &&
-                        (header.shape[3] == 3 || header.shape[3] == 4);
+  const bool is_color =
+      dimensions == 4 && header.type == NumberType{'u', 1} && (header.shape[3] == 3 || header.shape[3] == 4);
   if (dimensions == 3 || is_color) {
     return std::make_unique<ArrayGrid>(std::move(array));
   }
@@ -363,7 +337,7 @@ bool looks_like_npy(std::span<const std::uint8_t> bytes) {
   constexpr std::size_t kNameLength = 26;
   constexpr std::size_t kName = 30;
   if (text.starts_with(kZipMagic) && bytes.size() > kName) {
-    const std::size_t length = bytes[kNameLength] | static_cast<std::size_t>(bytes[kNameLength + 1]) << 8;
+    const std::uint64_t length = load_bits(&bytes[kNameLength], 2, false);
     return text.substr(kName, length).ends_with(".npy");
   }
   return text.starts_with(kNpyMagic);

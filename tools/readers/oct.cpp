@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "readers/file_bytes.h"
 #include "readers/formats.h"
 #include "thimble/light/scene.h"
 
@@ -18,9 +19,8 @@ constexpr std::array<std::uint8_t, 3> kOctMagic{0x54, 0x4D, 0x53};
 constexpr std::size_t kVersionOffset = 3;
 constexpr std::size_t kSizeOffset = 4;
 
-std::uint32_t load32(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return static_cast<std::uint32_t>(bytes[at]) | static_cast<std::uint32_t>(bytes[at + 1]) << 8 |
-         static_cast<std::uint32_t>(bytes[at + 2]) << 16 | static_cast<std::uint32_t>(bytes[at + 3]) << 24;
+std::uint64_t load32(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return load_bits(&bytes[at], 4, false);
 }
 
 // `kAnotherVersion`, with what this version does not know.

@@ -31,8 +31,7 @@ enum class PcdEncoding : std::uint8_t { kText, kBinary, kCompressed };
 
 struct Field {
   std::string_view name;
-  std::uint64_t size_bytes = 4;
-  char type = 'F';
+  NumberType type;
   std::uint64_t count = 1;
 };
 
@@ -91,8 +90,8 @@ class PcdHeaderParser {
       }
     } else if (word == "SIZE") {
       each_field(line, [&](Field& field, std::string_view value) {
-        field.size_bytes = number(value, 8);
-        if (!std::has_single_bit(field.size_bytes)) {
+        field.type.size_bytes = number(value, 8);
+        if (!std::has_single_bit(field.type.size_bytes)) {
           fail("the size " + quoted(value) + " is not 1, 2, 4 or 8");
         }
       });
@@ -101,7 +100,7 @@ class PcdHeaderParser {
         if (value != "F" && value != "U" && value != "I") {
           fail("the type " + quoted(value) + " is not F, U or I");
         }
-        field.type = value.front();
+        field.type.kind = static_cast<char>(value.front() - 'A' + 'a');
       });
     } else if (word == "COUNT") {
       constexpr std::uint64_t kMostValues = 65536;
@@ -269,18 +268,18 @@ class PcdCloud final : public PointCloud {
       for (std::size_t i = 0; i < kUsed; ++i) {
         const bool is_name = equals_ignoring_case(field.name, kNames[i]) ||
                              (i == kColor && equals_ignoring_case(field.name, "rgba"));
-        const bool is_color = i != kColor || field.size_bytes == 4;
+        const bool is_color = i != kColor || field.type.size_bytes == 4;
         if (is_name && is_color && !found[i] && field.count > 0) {
           found[i] = true;
           columns_[i].field = field;
           columns_[i].first = is_text_ ? values : bytes;
         }
       }
-      if (field.type == 'F' && field.size_bytes < 4) {
+      if (field.type.kind == 'f' && field.type.size_bytes < 4) {
         throw InputError("the field " + quoted(field.name) + " is of floats of " +
-                         std::to_string(field.size_bytes) + " bytes, which there are not");
+                         std::to_string(field.type.size_bytes) + " bytes, which there are not");
       }
-      bytes += field.size_bytes * field.count;
+      bytes += field.type.size_bytes * field.count;
       values += field.count;
     }
     for (std::size_t i = 0; i < kColor; ++i) {
@@ -294,7 +293,7 @@ class PcdCloud final : public PointCloud {
     for (Column& column : columns_) {
       // Compressed data holds all values of one field, then all of the next.
       const bool is_apart = header.encoding == PcdEncoding::kCompressed;
-      column.stride = is_apart ? column.field.size_bytes * column.field.count : bytes;
+      column.stride = is_apart ? column.field.type.size_bytes * column.field.count : bytes;
       column.first *= is_apart ? count_ : 1;
     }
   }
@@ -312,7 +311,7 @@ class PcdCloud final : public PointCloud {
       point.z = value(columns_[2], i);
       point.line = i + 1;
       if (has_color_) {
-        point.color = color_of(static_cast<std::uint32_t>(bits(columns_[kColor], i)));
+        point.color = color_of(static_cast<std::uint32_t>(load_bits(place(columns_[kColor], i), 4, false)));
       }
       Components components{};
       for (std::size_t part = 0; has_parts_ && part < 3; ++part) {
@@ -381,7 +380,7 @@ class PcdCloud final : public PointCloud {
   }
   Rgb written_color(std::string_view word, std::uint64_t line) const {
     const double value = number(word, line);
-    if (columns_[kColor].field.type == 'F') {
+    if (columns_[kColor].field.type.kind == 'f') {
       // Too large to be a float: its bytes stand for no colour either.
       return std::fabs(value) <= static_cast<double>(std::numeric_limits<float>::max())
                  ? color_of(std::bit_cast<std::uint32_t>(static_cast<float>(value)))
@@ -393,25 +392,11 @@ class PcdCloud final : public PointCloud {
     return color_of(static_cast<std::uint32_t>(static_cast<std::int64_t>(value)));
   }
 
-  std::uint64_t bits(const Column& column, std::uint64_t i) const {
-    std::uint64_t result = 0;
-    const std::uint8_t* bytes = file_.bytes.data() + data_offset_ + column.first + i * column.stride;
-    for (std::uint64_t byte = 0; byte < column.field.size_bytes; ++byte) {
-      result |= std::uint64_t{bytes[byte]} << (8 * byte);
-    }
-    return result;
+  const std::uint8_t* place(const Column& column, std::uint64_t i) const {
+    return file_.bytes.data() + data_offset_ + column.first + i * column.stride;
   }
   double value(const Column& column, std::uint64_t i) const {
-    const std::uint64_t raw = bits(column, i);
-    const auto unused = static_cast<int>(64 - 8 * column.field.size_bytes);
-    if (column.field.type == 'F') {
-      return column.field.size_bytes == 4
-                 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw)))
-                 : std::bit_cast<double>(raw);
-    }
-    return column.field.type == 'U'
-               ? static_cast<double>(raw)
-               : static_cast<double>(static_cast<std::int64_t>(raw << (unused & 63)) >> (unused & 63));
+    return load_number(place(column, i), column.field.type, false);
   }
 
   SharedBytes file_;  ///< or what it unpacks to

@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -62,7 +61,7 @@ class AsciiBody {
   AsciiBody(const SharedBytes& file, const PlyHeader& header)
       : words_(file.text().substr(header.body_offset), 0, header.body_line), start_(header.body_offset) {}
 
-  double scalar(PlyScalar) {
+  double scalar(const NumberType&) {
     const std::string_view word = next();
     double value = 0;
     switch (parse_number(word, value)) {
@@ -75,14 +74,14 @@ class AsciiBody {
     }
     fail(quoted(word) + " is not a number");
   }
-  void skip(PlyScalar, std::uint64_t count) {
+  void skip(const NumberType&, std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) {
       next();
     }
   }
   /// A digit and what separates it from the next; the last one may stand at the very end.
   static std::uint64_t least_bytes(const PlyElement& element) { return 2 * element.properties.size(); }
-  static std::uint64_t least_bytes(PlyScalar) { return 2; }
+  static std::uint64_t least_bytes(const NumberType&) { return 2; }
   std::uint64_t remaining() const { return std::uint64_t{words_.remaining()} + 1; }
   std::size_t offset() const { return start_ + words_.offset(); }
   std::uint64_t line() const { return words_.line(); }
@@ -115,42 +114,25 @@ class BinaryBody {
         next_(header.body_offset),
         big_endian_(header.encoding == PlyEncoding::kBigEndian) {}
 
-  double scalar(PlyScalar type) {
-    const std::uint64_t bits = take(ply_size_bytes(type));
-    switch (type) {
-      case PlyScalar::kInt8:
-        return static_cast<std::int8_t>(bits);
-      case PlyScalar::kUint8:
-        return static_cast<std::uint8_t>(bits);
-      case PlyScalar::kInt16:
-        return static_cast<std::int16_t>(bits);
-      case PlyScalar::kUint16:
-        return static_cast<std::uint16_t>(bits);
-      case PlyScalar::kInt32:
-        return static_cast<std::int32_t>(bits);
-      case PlyScalar::kUint32:
-        return static_cast<std::uint32_t>(bits);
-      case PlyScalar::kFloat:
-        return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-      case PlyScalar::kDouble:
-        break;
-    }
-    return std::bit_cast<double>(bits);
+  double scalar(const NumberType& type) {
+    skip(type, 1);
+    return load_number(&bytes_[next_ - type.size_bytes], type, big_endian_);
   }
-  void skip(PlyScalar type, std::uint64_t count) {
-    if (count > remaining() / ply_size_bytes(type)) {
-      fail_early();
+  void skip(const NumberType& type, std::uint64_t count) {
+    if (count > remaining() / type.size_bytes) {
+      throw InputError("after byte offset " + std::to_string(next_) +
+                       ": the file ends before all that the header declares");
     }
-    next_ += static_cast<std::size_t>(count) * ply_size_bytes(type);
+    next_ += static_cast<std::size_t>(count) * type.size_bytes;
   }
   static std::uint64_t least_bytes(const PlyElement& element) {
     std::uint64_t sum = 0;
     for (const PlyProperty& property : element.properties) {
-      sum += ply_size_bytes(property.is_list ? property.count_type : property.type);
+      sum += (property.is_list ? property.count_type : property.type).size_bytes;
     }
     return sum;
   }
-  static std::uint64_t least_bytes(PlyScalar type) { return ply_size_bytes(type); }
+  static std::uint64_t least_bytes(const NumberType& type) { return type.size_bytes; }
   std::uint64_t remaining() const { return bytes_.size() - next_; }
   std::size_t offset() const { return next_; }
   static std::uint64_t line() { return 0; }
@@ -170,23 +152,6 @@ class BinaryBody {
   static void finish() {}
 
  private:
-  [[noreturn]] void fail_early() const {
-    throw InputError("after byte offset " + std::to_string(next_) +
-                     ": the file ends before all that the header declares");
-  }
-  std::uint64_t take(std::size_t count) {
-    if (count > remaining()) {
-      fail_early();
-    }
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t shift = 8 * (big_endian_ ? count - 1 - i : i);
-      bits |= std::uint64_t{bytes_[next_ + i]} << shift;
-    }
-    next_ += count;
-    return bits;
-  }
-
   std::span<const std::uint8_t> bytes_;
   std::size_t next_;
   bool big_endian_;
@@ -264,7 +229,7 @@ class ColorParts {
   }
   void see(const PlyVertex& vertex) {
     for (std::size_t i = 0; i < 3; ++i) {
-      if (is_ply_real(types_[i])) {
+      if (types_[i].kind == 'f') {
         floats_.see(vertex.values[3 + i]);
       }
     }
@@ -274,14 +239,14 @@ class ColorParts {
     std::array<std::uint8_t, 3> bytes{};
     for (std::size_t i = 0; i < 3; ++i) {
       const double full =
-          is_ply_real(types_[i]) ? floats_.full() : (types_[i] == PlyScalar::kUint16 ? 65535.0 : 255.0);
+          types_[i].kind == 'f' ? floats_.full() : (types_[i] == NumberType{'u', 2} ? 65535.0 : 255.0);
       bytes[i] = unit_to_byte(vertex.values[3 + i] / full);
     }
     return {bytes[0], bytes[1], bytes[2]};
   }
 
  private:
-  std::array<PlyScalar, 3> types_{};
+  std::array<NumberType, 3> types_{};
   ColorScale floats_;
 };
 
@@ -315,7 +280,7 @@ std::array<float, 2> texcoord_of(double u, double v) {
 
 /// Reads one index; `lowest` is -1 where that has a meaning.
 template <class Body>
-std::int64_t read_index(Body& body, PlyScalar type, std::int64_t lowest, std::uint64_t vertex_count,
+std::int64_t read_index(Body& body, const NumberType& type, std::int64_t lowest, std::uint64_t vertex_count,
                         const PlyElement& element, std::uint64_t record) {
   const double value = body.scalar(type);
   if (!(value >= static_cast<double>(lowest) && value < static_cast<double>(vertex_count)) ||

@@ -9,19 +9,19 @@
 namespace thimble::tools {
 namespace {
 
-std::optional<PlyScalar> scalar_named(std::string_view name) {
+std::optional<NumberType> type_named(std::string_view name) {
   struct Name {
     std::string_view old_name, new_name;
-    PlyScalar type;
+    NumberType type;
   };
-  static constexpr std::array<Name, 8> kNames{{{"char", "int8", PlyScalar::kInt8},
-                                               {"uchar", "uint8", PlyScalar::kUint8},
-                                               {"short", "int16", PlyScalar::kInt16},
-                                               {"ushort", "uint16", PlyScalar::kUint16},
-                                               {"int", "int32", PlyScalar::kInt32},
-                                               {"uint", "uint32", PlyScalar::kUint32},
-                                               {"float", "float32", PlyScalar::kFloat},
-                                               {"double", "float64", PlyScalar::kDouble}}};
+  static constexpr std::array<Name, 8> kNames{{{"char", "int8", {'i', 1}},
+                                               {"uchar", "uint8", {'u', 1}},
+                                               {"short", "int16", {'i', 2}},
+                                               {"ushort", "uint16", {'u', 2}},
+                                               {"int", "int32", {'i', 4}},
+                                               {"uint", "uint32", {'u', 4}},
+                                               {"float", "float32", {'f', 4}},
+                                               {"double", "float64", {'f', 8}}}};
   for (const Name& known : kNames) {
     if (name == known.old_name || name == known.new_name) {
       return known.type;
@@ -182,7 +182,7 @@ class PlyHeaderParser {
     if (word == "list") {
       added.is_list = true;
       added.count_type = type(take_word(line));
-      if (is_ply_real(added.count_type)) {
+      if (added.count_type.kind == 'f') {
         fail("the length of a list cannot be of type float or double");
       }
       word = take_word(line);
@@ -204,8 +204,8 @@ class PlyHeaderParser {
     element.properties.push_back(added);
   }
 
-  PlyScalar type(std::string_view name) const {
-    const std::optional<PlyScalar> found = scalar_named(name);
+  NumberType type(std::string_view name) const {
+    const std::optional<NumberType> found = type_named(name);
     if (!found) {
       fail("the type " + quoted(name) + " is unknown");
     }

@@ -10,10 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "readers/file_bytes.h"
+
 namespace thimble::tools {
 
 enum class PlyEncoding : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
-enum class PlyScalar : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
 /// What a property is to us. The first nine are positions in an array of a vertex's values.
 enum class PlyRole : std::uint8_t {
@@ -39,8 +40,8 @@ constexpr std::size_t kMostPlyPictures = 256;
 enum class PlyElementKind : std::uint8_t { kVertex, kFace, kStrips, kOther };
 
 struct PlyProperty {
-  PlyScalar type = PlyScalar::kInt8;
-  PlyScalar count_type = PlyScalar::kUint8;  ///< of a list
+  NumberType type;
+  NumberType count_type;  ///< of a list
   bool is_list = false;
   PlyRole role = PlyRole::kUnused;
   bool is_harmonic = false;  ///< a Gaussian splat's mean colour, as the first of its spherical harmonics
@@ -60,28 +61,6 @@ struct PlyHeader {
   std::uint64_t body_line = 0;        ///< line number of the body's first byte
   std::vector<std::string> pictures;  ///< that comments name, in their order
 };
-
-constexpr std::size_t ply_size_bytes(PlyScalar type) {
-  switch (type) {
-    case PlyScalar::kInt8:
-    case PlyScalar::kUint8:
-      return 1;
-    case PlyScalar::kInt16:
-    case PlyScalar::kUint16:
-      return 2;
-    case PlyScalar::kInt32:
-    case PlyScalar::kUint32:
-    case PlyScalar::kFloat:
-      return 4;
-    case PlyScalar::kDouble:
-      break;
-  }
-  return 8;
-}
-
-constexpr bool is_ply_real(PlyScalar type) {
-  return type == PlyScalar::kFloat || type == PlyScalar::kDouble;
-}
 
 bool has_role(const PlyElement& element, PlyRole role);
 
