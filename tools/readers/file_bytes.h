@@ -155,6 +155,10 @@ class ByteReader {
   void skip(std::uint64_t count) { take(count); }
   /// The next `count` bytes as they are; the view lives as long as the bytes.
   std::span<const std::uint8_t> take(std::uint64_t count);
+  std::string_view text(std::uint64_t count) {
+    const auto bytes = take(count);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
   /// The next `count` bytes as a range of their own, which no read leaves; this cursor moves past them.
   ByteReader sub(std::uint64_t count, std::string_view place);
 

@@ -17,7 +17,6 @@
 #include "readers/formats.h"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -177,7 +176,7 @@ Source read_gadget(const SharedBytes& file, const ReadOptions&, const Progress& 
   ProgressMeter meter(progress, bytes.size());
   const std::size_t point_bytes = 3 * cloud->number_bytes;
   cloud->for_each([&](const CloudPoint& point) {
-    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
+    if (!point.is_finite()) {
       throw InputError("the position of particle " + std::to_string(point.line) + " is not finite");
     }
     meter.at(positions.offset + static_cast<std::size_t>(point.line) * point_bytes);

@@ -162,9 +162,8 @@ class Scene {
   void find_parts() {
     std::vector<Visit> waiting;
     std::vector<bool> seen(static_cast<std::size_t>(file_.count("nodes")));
-    const auto enter = [&](const json* list, const Placing& parent, const std::string& place) {
-      for (std::size_t i = 0; list != nullptr && list->is_array() && i < list->size(); ++i) {
-        const json& index = (*list)[i];
+    const auto enter = [&](const json::array_t& list, const Placing& parent, const std::string& place) {
+      for (const json& index : list) {
         const std::uint64_t node = index.is_number_unsigned() ? index.get<std::uint64_t>() : UINT64_MAX;
         if (node >= seen.size() || seen[static_cast<std::size_t>(node)]) {
           throw InputError(place + ": it names a node that is not there, or one that has a parent already");
@@ -175,7 +174,7 @@ class Scene {
     };
     if (file_.count("scenes") != 0) {
       const std::uint64_t scene = gltf_number(file_.root(), "scene", "the file").value_or(0);
-      enter(gltf_member(file_.entry("scenes", scene), "nodes"), kAsItIs, "scene " + std::to_string(scene));
+      enter(gltf_list(file_.entry("scenes", scene), "nodes"), kAsItIs, "scene " + std::to_string(scene));
     } else {
       enter_roots(waiting, seen);
     }
@@ -188,7 +187,7 @@ class Scene {
       if (const auto mesh = gltf_number(node, "mesh", place)) {
         add_instances(node, *mesh, placing, place);
       }
-      enter(gltf_member(node, "children"), placing, place);
+      enter(gltf_list(node, "children"), placing, place);
     }
   }
 
@@ -197,11 +196,10 @@ class Scene {
     static constexpr std::array<std::string_view, 5> kRead{"EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
                                                            "KHR_texture_transform", "KHR_materials_unlit",
                                                            "KHR_materials_pbrSpecularGlossiness"};
-    const json* required = gltf_member(file_.root(), "extensionsRequired");
     std::string first;
     std::size_t looks = 0;
-    for (std::size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
-      const std::string name = (*required)[i].is_string() ? (*required)[i].get<std::string>() : "";
+    for (const json& required : gltf_list(file_.root(), "extensionsRequired")) {
+      const std::string name = required.is_string() ? required.get<std::string>() : "";
       if (std::find(kRead.begin(), kRead.end(), name) != kRead.end()) {
         continue;
       }
@@ -219,9 +217,7 @@ class Scene {
 
   /// A mesh as often as its node says (EXT_mesh_gpu_instancing), which mostly is once.
   void add_instances(const json& node, std::uint64_t mesh, const Placing& placing, const std::string& place) {
-    const json* extensions = gltf_member(node, "extensions");
-    const json* instances =
-        extensions == nullptr ? nullptr : gltf_member(*extensions, "EXT_mesh_gpu_instancing");
+    const json* instances = gltf_extension(node, "EXT_mesh_gpu_instancing");
     const json* attributes = instances == nullptr ? nullptr : gltf_member(*instances, "attributes");
     if (attributes == nullptr) {
       add_mesh(mesh, placing);
@@ -265,10 +261,9 @@ class Scene {
   void enter_roots(std::vector<Visit>& waiting, std::vector<bool>& seen) const {
     std::vector<bool> is_child(seen.size());
     for (std::uint64_t i = 0; i < seen.size(); ++i) {
-      const json* children = gltf_member(file_.entry("nodes", i), "children");
-      for (std::size_t k = 0; children != nullptr && children->is_array() && k < children->size(); ++k) {
-        if ((*children)[k].is_number_unsigned() && (*children)[k].get<std::uint64_t>() < seen.size()) {
-          is_child[(*children)[k].get<std::size_t>()] = true;
+      for (const json& child : gltf_list(file_.entry("nodes", i), "children")) {
+        if (child.is_number_unsigned() && child.get<std::uint64_t>() < seen.size()) {
+          is_child[child.get<std::size_t>()] = true;
         }
       }
     }
@@ -281,12 +276,11 @@ class Scene {
   }
 
   void add_mesh(std::uint64_t mesh, const Placing& placing) {
-    const json* primitives = gltf_member(file_.entry("meshes", mesh), "primitives");
-    for (std::size_t i = 0; primitives != nullptr && primitives->is_array() && i < primitives->size(); ++i) {
-      Part part{&(*primitives)[i], placing,
+    const json::array_t& primitives = gltf_list(file_.entry("meshes", mesh), "primitives");
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+      Part part{&primitives[i], placing,
                 "primitive " + std::to_string(i) + " of mesh " + std::to_string(mesh)};
-      const json* extensions = gltf_member(*part.primitive, "extensions");
-      if (extensions != nullptr && gltf_member(*extensions, "KHR_draco_mesh_compression") != nullptr) {
+      if (gltf_extension(*part.primitive, "KHR_draco_mesh_compression") != nullptr) {
         throw InputError(part.place + ": it is compressed (KHR_draco_mesh_compression), which is not read");
       }
       part.mode = gltf_number(*part.primitive, "mode", part.place).value_or(kTriangles);
@@ -472,9 +466,7 @@ class Scene {
     Look& look = looks_[*material];
     const std::string place = "material " + std::to_string(*material);
     const json& entry = file_.entry("materials", *material);
-    const json* extensions = gltf_member(entry, "extensions");
-    const json* glossy =
-        extensions == nullptr ? nullptr : gltf_member(*extensions, "KHR_materials_pbrSpecularGlossiness");
+    const json* glossy = gltf_extension(entry, "KHR_materials_pbrSpecularGlossiness");
     const json* surface = glossy != nullptr ? glossy : gltf_member(entry, "pbrMetallicRoughness");
     const json* texture = nullptr;
     if (surface != nullptr) {
@@ -496,10 +488,7 @@ class Scene {
 
   void add_texture(const json& info, Look& look, const std::string& place) {
     std::uint64_t texcoord = gltf_number(info, "texCoord", place).value_or(0);
-    const json* extensions = gltf_member(info, "extensions");
-    const json* transform =
-        extensions == nullptr ? nullptr : gltf_member(*extensions, "KHR_texture_transform");
-    if (transform != nullptr) {
+    if (const json* transform = gltf_extension(info, "KHR_texture_transform")) {
       std::array<double, 2> offset{};
       std::array<double, 2> scale{1, 1};
       double turn = 0;

@@ -137,6 +137,17 @@ const json* gltf_member(const json& object, const char* name) {
   return found == object.end() ? nullptr : &*found;
 }
 
+const json* gltf_extension(const json& object, const char* name) {
+  const json* extensions = gltf_member(object, "extensions");
+  return extensions == nullptr ? nullptr : gltf_member(*extensions, name);
+}
+
+const json::array_t& gltf_list(const json& object, const char* name) {
+  static const json::array_t kNone;
+  const json* member = gltf_member(object, name);
+  return member != nullptr && member->is_array() ? member->get_ref<const json::array_t&>() : kNone;
+}
+
 std::optional<std::uint64_t> gltf_number(const json& object, const char* name, const std::string& place) {
   const json* member = gltf_member(object, name);
   if (member == nullptr) {
@@ -230,18 +241,13 @@ GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
   }
 }
 
-std::uint64_t GltfFile::count(const char* name) const {
-  const json* list = gltf_member(json_, name);
-  return list != nullptr && list->is_array() ? list->size() : 0;
-}
-
 const json& GltfFile::entry(const char* name, std::uint64_t i) const {
-  const json* list = gltf_member(json_, name);
-  if (i >= count(name)) {
-    throw InputError("there is no entry " + std::to_string(i) + " among the " + std::to_string(count(name)) +
+  const json::array_t& list = gltf_list(json_, name);
+  if (i >= list.size()) {
+    throw InputError("there is no entry " + std::to_string(i) + " among the " + std::to_string(list.size()) +
                      " of " + quoted(name));
   }
-  const json& found = (*list)[static_cast<std::size_t>(i)];
+  const json& found = list[static_cast<std::size_t>(i)];
   if (!found.is_object()) {
     throw InputError("entry " + std::to_string(i) + " of " + quoted(name) + " is no object");
   }
@@ -306,8 +312,7 @@ std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
 std::span<const std::uint8_t> GltfFile::buffer_view(std::uint64_t i) {
   const std::string place = "buffer view " + std::to_string(i);
   const json& view = entry("bufferViews", i);
-  const json* extensions = gltf_member(view, "extensions");
-  if (extensions != nullptr && gltf_member(*extensions, "EXT_meshopt_compression") != nullptr) {
+  if (gltf_extension(view, "EXT_meshopt_compression") != nullptr) {
     throw InputError(place + ": its data is compressed (EXT_meshopt_compression), which is not read");
   }
   const auto whole = buffer(gltf_number(view, "buffer", place).value_or(0));

@@ -32,6 +32,21 @@ struct GltfAccessor {
   std::uint32_t index(std::uint64_t i) const;
 };
 
+/// The member `name` of `object` as a whole number; nothing where there is none.
+std::optional<std::uint64_t> gltf_number(const nlohmann::json& object, const char* name,
+                                         const std::string& place);
+/// As reals; `values` stays as it is where there is no such member. @throws InputError  not that many numbers
+void gltf_reals(const nlohmann::json& object, const char* name, std::span<double> values,
+                const std::string& place);
+/// One of them.
+void gltf_real(const nlohmann::json& object, const char* name, double& value, const std::string& place);
+/// The member `name`, or null.
+const nlohmann::json* gltf_member(const nlohmann::json& object, const char* name);
+/// The extension `name` of `object`, or null.
+const nlohmann::json* gltf_extension(const nlohmann::json& object, const char* name);
+/// What the list `name` holds; nothing where there is none.
+const nlohmann::json::array_t& gltf_list(const nlohmann::json& object, const char* name);
+
 /// Every member function throws an InputError that names the place: "accessor 3: ...".
 class GltfFile {
  public:
@@ -41,7 +56,7 @@ class GltfFile {
   /// Entry `i` of the list `name` ("meshes"), which is an object.
   const nlohmann::json& entry(const char* name, std::uint64_t i) const;
   /// How many entries it has.
-  std::uint64_t count(const char* name) const;
+  std::uint64_t count(const char* name) const { return gltf_list(json_, name).size(); }
 
   GltfAccessor accessor(std::uint64_t i);
   std::span<const std::uint8_t> buffer_view(std::uint64_t i);
@@ -71,17 +86,6 @@ class GltfFile {
   std::map<std::uint64_t, std::vector<std::uint8_t>> made_;  ///< by accessor
   std::uint64_t bytes_read_ = 0, bytes_made_ = 0;
 };
-
-/// The member `name` of `object` as a whole number; nothing where there is none.
-std::optional<std::uint64_t> gltf_number(const nlohmann::json& object, const char* name,
-                                         const std::string& place);
-/// As reals; `values` stays as it is where there is no such member. @throws InputError  not that many numbers
-void gltf_reals(const nlohmann::json& object, const char* name, std::span<double> values,
-                const std::string& place);
-/// One of them.
-void gltf_real(const nlohmann::json& object, const char* name, double& value, const std::string& place);
-/// The member `name`, or null.
-const nlohmann::json* gltf_member(const nlohmann::json& object, const char* name);
 
 }  // namespace thimble::tools
 

@@ -44,11 +44,7 @@ class KvxGrid final : public VoxelGrid {
                        std::to_string(size_[1]) + " columns");
     }
     end_ = static_cast<std::size_t>(end);
-    std::uint64_t solid = 0;
-    for_each([&](auto, auto, auto, auto) { ++solid; });
-    if (solid == 0) {
-      throw InputError("the model holds no voxels");
-    }
+    check_solid("the model holds no voxels");
   }
 
   void for_each(const Visit& visit) const override {

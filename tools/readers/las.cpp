@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <string>
 
@@ -56,7 +55,7 @@ class LasCloud final : public PointCloud {
       }
       ++kept;
       const CloudPoint point = point_at(i);
-      if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
+      if (!point.is_finite()) {
         throw InputError("the position of point " + std::to_string(i + 1) + " is not finite");
       }
       if (color_offset_ != kNoColor) {

@@ -48,8 +48,7 @@ class MtsGrid final : public VoxelGrid {
     }
     const unsigned names = reader.u16_be();
     for (unsigned i = 0; i < names; ++i) {
-      const auto name = reader.take(reader.u16_be());
-      colors_.push_back(block_color({reinterpret_cast<const char*>(name.data()), name.size()}));
+      colors_.push_back(block_color(reader.text(reader.u16_be())));
     }
     const std::uint64_t cells = std::uint64_t{size_[0]} * size_[1] * size_[2];
     nodes_ = inflate_bytes(reader.take(reader.remaining()), Deflated::kZlib, cells * kNodeBytes, "the nodes");
@@ -59,17 +58,13 @@ class MtsGrid final : public VoxelGrid {
     }
     has_chances_ = version >= 2;
     chance_bits_ = version >= 4 ? 0x7FU : 0xFFU;
-    std::uint64_t solid = 0;
     for (std::uint64_t i = 0; i < cells; ++i) {
       if (number(i) >= colors_.size()) {
         throw InputError("node " + std::to_string(i) + " has the number " + std::to_string(number(i)) +
                          ", but there are " + std::to_string(colors_.size()) + " names");
       }
-      solid += is_there(i, cells) ? 1U : 0U;
     }
-    if (solid == 0) {
-      throw InputError("the schematic holds nothing but air");
-    }
+    check_solid("the schematic holds nothing but air");
   }
 
   void for_each(const Visit& visit) const override {

@@ -7,11 +7,6 @@
 namespace thimble::tools {
 namespace {
 
-std::string_view text(ByteReader& reader) {
-  const auto bytes = reader.take(reader.u16_be());
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 NbtKind kind_of(ByteReader& reader) {
   const unsigned kind = reader.u8();
   if (kind > static_cast<unsigned>(NbtKind::kLongs)) {
@@ -37,7 +32,7 @@ struct Open {
 
 NbtKind nbt_head(ByteReader& reader, std::string_view* name) {
   const NbtKind kind = kind_of(reader);
-  *name = kind == NbtKind::kEnd ? std::string_view() : text(reader);
+  *name = kind == NbtKind::kEnd ? std::string_view() : reader.text(reader.u16_be());
   return kind;
 }
 
@@ -48,7 +43,7 @@ void nbt_skip(ByteReader& reader, NbtKind kind) {
     if (fixed_bytes(what) != 0) {
       reader.skip(fixed_bytes(what));
     } else if (what == NbtKind::kText) {
-      text(reader);
+      reader.text(reader.u16_be());
     } else if (what == NbtKind::kCompound) {
       open.push_back({NbtKind::kEnd, 0});
     } else if (what == NbtKind::kList) {

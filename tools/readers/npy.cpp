@@ -119,8 +119,7 @@ NpyHeader read_npy_header(std::span<const std::uint8_t> bytes) {
     throw InputError("version " + std::to_string(version) +
                      " at byte offset 6 is not supported, only 1 to 3 are");
   }
-  const auto text = reader.take(version == 1 ? reader.u16() : reader.u32());
-  const std::string_view dictionary(reinterpret_cast<const char*>(text.data()), text.size());
+  const std::string_view dictionary = reader.text(version == 1 ? reader.u16() : reader.u32());
   NpyHeader header;
   read_type(value_of(dictionary, "descr"), header);
   header.is_fortran = value_of(dictionary, "fortran_order").starts_with("True");
@@ -230,11 +229,7 @@ class ArrayGrid final : public VoxelGrid {
       }
       size_[axis] = static_cast<std::int32_t>(side);
     }
-    std::uint64_t solid = 0;
-    for_each([&](auto, auto, auto, auto) { ++solid; });
-    if (solid == 0) {
-      throw InputError("the array holds nothing solid");
-    }
+    check_solid("the array holds nothing solid");
   }
   void for_each(const Visit& visit) const override {
     for (std::int32_t x = 0; x < size_[0]; ++x) {

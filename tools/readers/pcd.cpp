@@ -161,8 +161,7 @@ std::string unpack_lzf(std::span<const std::uint8_t> packed, std::size_t size) {
   while (reader.remaining() > 0) {
     const std::size_t control = reader.u8();
     if (control < 32) {
-      const auto literal = reader.take(control + 1);
-      out.append(reinterpret_cast<const char*>(literal.data()), literal.size());
+      out.append(reader.text(control + 1));
     } else {
       const std::size_t length = 2 + ((control >> 5) == 7 ? 7 + std::size_t{reader.u8()} : control >> 5);
       const std::size_t distance = ((control & 31) << 8 | reader.u8()) + 1;
@@ -305,22 +304,28 @@ class PcdCloud final : public PointCloud {
       return;
     }
     for (std::uint64_t i = 0; i < count_; ++i) {
-      CloudPoint point;
-      point.x = value(columns_[0], i);
-      point.y = value(columns_[1], i);
-      point.z = value(columns_[2], i);
-      point.line = i + 1;
-      if (has_color_) {
-        point.color = color_of(static_cast<std::uint32_t>(load_bits(place(columns_[kColor], i), 4, false)));
-      }
-      Components components{};
-      for (std::size_t part = 0; has_parts_ && part < 3; ++part) {
-        components[part] = value(columns_[kParts + part], i);
-      }
       meter.at(static_cast<std::size_t>(data_offset_ + i * record_));
-      if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
-        take(point, components);
-      }
+      const auto color = [&] {
+        return color_of(static_cast<std::uint32_t>(load_bits(place(columns_[kColor], i), 4, false)));
+      };
+      give(
+          i + 1, [&](std::size_t column) { return value(columns_[column], i); }, color, take);
+    }
+  }
+
+  /// Gives `take` a point, unless it is not finite.
+  template <class Value, class Color, class Take>
+  void give(std::uint64_t line, const Value& value, const Color& color, const Take& take) const {
+    CloudPoint point{value(0), value(1), value(2), {}, line};
+    if (has_color_) {
+      point.color = color();
+    }
+    Components components{};
+    for (std::size_t part = 0; has_parts_ && part < 3; ++part) {
+      components[part] = value(kParts + part);
+    }
+    if (point.is_finite()) {
+      take(point, components);
     }
   }
 
@@ -350,24 +355,13 @@ class PcdCloud final : public PointCloud {
         continue;
       }
       ++done;
-      CloudPoint point;
-      point.line = data_line_ + lines.line_number() - 1;
+      const std::uint64_t line_number = data_line_ + lines.line_number() - 1;
       if (at <= last) {
-        fail_at_line(point.line, std::to_string(at) + " values, but the fields of the header take more");
+        fail_at_line(line_number, std::to_string(at) + " values, but the fields of the header take more");
       }
-      point.x = number(words[0], point.line);
-      point.y = number(words[1], point.line);
-      point.z = number(words[2], point.line);
-      if (has_color_) {
-        point.color = written_color(words[kColor], point.line);
-      }
-      Components components{};
-      for (std::size_t part = 0; has_parts_ && part < 3; ++part) {
-        components[part] = number(words[kParts + part], point.line);
-      }
-      if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
-        take(point, components);
-      }
+      give(
+          line_number, [&](std::size_t column) { return number(words[column], line_number); },
+          [&] { return written_color(words[kColor], line_number); }, take);
     }
   }
 

@@ -159,11 +159,7 @@ class QbGrid final : public VoxelGrid {
       }
       size_[kTurned[axis]] = static_cast<std::int32_t>(side);
     }
-    std::uint64_t solid = 0;
-    for_each([&](auto, auto, auto, auto) { ++solid; });
-    if (solid == 0) {
-      throw InputError("the file holds no voxels");
-    }
+    check_solid("the file holds no voxels");
   }
 
   SharedBytes file_;

@@ -123,11 +123,7 @@ class SchematicGrid final : public VoxelGrid {
                        std::to_string(size_[0]) + " x " + std::to_string(size_[1]) + " x " +
                        std::to_string(size_[2]) + " of them are announced");
     }
-    std::uint64_t solid = 0;
-    walk([&](std::uint64_t, const std::optional<Rgb>& color) { solid += color ? 1U : 0U; });
-    if (solid == 0) {
-      throw InputError("the schematic holds nothing but air");
-    }
+    check_solid("the schematic holds nothing but air");
   }
 
   template <class Take>

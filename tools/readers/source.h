@@ -8,6 +8,7 @@
 #define THIMBLE_TOOLS_READERS_SOURCE_H
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -84,6 +85,16 @@ class VoxelGrid {
   virtual std::array<std::int32_t, 3> size() const = 0;
   /// Otherwise every colour is white.
   virtual bool has_color() const = 0;
+
+ protected:
+  /// Streams once. Throws InputError `sentence` where nothing is solid.
+  void check_solid(const char* sentence) const {
+    bool is_solid = false;
+    for_each([&](auto, auto, auto, auto) { is_solid = true; });
+    if (!is_solid) {
+      throw InputError(sentence);
+    }
+  }
 };
 
 /// What an array of N x 3 to N x 9 numbers is taken for: points by its shape, heights where --as-heights says so.
@@ -93,9 +104,10 @@ enum class ArrayAs : std::uint8_t { kByShape, kPoints, kHeights };
 inline constexpr std::uint32_t kGridSideLimit = 4096;
 
 struct CloudPoint {
-  double x = 0, y = 0, z = 0;  ///< finite, as in the file
+  double x = 0, y = 0, z = 0;  ///< finite where a cloud gives it, as in the file
   Rgb color;                   ///< white where the file has none
   std::uint64_t line = 0;      ///< 1-based line of a text file or 1-based point number of a binary one
+  bool is_finite() const { return std::isfinite(x) && std::isfinite(y) && std::isfinite(z); }
 };
 
 /// Points with real coordinates: `.xyz`, `.csv`, `.ply` without faces, `.pcd`, `.las`, Gadget-1 snapshots.

@@ -148,8 +148,7 @@ struct ChunkHead {
 ChunkHead read_head(ByteReader& reader) {
   ChunkHead head{};
   head.offset = reader.offset();
-  const auto id = reader.take(4);
-  head.id = {reinterpret_cast<const char*>(id.data()), id.size()};
+  head.id = reader.text(4);
   head.content_bytes = reader.u32();
   head.children_bytes = reader.u32();
   const std::uint64_t announced = std::uint64_t{head.content_bytes} + head.children_bytes;

@@ -24,9 +24,7 @@ inline std::string vox_place(std::string_view id, std::uint64_t offset) {
 
 /// A string: its length in bytes as 32 bits, then the bytes.
 inline std::string_view vox_string(ByteReader& reader) {
-  const std::uint32_t length = reader.u32();
-  const auto bytes = reader.take(length);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  return reader.text(reader.u32());
 }
 
 /// A dictionary: the number of entries, then a key and a value each. Calls `entry(key, value)` for each; the

@@ -244,10 +244,6 @@ void read_points(std::string_view text, const Layout& layout, ProgressMeter& met
   }
 }
 
-bool is_finite(const CloudPoint& point) {
-  return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
-}
-
 class XyzCloud final : public PointCloud {
  public:
   XyzCloud(SharedBytes file, const Layout& layout) : file_(std::move(file)), layout_(layout) {}
@@ -256,7 +252,7 @@ class XyzCloud final : public PointCloud {
     ProgressMeter meter;
     read_points(file_.text(), layout_, meter,
                 [&](CloudPoint& point, const std::array<std::string_view, kFields>& words, std::string_view) {
-                  if (!is_finite(point)) {
+                  if (!point.is_finite()) {
                     return;
                   }
                   if (has_color()) {
@@ -476,7 +472,7 @@ Source read_xyz(const SharedBytes& file, const ReadOptions&, const Progress& pro
                   std::string_view line) {
                 ++count;
                 check_columns(line, point.line, layout);
-                if (!is_finite(point)) {
+                if (!point.is_finite()) {
                   return;
                 }
                 ++finite;

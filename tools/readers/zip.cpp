@@ -53,8 +53,7 @@ std::vector<ZipMember> zip_members(std::span<const std::uint8_t> file) {
     const std::uint64_t extra_bytes = std::uint64_t{whole.u16()} + whole.u16();
     whole.skip(8);
     const std::uint32_t local_offset = whole.u32();
-    const auto name = whole.take(name_bytes);
-    member.name = {reinterpret_cast<const char*>(name.data()), name.size()};
+    member.name = whole.text(name_bytes);
     whole.skip(extra_bytes);
     if ((flags & 1U) != 0 || (method != 0 && method != 8) || member.size_bytes == UINT32_MAX ||
         packed_bytes == UINT32_MAX || local_offset == UINT32_MAX) {
