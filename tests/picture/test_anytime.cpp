@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "golden/scenes.h"
-#include "host/deadline.h"
 #include "scene/random.h"
+#include "support/deadline.h"
 #include "support/formats.h"
 #include "thimble/picture/anytime.h"
 
@@ -609,14 +609,14 @@ TEST_CASE("anytime: a deadline -> asked before each slice, and done where it doe
   const Case<Octree> drawn(scene.pool, random_camera(random, 40, 31), {}, PixelFormat::kGray8);
   Drawing drawing(drawn);
   int asked = 0;
-  REQUIRE(host::refine_until(
+  REQUIRE(testing::refine_until(
               &drawing.frame, scene.pool, [&asked] { return ++asked == 4; }, 100) == Status::kOk);
   CHECK(asked == 4);
   CHECK(drawing.frame.given_visits() == 300);
   drawing.check();
-  REQUIRE(host::refine_for(&drawing.frame, scene.pool, std::chrono::microseconds(0)) == Status::kOk);
+  REQUIRE(testing::refine_for(&drawing.frame, scene.pool, std::chrono::microseconds(0)) == Status::kOk);
   CHECK(drawing.frame.given_visits() == 300);
-  REQUIRE(host::refine_for(&drawing.frame, scene.pool, std::chrono::seconds(60)) == Status::kOk);
+  REQUIRE(testing::refine_for(&drawing.frame, scene.pool, std::chrono::seconds(60)) == Status::kOk);
   CHECK(drawing.frame.done());
   CHECK(drawing.equals_wanted());
 }

@@ -1,15 +1,15 @@
 /// @file deadline.h
 /// Any-time frames (thimble/picture/anytime.h) under a deadline. The core has no clock, so the loop is here:
 /// a slice of visits, a look at the time, another slice.
-#ifndef THIMBLE_PLATFORM_HOST_DEADLINE_H
-#define THIMBLE_PLATFORM_HOST_DEADLINE_H
+#ifndef THIMBLE_TESTS_SUPPORT_DEADLINE_H
+#define THIMBLE_TESTS_SUPPORT_DEADLINE_H
 
 #include <chrono>
 #include <cstdint>
 
 #include "thimble/picture/anytime.h"
 
-namespace thimble::host {
+namespace thimble::testing {
 
 /// Visits between two looks at the time: some 50 microseconds of a desktop.
 inline constexpr std::uint32_t kSliceVisits = 4096;
@@ -33,6 +33,6 @@ Status refine_for(AnytimeFrame* frame, const Structure& structure, std::chrono::
   return refine_until(frame, structure, [end] { return std::chrono::steady_clock::now() >= end; });
 }
 
-}  // namespace thimble::host
+}  // namespace thimble::testing
 
 #endif
