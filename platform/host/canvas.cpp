@@ -199,4 +199,20 @@ TextSize text_size(std::string_view text) {
   return size;
 }
 
+void CanvasScreen::keep(const Picture& picture) {
+  const std::size_t bytes =
+      3 * static_cast<std::size_t>(picture.width_px) * static_cast<std::size_t>(picture.height_px);
+  rgb_.assign(picture.rgb, picture.rgb + bytes);
+  picture_ = {rgb_.data(), picture.width_px, picture.height_px};
+}
+
+std::optional<Event> CanvasScreen::take_event() {
+  if (events_.empty()) {
+    return std::nullopt;
+  }
+  const Event event = events_.front();
+  events_.pop_front();
+  return event;
+}
+
 }  // namespace thimble::host

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,6 +66,41 @@ struct TextSize {
 TextSize text_size(std::string_view text);
 /// Lines of at most `columns` (above 0), broken between words; a longer word is broken where it must be.
 std::string folded(std::string_view text, std::size_t columns);
+
+/// What the screens share that draw on a canvas: the picture and the text that are shown, and what the user did.
+class CanvasScreen : public Screen {
+ public:
+  explicit CanvasScreen(const ScreenOptions& options)
+      : look_(options.look),
+        fixed_scale_(options.scale),
+        status_lines_(options.status_lines),
+        picture_{nullptr, options.width_px, options.height_px} {}
+  void set_status(std::string_view text) override { status_ = text; }
+  void set_overlay(std::string_view text) override { overlay_ = text; }
+
+ protected:
+  static constexpr Rgb8 kPanel{32, 34, 38};
+  static constexpr Rgb8 kPanelText{206, 210, 216};
+  static constexpr Rgb8 kOverlayText{255, 255, 255};
+
+  /// Copies a picture, to be drawn again when the screen asks for it.
+  void keep(const Picture& picture);
+  /// The oldest event, if any.
+  std::optional<Event> take_event();
+
+  Look look_;
+  std::int32_t fixed_scale_;
+  std::int32_t status_lines_;
+  std::string status_;
+  std::string overlay_;
+  Picture picture_;  ///< shown last; before, the size of those that will come
+  Canvas canvas_;
+  Placement placement_;
+  std::deque<Event> events_;
+
+ private:
+  std::vector<std::uint8_t> rgb_;
+};
 
 }  // namespace thimble::host
 

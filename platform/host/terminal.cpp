@@ -12,7 +12,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <deque>
 #include <map>
 #include <string>
 #include <vector>
@@ -32,9 +31,6 @@ using Milliseconds = std::chrono::milliseconds;
 constexpr Milliseconds kHeld{150};
 // A sequence comes in one piece; an escape with nothing after it for so long is the key.
 constexpr int kSequenceMs = 30;
-constexpr Rgb8 kPanel{32, 34, 38};
-constexpr Rgb8 kPanelText{206, 210, 216};
-constexpr Rgb8 kOverlayText{255, 255, 255};
 
 std::string environment(const char* name) {
   const char* value = std::getenv(name);
@@ -95,14 +91,12 @@ class Descriptor {
   int number_;
 };
 
-class Terminal final : public Screen {
+class Terminal final : public CanvasScreen {
  public:
   explicit Terminal(const ScreenOptions& options);
   ~Terminal() override { is_open = false; }
 
   void show(const Picture& picture) override;
-  void set_status(std::string_view text) override { status_ = text; }
-  void set_overlay(std::string_view text) override { overlay_ = text; }
   void set_title(std::string_view text) override;
   std::optional<Event> next_event(int timeout_ms) override;
   std::int32_t width_px() const override { return cells_.columns(); }
@@ -127,17 +121,6 @@ class Terminal final : public Screen {
   TerminalMode mode_;
   TerminalInput input_;
   TerminalCells cells_;
-  Canvas canvas_;
-  Placement placement_;
-  Look look_;
-  std::int32_t fixed_scale_ = 0;
-  std::int32_t status_lines_ = 0;
-  std::string status_;
-  std::string overlay_;
-  std::vector<std::uint8_t> rgb_;
-  std::int32_t picture_width_px_ = 0;
-  std::int32_t picture_height_px_ = 0;
-  std::deque<Event> events_;
   std::map<Key, Clock::time_point> held_;
   bool lost_ = false;
 };
@@ -164,15 +147,12 @@ int open_descriptor() {
 }
 
 Terminal::Terminal(const ScreenOptions& options)
-    : descriptor_(open_descriptor()),
+    : CanvasScreen(options),
+      descriptor_(open_descriptor()),
       mode_(descriptor_.get()),
-      cells_(has_true_color(), has_utf8()),
-      look_(look_for(options.look, has_true_color())),
-      fixed_scale_(options.scale),
-      status_lines_(options.status_lines),
-      picture_width_px_(options.width_px),
-      picture_height_px_(options.height_px) {
+      cells_(has_true_color(), has_utf8()) {
   is_open = true;
+  look_ = look_for(look_, has_true_color());
   set_title(options.title);
   measure();
 }
@@ -216,10 +196,10 @@ void Terminal::compose() {
   canvas_.resize(cells_.columns(), 2 * picture_rows());
   canvas_.fill(0, 0, canvas_.width_px, canvas_.height_px, look_.ground);
   placement_ =
-      place(picture_width_px_, picture_height_px_, canvas_.width_px, canvas_.height_px, fixed_scale_);
+      place(picture_.width_px, picture_.height_px, canvas_.width_px, canvas_.height_px, fixed_scale_);
   placement_.y_px &= ~1;  // pixels of two lines begin with a cell
-  if (!rgb_.empty()) {
-    draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
+  if (picture_.rgb != nullptr) {
+    draw_picture(&canvas_, placement_, picture_, look_);
   }
   cells_.put_canvas(&canvas_);
   const auto put_lines = [this](std::int32_t column, std::int32_t row, std::int32_t rows,
@@ -241,11 +221,7 @@ void Terminal::compose() {
 }
 
 void Terminal::show(const Picture& picture) {
-  const std::size_t bytes =
-      3 * static_cast<std::size_t>(picture.width_px) * static_cast<std::size_t>(picture.height_px);
-  rgb_.assign(picture.rgb, picture.rgb + bytes);
-  picture_width_px_ = picture.width_px;
-  picture_height_px_ = picture.height_px;
+  keep(picture);
   look_after_signals();
   if (mode_.is_entered()) {
     compose();
@@ -278,8 +254,8 @@ void Terminal::take(const Event& event) {
     case EventKind::kWheel:
       // The middle of the cell, which is two pixels high.
       taken.x_px =
-          to_picture(2 * event.x_px + 1, 2 * placement_.x_px, 2 * placement_.width_px, picture_width_px_);
-      taken.y_px = to_picture(2 * event.y_px + 1, placement_.y_px, placement_.height_px, picture_height_px_);
+          to_picture(2 * event.x_px + 1, 2 * placement_.x_px, 2 * placement_.width_px, picture_.width_px);
+      taken.y_px = to_picture(2 * event.y_px + 1, placement_.y_px, placement_.height_px, picture_.height_px);
       break;
     default:
       break;
@@ -293,10 +269,7 @@ void Terminal::release_keys(Clock::time_point now) {
       ++held;
       continue;
     }
-    Event event;
-    event.kind = EventKind::kKeyUp;
-    event.key = held->first;
-    events_.push_back(event);
+    events_.push_back({.kind = EventKind::kKeyUp, .key = held->first});
     held = held_.erase(held);
   }
 }
@@ -342,12 +315,7 @@ std::optional<Event> Terminal::next_event(int timeout_ms) {
   if (lost_) {
     return Event{.kind = EventKind::kClose};
   }
-  if (events_.empty()) {
-    return std::nullopt;
-  }
-  const Event event = events_.front();
-  events_.pop_front();
-  return event;
+  return take_event();
 }
 
 }  // namespace

@@ -12,17 +12,11 @@ constexpr char kEscapeByte = 0x1B;
 constexpr std::size_t kLongestSequence = 64;  // what is longer without an end is noise
 
 Event pressed(Key key) {
-  Event event;
-  event.kind = EventKind::kKeyDown;
-  event.key = key;
-  return event;
+  return {.kind = EventKind::kKeyDown, .key = key};
 }
 
 Event typed(char32_t character) {
-  Event event;
-  event.kind = EventKind::kText;
-  event.character = character;
-  return event;
+  return {.kind = EventKind::kText, .character = character};
 }
 
 Key key_of_final(char final) {

@@ -1,6 +1,4 @@
 // In place of window_x11.cpp in a build without libX11.
-#include "host/screen.h"
-#include "host/window_kind.h"
 #include "host/window_x11.h"
 
 namespace thimble::host {

@@ -13,7 +13,6 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
-#include <deque>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,9 +27,6 @@ constexpr std::int32_t kMarginPx = 8;         // around the text
 constexpr std::int32_t kFirstWidthPx = 1024;  // what a new window's picture may take
 constexpr std::int32_t kFirstHeightPx = 640;
 constexpr std::int32_t kLeastWidthPx = 512;  // so that a status line has room
-constexpr Rgb8 kPanel{32, 34, 38};
-constexpr Rgb8 kPanelText{206, 210, 216};
-constexpr Rgb8 kOverlayText{255, 255, 255};
 
 Key key_from(KeySym symbol) {
   struct Pair {
@@ -96,14 +92,12 @@ int on_error(::Display* /*display*/, XErrorEvent* /*error*/) {
   return 0;
 }
 
-class Window final : public Screen {
+class Window final : public CanvasScreen {
  public:
   explicit Window(const ScreenOptions& options);
   ~Window() override;
 
   void show(const Picture& picture) override;
-  void set_status(std::string_view text) override { status_ = text; }
-  void set_overlay(std::string_view text) override { overlay_ = text; }
   void set_title(std::string_view text) override;
   std::optional<Event> next_event(int timeout_ms) override;
   std::int32_t width_px() const override { return canvas_.width_px; }
@@ -142,34 +136,15 @@ class Window final : public Screen {
   bool lost_ = false;    // the server is gone
   bool closed_ = false;  // somebody else destroyed the window
 
-  Look look_;
-  std::int32_t fixed_scale_ = 0;
-  std::int32_t status_lines_ = 0;
   std::int32_t status_columns_ = 0;
-  std::string status_;
-  std::string overlay_;
-
-  // The picture last shown, to be drawn again when the window asks for it.
-  std::vector<std::uint8_t> rgb_;
-  std::int32_t picture_width_px_ = 0;
-  std::int32_t picture_height_px_ = 0;
-  Canvas canvas_;
-  Placement placement_;
   std::vector<char> image_;
-
-  std::deque<Event> events_;
   std::set<Key> held_;
   std::uint8_t buttons_ = 0;
   bool needs_sending_ = false;
 };
 
 Window::Window(const ScreenOptions& options)
-    : look_(options.look),
-      fixed_scale_(options.scale),
-      status_lines_(options.status_lines),
-      status_columns_(options.status_columns),
-      picture_width_px_(options.width_px),
-      picture_height_px_(options.height_px) {
+    : CanvasScreen(options), status_columns_(options.status_columns) {
   display_ = XOpenDisplay(nullptr);
   if (display_ == nullptr) {
     const char* name = std::getenv("DISPLAY");
@@ -297,12 +272,12 @@ std::int32_t Window::overlay_scale() const {
 
 void Window::compose() {
   const std::int32_t room = height_px();
-  placement_ = place(picture_width_px_, picture_height_px_, canvas_.width_px, room, fixed_scale_);
-  if (rgb_.empty() || placement_.width_px < canvas_.width_px || placement_.height_px < room) {
+  placement_ = place(picture_.width_px, picture_.height_px, canvas_.width_px, room, fixed_scale_);
+  if (picture_.rgb == nullptr || placement_.width_px < canvas_.width_px || placement_.height_px < room) {
     canvas_.fill(0, 0, canvas_.width_px, room, look_.ground);
   }
-  if (!rgb_.empty()) {
-    draw_picture(&canvas_, placement_, {rgb_.data(), picture_width_px_, picture_height_px_}, look_);
+  if (picture_.rgb != nullptr) {
+    draw_picture(&canvas_, placement_, picture_, look_);
   }
   if (!overlay_.empty()) {
     const std::int32_t scale = overlay_scale();
@@ -362,11 +337,7 @@ void Window::send() {
 }
 
 void Window::show(const Picture& picture) {
-  const std::size_t bytes =
-      3 * static_cast<std::size_t>(picture.width_px) * static_cast<std::size_t>(picture.height_px);
-  rgb_.assign(picture.rgb, picture.rgb + bytes);
-  picture_width_px_ = picture.width_px;
-  picture_height_px_ = picture.height_px;
+  keep(picture);
   compose();
   send();
 }
@@ -374,8 +345,8 @@ void Window::show(const Picture& picture) {
 Event Window::at(EventKind kind, std::int32_t x, std::int32_t y, unsigned state) const {
   Event event;
   event.kind = kind;
-  event.x_px = to_picture(x, placement_.x_px, placement_.width_px, picture_width_px_);
-  event.y_px = to_picture(y, placement_.y_px, placement_.height_px, picture_height_px_);
+  event.x_px = to_picture(x, placement_.x_px, placement_.width_px, picture_.width_px);
+  event.y_px = to_picture(y, placement_.y_px, placement_.height_px, picture_.height_px);
   event.buttons = buttons_;
   event.shift = (state & ShiftMask) != 0;
   return event;
@@ -383,10 +354,7 @@ Event Window::at(EventKind kind, std::int32_t x, std::int32_t y, unsigned state)
 
 void Window::release_keys() {
   for (const Key key : held_) {
-    Event event;
-    event.kind = EventKind::kKeyUp;
-    event.key = key;
-    events_.push_back(event);
+    events_.push_back({.kind = EventKind::kKeyUp, .key = key});
   }
   held_.clear();
 }
@@ -410,10 +378,8 @@ void Window::take_key(XKeyEvent& event, bool is_down) {
     }
   }
   if (is_down && length == 1) {
-    Event written;
-    written.kind = EventKind::kText;
-    written.character = static_cast<unsigned char>(text[0]);  // Latin-1, the front of Unicode
-    events_.push_back(written);
+    // Latin-1, the front of Unicode.
+    events_.push_back({.kind = EventKind::kText, .character = static_cast<unsigned char>(text[0])});
   }
 }
 
@@ -440,10 +406,7 @@ void Window::take(XEvent& event) {
   std::optional<std::string> path;
   if (drops_.take(event, &path)) {
     if (path) {
-      Event dropped;
-      dropped.kind = EventKind::kDrop;
-      dropped.path = *path;
-      events_.push_back(dropped);
+      events_.push_back({.kind = EventKind::kDrop, .path = *path});
     }
     return;
   }
@@ -505,15 +468,14 @@ std::optional<Event> Window::next_event(int timeout_ms) {
       ::poll(&connection, 1, timeout_ms);
     }
   }
-  if (events_.empty()) {
-    return std::nullopt;
-  }
-  const Event event = events_.front();
-  events_.pop_front();
-  return event;
+  return take_event();
 }
 
 }  // namespace
+
+const char* window_kind() {
+  return "X11";
+}
 
 std::unique_ptr<Screen> open_window(const ScreenOptions& options) {
   return std::make_unique<Window>(options);

@@ -12,6 +12,10 @@
 
 namespace thimble::host {
 
+/// The window system that windows are of; null where the build has none (-DTHIMBLE_WINDOW=OFF), and open_window always
+/// throws.
+const char* window_kind();
+
 /// Opens a window on $DISPLAY. Throws ScreenError where there is none, or none with 8 bits a colour.
 std::unique_ptr<Screen> open_window(const ScreenOptions& options);
 
