@@ -13,23 +13,27 @@
 namespace thimble::linux_port {
 namespace {
 
-struct ButtonKey {
+// What a key is to applications: a button, or a letter that they read from their UART.
+struct KnownKey {
   uint16_t code;
   uint32_t button;
-};
-constexpr ButtonKey kButtonKeys[] = {
-    {KEY_UP, port::kUp},       {KEY_DOWN, port::kDown},    {KEY_LEFT, port::kLeft},
-    {KEY_RIGHT, port::kRight}, {KEY_ENTER, port::kSelect}, {KEY_SPACE, port::kSelect},
-};
-
-// The keys that applications read as letters from their UART.
-struct LetterKey {
-  uint16_t code;
   char letter;
 };
-constexpr LetterKey kLetterKeys[] = {
-    {KEY_B, 'b'}, {KEY_P, 'p'}, {KEY_Q, 'q'}, {KEY_R, 'r'},
-    {KEY_S, 's'}, {KEY_H, 'h'}, {KEY_N, 'n'}, {KEY_ESC, 'q'},
+constexpr KnownKey kKeys[] = {
+    {KEY_UP, port::kUp, 0},
+    {KEY_DOWN, port::kDown, 0},
+    {KEY_LEFT, port::kLeft, 0},
+    {KEY_RIGHT, port::kRight, 0},
+    {KEY_ENTER, port::kSelect, 0},
+    {KEY_SPACE, port::kSelect, 0},
+    {KEY_B, 0, 'b'},
+    {KEY_P, 0, 'p'},
+    {KEY_Q, 0, 'q'},
+    {KEY_R, 0, 'r'},
+    {KEY_S, 0, 's'},
+    {KEY_H, 0, 'h'},
+    {KEY_N, 0, 'n'},
+    {KEY_ESC, 0, 'q'},
 };
 
 // Whether a device has keys at all: a mouse or a lid switch is not for us.
@@ -71,16 +75,13 @@ int Keys::open_all(const std::string& folder) {
 }
 
 void Keys::take(uint16_t code, int32_t value) {
-  for (const ButtonKey& key : kButtonKeys) {
-    if (key.code == code) {
-      buttons_ = value != 0 ? buttons_ | key.button : buttons_ & ~key.button;
+  for (const KnownKey& key : kKeys) {
+    if (key.code != code) {
+      continue;
     }
-  }
-  if (value == 1) {  // not when it repeats
-    for (const LetterKey& key : kLetterKeys) {
-      if (key.code == code) {
-        typed_.push_back(key.letter);
-      }
+    buttons_ = value != 0 ? buttons_ | key.button : buttons_ & ~key.button;
+    if (value == 1 && key.letter != 0) {  // not when it repeats
+      typed_.push_back(key.letter);
     }
   }
 }

@@ -3,21 +3,33 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/app_table.h"
 #include "linux/console.h"
-#include "linux/options.h"
 #include "linux/session.h"
 
 namespace {
 
 using namespace thimble;
+
+// The command line.
+struct Options {
+  std::string scene;  // empty: none
+  std::string app = "demo";
+  std::string device = "/dev/fb0";
+  std::string input = "/dev/input";
+  std::string stand_in;     // a file in place of the device
+  std::vector<int> layout;  // of the stand-in: width, height, bits a pixel, stride
+  std::vector<int> size;    // of the picture, in pixels; empty: the largest that is magnified 4 times
+  uint64_t memory = uint64_t{256} << 10;
+  uint32_t frames = 0;  // 0: until asked to end
+};
 
 int complain(const std::string& sentence) {
   fprintf(stderr, "thimble-fb: %s\n", sentence.c_str());
@@ -51,7 +63,7 @@ std::string read_file(const std::string& path, std::vector<uint8_t>* bytes) {
   return file.bad() ? "cannot read " + path : "";
 }
 
-int run(const linux_port::Options& options) {
+int run(const Options& options) {
   const apps::Application* application = find_application(options.app);
   if (application == nullptr) {
     return complain("there is no application " + options.app + "; there are " + application_names());
@@ -111,10 +123,43 @@ int run(const linux_port::Options& options) {
   return why != nullptr ? complain(why) : status;
 }
 
+void describe(CLI::App* program, const std::string& apps, Options* options) {
+  program->description("Runs an application of Thimble on a Linux framebuffer: arrows move, q ends.");
+  program->add_option("SCENE", options->scene, "a baked scene (thimble bake SCENE -o F.oct)");
+  program->add_option("--app", options->app, apps)->capture_default_str();
+  program->add_option("--device", options->device, "the framebuffer")->capture_default_str();
+  program->add_option("--input", options->input, "folder of the input devices")->capture_default_str();
+  CLI::Option* stand_in =
+      program->add_option("--stand-in", options->stand_in, "a file to draw into instead of a device");
+  CLI::Option* layout =
+      program->add_option("--layout", options->layout, "of the stand-in: width,height,bits,stride");
+  layout->delimiter(',')->expected(4)->check(CLI::Range(1, 1 << 20));
+  stand_in->needs(layout);
+  layout->needs(stand_in);
+  program
+      ->add_option("--size", options->size,
+                   "pixels of the picture: width,height (the largest that is magnified 4 times)")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(CLI::Range(1, 16384));
+  program->add_option("--memory", options->memory, "bytes for the application")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32))
+      ->capture_default_str();
+  program->add_option("--frames", options->frames, "end after so many; 0: when asked to")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  linux_port::Options options;
-  const std::optional<int> status = linux_port::read_options(argc, argv, application_names(), &options);
-  return status ? *status : run(options);
+  Options options;
+  CLI::App program("", "thimble-fb");
+  describe(&program, application_names(), &options);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : 2;
+  }
+  return run(options);
 }
