@@ -48,22 +48,17 @@ class LasCloud final : public PointCloud {
     ProgressMeter meter(progress, file.bytes.size());
     std::uint16_t highest = 0;
     std::uint64_t kept = 0;
-    for (std::uint64_t i = 0; i < count_; ++i) {
-      ByteReader record = record_at(i);
-      if (is_withheld(record)) {
-        continue;
-      }
+    walk([&](const CloudPoint& point, ByteReader& record) {
       ++kept;
-      const CloudPoint point = point_at(i);
       if (!point.is_finite()) {
-        throw InputError("the position of point " + std::to_string(i + 1) + " is not finite");
+        throw InputError("the position of point " + std::to_string(point.line) + " is not finite");
       }
       if (color_offset_ != kNoColor) {
         record.skip(color_offset_);
         highest = std::max({highest, record.u16(), record.u16(), record.u16()});
       }
-      meter.at(static_cast<std::size_t>(first_offset_ + i * record_bytes_));
-    }
+      meter.at(static_cast<std::size_t>(first_offset_ + (point.line - 1) * record_bytes_));
+    });
     if (kept == 0) {
       throw InputError(count_ == 0 ? "the file holds no points" : "all points of the file are withheld");
     }
@@ -77,12 +72,7 @@ class LasCloud final : public PointCloud {
   }
 
   void for_each(const Visit& visit) const override {
-    for (std::uint64_t i = 0; i < count_; ++i) {
-      ByteReader record = record_at(i);
-      if (is_withheld(record)) {
-        continue;
-      }
-      CloudPoint point = point_at(i);
+    walk([&](CloudPoint& point, ByteReader& record) {
       if (has_color_) {
         record.skip(color_offset_);
         point.color.r = byte_of(record.u16());
@@ -90,7 +80,7 @@ class LasCloud final : public PointCloud {
         point.color.b = byte_of(record.u16());
       }
       visit(point);
-    }
+    });
   }
   bool has_color() const override { return has_color_; }
 
@@ -151,22 +141,25 @@ class LasCloud final : public PointCloud {
     }
   }
 
-  ByteReader record_at(std::uint64_t i) const {
-    return ByteReader(file_.bytes.subspan(static_cast<std::size_t>(first_offset_ + i * record_bytes_),
-                                          static_cast<std::size_t>(record_bytes_)));
-  }
-  CloudPoint point_at(std::uint64_t i) const {
-    ByteReader record = record_at(i);
-    CloudPoint point;
-    point.x = record.i32() * scale_[0] + offset_[0];
-    point.y = record.i32() * scale_[1] + offset_[1];
-    point.z = record.i32() * scale_[2] + offset_[2];
-    point.line = i + 1;
-    return point;
-  }
-  bool is_withheld(ByteReader record) const {
-    record.skip(15);
-    return (record.u8() & (is_new_format_ ? 0x04U : 0x80U)) != 0;
+  /// Calls take(point, record) for each point that is not withheld, without its colour.
+  template <class Take>
+  void walk(const Take& take) const {
+    for (std::uint64_t i = 0; i < count_; ++i) {
+      const ByteReader record(file_.bytes.subspan(static_cast<std::size_t>(first_offset_ + i * record_bytes_),
+                                                  static_cast<std::size_t>(record_bytes_)));
+      ByteReader place = record;
+      CloudPoint point;
+      point.x = place.i32() * scale_[0] + offset_[0];
+      point.y = place.i32() * scale_[1] + offset_[1];
+      point.z = place.i32() * scale_[2] + offset_[2];
+      point.line = i + 1;
+      place.skip(3);
+      const bool is_withheld = (place.u8() & (is_new_format_ ? 0x04U : 0x80U)) != 0;
+      if (!is_withheld) {
+        ByteReader rest = record;
+        take(point, rest);
+      }
+    }
   }
   std::uint8_t byte_of(std::uint16_t component) const {
     return static_cast<std::uint8_t>((component * 255U + full_ / 2) / full_);

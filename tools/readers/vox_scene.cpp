@@ -162,8 +162,17 @@ VoxScene::Node VoxScene::read_head(ByteReader& chunk, Kind kind, std::uint64_t o
   return node;
 }
 
-void VoxScene::add(const Node& node) {
-  nodes_.push_back(node);
+template <class Read>
+void VoxScene::take_keys(ByteReader& chunk, const Read& read, Node* node) {
+  node->key_count = chunk.u32();
+  node->keys = chunk;
+  for (std::uint32_t i = 0; i < node->key_count; ++i) {
+    std::int64_t frame = 0;
+    read(chunk, &frame);
+    if (frames_.empty() || frames_.back() != frame) {
+      frames_.push_back(frame);
+    }
+  }
 }
 
 void VoxScene::add_transform(ByteReader& chunk, std::uint64_t offset) {
@@ -171,17 +180,11 @@ void VoxScene::add_transform(ByteReader& chunk, std::uint64_t offset) {
   const std::int32_t child = chunk.i32();
   chunk.skip(4);  // reserved
   node.layer = chunk.i32();
-  node.key_count = chunk.u32();
-  node.keys = chunk;
-  for (std::uint32_t i = 0; i < node.key_count; ++i) {
-    std::int64_t frame = 0;
-    read_transform(chunk, &frame);
-    note_frame(frame);
-  }
+  take_keys(chunk, read_transform, &node);
   node.first_child = static_cast<std::uint32_t>(children_.size());
   node.child_count = 1;
   children_.push_back(child);
-  add(node);
+  nodes_.push_back(node);
 }
 
 void VoxScene::add_group(ByteReader& chunk, std::uint64_t offset) {
@@ -196,25 +199,13 @@ void VoxScene::add_group(ByteReader& chunk, std::uint64_t offset) {
   for (std::uint32_t i = 0; i < count; ++i) {
     children_.push_back(chunk.i32());
   }
-  add(node);
+  nodes_.push_back(node);
 }
 
 void VoxScene::add_shape(ByteReader& chunk, std::uint64_t offset) {
   Node node = read_head(chunk, Kind::kShape, offset);
-  node.key_count = chunk.u32();
-  node.keys = chunk;
-  for (std::uint32_t i = 0; i < node.key_count; ++i) {
-    std::int64_t frame = 0;
-    read_model(chunk, &frame);
-    note_frame(frame);
-  }
-  add(node);
-}
-
-void VoxScene::note_frame(std::int64_t frame) {
-  if (frames_.empty() || frames_.back() != frame) {
-    frames_.push_back(frame);
-  }
+  take_keys(chunk, read_model, &node);
+  nodes_.push_back(node);
 }
 
 const std::vector<std::int64_t>& VoxScene::frames() {

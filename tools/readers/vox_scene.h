@@ -67,9 +67,10 @@ class VoxScene {
   };
 
   Node read_head(ByteReader& chunk, Kind kind, std::uint64_t offset) const;
-  void add(const Node& node);
+  /// The keys that come next, held to what `read` says of them.
+  template <class Read>
+  void take_keys(ByteReader& chunk, const Read& read, Node* node);
   void sort_nodes();
-  void note_frame(std::int64_t frame);
   std::uint32_t find(std::int32_t id) const;
 
   std::vector<Node> nodes_;
