@@ -25,8 +25,8 @@ constexpr std::string_view kEnter = "\x1b[22;0t\x1b[?1049h\x1b[?25l\x1b[?7l\x1b[
 constexpr std::string_view kLeave =
     "\x18\x1b[?2026l\x1b[?1006l\x1b[?1003l\x1b[?7h\x1b[0m\x1b[?25h\x1b[?1049l\x1b[23;0t";
 
-constexpr std::array kEnding{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
-constexpr std::array kCrashing{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+// The last five are crashes.
+constexpr std::array kEnding{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr int kPatienceMs = 200;  // for a terminal that takes no bytes, while a signal is handled
 
 struct State {
@@ -203,9 +203,6 @@ TerminalMode::TerminalMode(int descriptor) {
   for (const int number : kEnding) {
     install_end(number);
   }
-  for (const int number : kCrashing) {
-    install_end(number);
-  }
   struct sigaction& stop = now.previous[SIGTSTP];
   ::sigaction(SIGTSTP, nullptr, &stop);
   if (stop.sa_handler != SIG_IGN) {
@@ -220,9 +217,6 @@ TerminalMode::~TerminalMode() {
   State& now = state();
   leave();
   for (const int number : kEnding) {
-    ::sigaction(number, &now.previous[static_cast<std::size_t>(number)], nullptr);
-  }
-  for (const int number : kCrashing) {
     ::sigaction(number, &now.previous[static_cast<std::size_t>(number)], nullptr);
   }
   for (const int number : {SIGTSTP, SIGCONT, SIGWINCH}) {

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <new>
-#include <utility>
 
 namespace thimble::tools {
 namespace {
@@ -81,15 +80,6 @@ HostMemory::~HostMemory() {
   if (data_ != nullptr) {
     ::munmap(data_, size_);
   }
-}
-
-HostMemory::HostMemory(HostMemory&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
-
-HostMemory& HostMemory::operator=(HostMemory&& other) noexcept {
-  std::swap(data_, other.data_);
-  std::swap(size_, other.size_);
-  return *this;
 }
 
 }  // namespace thimble::tools

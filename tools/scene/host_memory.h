@@ -4,6 +4,7 @@
 #define THIMBLE_TOOLS_SCENE_HOST_MEMORY_H
 
 #include <cstddef>
+#include <utility>
 
 #include "thimble/base/memory.h"
 
@@ -19,8 +20,13 @@ class HostMemory {
   /// As many bytes as the system lets us reserve, 64 GiB at most: for a scene without a budget.
   static HostMemory largest();
   ~HostMemory();
-  HostMemory(HostMemory&& other) noexcept;
-  HostMemory& operator=(HostMemory&& other) noexcept;
+  HostMemory(HostMemory&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  HostMemory& operator=(HostMemory&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
 
   Bytes bytes() const { return {data_, size_}; }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "readers/file_bytes.h"
 #include "readers/oct.h"
 #include "scene/emitter_lamps.h"
 #include "scene/scene_source.h"
@@ -353,9 +354,6 @@ void store32(std::uint8_t* to, std::uint32_t value) {
     to[i] = static_cast<std::uint8_t>(value >> (8 * i));
   }
 }
-std::uint32_t load32(const std::uint8_t* from) {
-  return from[0] | std::uint32_t{from[1]} << 8 | std::uint32_t{from[2]} << 16 | std::uint32_t{from[3]} << 24;
-}
 
 }  // namespace
 
@@ -382,8 +380,8 @@ std::optional<LookNote> read_look_note(ConstBytes section) {
   note.has_colors = (flags & kHasColors) != 0;
   note.has_own_light = (flags & kHasOwnLight) != 0;
   note.has_own_sky = (flags & kHasOwnSky) != 0;
-  note.on = load32(section.data + kOn) & Effect::kAll;
-  note.off = load32(section.data + kOff) & Effect::kAll;
+  note.on = static_cast<EffectSet>(load_bits(section.data + kOn, 4, false)) & Effect::kAll;
+  note.off = static_cast<EffectSet>(load_bits(section.data + kOff, 4, false)) & Effect::kAll;
   return note;
 }
 

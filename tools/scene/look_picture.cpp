@@ -264,6 +264,26 @@ std::uint32_t measured_exposure(const LookCanvas& canvas) {
 
 namespace {
 
+// Draws the picture, `at_once` rows at a time: draw(first, how many), counted from its first row. `counts` is what the
+// threads then counted.
+template <class Draw>
+Status paint_rows(std::int32_t at_once, const std::vector<LitCounts>& counts, const Progress& progress,
+                  Painting* painting, const Draw& draw) {
+  const std::int32_t height_px = painting->image.height_px;
+  Status status = Status::kOk;
+  for (std::int32_t y = 0; y < height_px && status == Status::kOk; y += at_once) {
+    status = draw(y, std::min(at_once, height_px - y));
+    if (progress) {
+      progress(static_cast<double>(y) / height_px);
+    }
+  }
+  for (const LitCounts& part : counts) {
+    add_counts(part, &painting->counts.lit);
+  }
+  painting->counts.all = totals_of(painting->counts.lit);
+  return status;
+}
+
 // With samples where edges are: the rows that `canvas.work` has room for at a time.
 Status paint_at_edges(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
                       Painting* painting) {
@@ -285,18 +305,29 @@ Status paint_at_edges(const LookCanvas& canvas, std::uint32_t exposure, const Pr
                  canvas.streams != nullptr ? draw_places : DrawPlaces()});
   const std::int32_t at_once = std::min(
       EdgeRows::rows_within(canvas.work.size, 4, image.width_px, canvas.threads, 0), image.height_px);
-  Status status = Status::kOk;
-  for (std::int32_t y = 0; y < image.height_px && status == Status::kOk; y += at_once) {
-    status = rows.draw(image.first_row + y, std::min(at_once, image.height_px - y), canvas.work);
-    if (progress) {
-      progress(static_cast<double>(y) / image.height_px);
-    }
-  }
-  for (const LitCounts& part : counts) {
-    add_counts(part, &painting->counts.lit);
-  }
-  painting->counts.all = totals_of(painting->counts.lit);
-  return status;
+  return paint_rows(at_once, counts, progress, painting, [&](std::int32_t y, std::int32_t count) {
+    return rows.draw(image.first_row + y, count, canvas.work);
+  });
+}
+
+// Pixel by pixel, with all samples of each.
+Status paint_whole(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
+                   Painting* painting) {
+  Image& image = painting->image;
+  const LookRows rows(canvas, canvas.fine, exposure);
+  const std::size_t row_bytes = look_work_bytes(image.width_px, canvas.look->across);
+  const auto at_once = static_cast<std::int32_t>(
+      std::min<std::size_t>(canvas.work.size / row_bytes, static_cast<std::size_t>(image.height_px)));
+  std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
+  return paint_rows(at_once, counts, progress, painting, [&](std::int32_t y, std::int32_t count) {
+    return canvas.streams != nullptr
+               ? rows.draw_rows(image.first_row + y, count, canvas.work, &image, &counts[0])
+               : each_until_error(count, canvas.threads, [&](std::int32_t row, std::size_t thread) {
+                   const Bytes work =
+                       canvas.work.subspan(static_cast<std::size_t>(row) * row_bytes, row_bytes);
+                   return rows.draw(image.first_row + y + row, work, &image, &counts[thread]);
+                 });
+  });
 }
 
 }  // namespace
@@ -321,33 +352,8 @@ Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progre
   } else {
     painting->engine = "lit";
     painting->threads = canvas.streams != nullptr ? canvas.streams->threads() : canvas.threads;
-    if (look.at_edges) {
-      status = paint_at_edges(canvas, exposure, progress, painting);
-      painting->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      return status;
-    }
-    const LookRows rows(canvas, canvas.fine, exposure);
-    const std::size_t row_bytes = look_work_bytes(image.width_px, look.across);
-    const auto at_once = static_cast<std::int32_t>(
-        std::min<std::size_t>(canvas.work.size / row_bytes, static_cast<std::size_t>(image.height_px)));
-    std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
-    for (std::int32_t y = 0; y < image.height_px && status == Status::kOk; y += at_once) {
-      const std::int32_t count = std::min(at_once, image.height_px - y);
-      status = canvas.streams != nullptr
-                   ? rows.draw_rows(image.first_row + y, count, canvas.work, &image, &counts[0])
-                   : each_until_error(count, canvas.threads, [&](std::int32_t row, std::size_t thread) {
-                       const Bytes work =
-                           canvas.work.subspan(static_cast<std::size_t>(row) * row_bytes, row_bytes);
-                       return rows.draw(image.first_row + y + row, work, &image, &counts[thread]);
-                     });
-      if (progress) {
-        progress(static_cast<double>(y) / image.height_px);
-      }
-    }
-    for (const LitCounts& part : counts) {
-      add_counts(part, &painting->counts.lit);
-    }
-    painting->counts.all = totals_of(painting->counts.lit);
+    status = look.at_edges ? paint_at_edges(canvas, exposure, progress, painting)
+                           : paint_whole(canvas, exposure, progress, painting);
   }
   painting->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return status;

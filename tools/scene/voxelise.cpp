@@ -198,18 +198,27 @@ bool TriangleBoxTest::meets_bounds(const UnitPoint& center, std::int32_t half) c
   return true;
 }
 
-bool TriangleBoxTest::meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
+template <int kGrown>
+bool TriangleBoxTest::fits_slabs(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
   const auto [p, q] = kPlane[axis];
   const std::int64_t x = center[p] - origin_[p];
   const std::int64_t y = center[q] - origin_[q];
   for (const Slab& slab : slabs_[axis]) {
     const std::int64_t value = slab.u * x + slab.v * y;
-    const std::int64_t reach = slab.reach * half;
+    const std::int64_t reach = kGrown * slab.reach * half;
     if (value + reach < slab.low || value - reach > slab.high) {
       return false;
     }
   }
   return true;
+}
+
+bool TriangleBoxTest::meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
+  return fits_slabs<1>(axis, center, half);
+}
+
+bool TriangleBoxTest::inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
+  return fits_slabs<-1>(axis, center, half);
 }
 
 std::uint64_t TriangleBoxTest::slab_mask(const UnitPoint& voxel, unsigned inside) const {
@@ -276,20 +285,6 @@ std::uint64_t TriangleBoxTest::surface_mask(std::int64_t distance) const {
     }
   }
   return passed;
-}
-
-bool TriangleBoxTest::inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
-  const auto [p, q] = kPlane[axis];
-  const std::int64_t x = center[p] - origin_[p];
-  const std::int64_t y = center[q] - origin_[q];
-  for (const Slab& slab : slabs_[axis]) {
-    const std::int64_t value = slab.u * x + slab.v * y;
-    const std::int64_t reach = slab.reach * half;
-    if (value - reach < slab.low || value + reach > slab.high) {
-      return false;
-    }
-  }
-  return true;
 }
 
 std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bool z_up) {

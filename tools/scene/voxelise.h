@@ -106,6 +106,9 @@ class TriangleBoxTest {
     std::int64_t low = 0, high = 0;
     std::int64_t reach = 0;  ///< |u| + |v|
   };
+  /// Whether the cube's centre lies in the slabs, grown (1) or shrunk (-1) by the cube.
+  template <int kGrown>
+  bool fits_slabs(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
 
   UnitPoint origin_;  ///< vertex 0
   UnitPoint low_;
