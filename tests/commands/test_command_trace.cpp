@@ -6,13 +6,16 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <random>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "support/counts.h"
+#include "support/file_bytes.h"
 #include "support/hit_rows.h"
 #include "support/ray_cases.h"
 #include "support/run_command.h"
@@ -103,6 +106,97 @@ TEST_CASE(
     CHECK(answers(rays) == plain);
   }
   CHECK(answers("ox,oy,oz,dx,dy,dz\n") == std::string(kHitHeader) + "\n");
+}
+
+TEST_CASE(
+    "trace, render --hits: arrays in and out -> the same as lines; a table that holds no rays -> a "
+    "sentence") {
+  const TemporaryFolder folder;
+  const auto save = [&](const std::string& shape, const std::vector<double>& numbers) {
+    std::string text = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + shape + "), }";
+    text.resize(118, ' ');
+    std::string file = std::string("\x93NUMPY\1\0", 8) + little(118, 2) + text;
+    for (const double number : numbers) {
+      file += little(number);
+    }
+    return folder.write("rays.npy", file);
+  };
+  const std::string scene = folder.write("one.xyz", "3 1 2\n");
+  const std::string lines = "0,1.5,2.5,2,0,0\n0,5,5,1,0,0\n-1,-3,-2,1,1,1\n";
+  trace(folder, scene, lines);
+  const std::string wanted = read_text(folder.path("hits.csv"));
+  const std::vector<double> rays{0, 1.5, 2.5, 2, 0, 0, 0, 5, 5, 1, 0, 0, -1, -3, -2, 1, 1, 1};
+  const Words common{"trace", scene, "--as-voxels", "--rays", save("3, 6", rays), "-o"};
+  const auto run = [&](const std::string& output) {
+    Words words = common;
+    words.push_back(output);
+    const CommandResult result = run_command(words);
+    CAPTURE(result.describe());
+    CHECK(result.status == 0);
+    return read_text(output);
+  };
+  CHECK(run(folder.path("hits.csv")) == wanted);
+  // Of each record 60 bytes: the columns of the header, one after the other, without gaps.
+  const auto check_array = [&](const std::string& array, const std::string& csv, bool has_pixels) {
+    const std::size_t record = has_pixels ? 68 : 60;
+    const std::vector<HitRow> rows = parse_hits(csv, has_pixels);
+    const std::size_t head =
+        10 + (static_cast<std::uint8_t>(array[8]) | static_cast<std::size_t>(array[9]) << 8);
+    CHECK(head % 64 == 0);
+    CHECK(array.find("'shape': (" + std::to_string(rows.size()) + ",)") < head);
+    REQUIRE(array.size() == head + record * rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      CAPTURE(i);
+      const HitRow& row = rows[i];
+      std::size_t at = head + i * record;
+      const auto next = [&](std::size_t size) {
+        const std::string bytes = array.substr(at, size);
+        at += size;
+        return bytes;
+      };
+      const auto number = [](std::int64_t value, std::size_t size) {
+        return little(static_cast<std::uint64_t>(value), size);
+      };
+      const double never = std::numeric_limits<double>::infinity();
+      if (has_pixels) {
+        CHECK(next(4) == number(row.px, 4));
+        CHECK(next(4) == number(row.py, 4));
+      }
+      CHECK(next(1) == number(row.hit ? 1 : 0, 1));
+      for (const auto coordinate : row.voxel) {
+        CHECK(next(4) == number(row.hit ? coordinate : -1, 4));
+      }
+      CHECK(next(8) == little(row.hit ? std::stod(row.t) : never));
+      CHECK(next(1) == number(row.hit ? row.axis : -1, 1));
+      CHECK(next(4) == number(row.nodes, 4));
+      at += 24;
+      CHECK(next(2) == number(row.hit ? row.material : -1, 2));
+      CHECK(next(8) == little(row.hit ? row.distance : never));
+    }
+  };
+  check_array(run(folder.path("hits.npy")), wanted, false);
+  for (const char* structure : {"compact", "dense"}) {
+    const auto picture = [&](const std::string& hits) {
+      CHECK(run_command({"render", scene, "--as-voxels", "--structure", structure, "--size", "9x7", "-o",
+                         folder.path("p.png"), "--hits", hits})
+                .status == 0);
+      return read_text(hits);
+    };
+    const std::string csv = picture(folder.path("h.csv"));
+    check_array(picture(folder.path("h.npy")), csv, true);
+  }
+  const auto refusal = [&](const std::string& path) {
+    const CommandResult result = run_command({"trace", "spheres", "--rays", path});
+    CHECK(result.status == 1);
+    CHECK(result.out.empty());
+    return result.err;
+  };
+  CHECK(refusal(save("3, 5", rays)).find("this array has 5 columns") != std::string::npos);
+  CHECK(refusal(save("18", rays)).find("no table") != std::string::npos);
+  CHECK(refusal(save("4, 6", rays)).find("has room for 18") != std::string::npos);
+  std::vector<double> bad = rays;
+  bad[9] = std::nan("");
+  CHECK(refusal(save("3, 6", bad)).find("rays.npy: row 1: ") != std::string::npos);
 }
 
 TEST_CASE("trace: a line that is no ray -> status 1, file and line named, nothing written, stdout included") {

@@ -13,7 +13,7 @@
 #include "commands/render_output.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
-#include "output/hit_csv.h"
+#include "output/hit_rows.h"
 #include "output/image.h"
 #include "output/output_set.h"
 #include "output/progress.h"
@@ -449,8 +449,10 @@ std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std:
 
 void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngine* gpu, const Camera& camera,
                 OutputFile* csv, OutputFile* pfm) {
+  const HitRows rows(command.output.hits_path, true, command.scene.structure != StructureKind::kDense);
   if (csv != nullptr) {
-    csv->write(std::string("px,py,") + kHitColumns + "\n");
+    csv->write(rows.beginning(static_cast<std::uint64_t>(camera.width_px()) *
+                              static_cast<std::uint64_t>(camera.height_px())));
   }
   std::vector<float> distances;
   std::vector<Ray> rays(static_cast<std::size_t>(camera.width_px()));
@@ -473,8 +475,7 @@ void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngi
       const Ray& ray = rays[static_cast<std::size_t>(x)];
       const Hit& hit = hits[static_cast<std::size_t>(x)];
       if (csv != nullptr) {
-        text += std::to_string(x) + ',' + std::to_string(y) + ',';
-        append_hit(&text, ray, hit, command.scene.structure != StructureKind::kDense);
+        rows.append(&text, ray, hit, x, y);
       }
       if (pfm != nullptr) {
         distances.push_back(hit.kind == HitKind::kHit ? static_cast<float>(hit_distance(ray, hit))
@@ -506,9 +507,11 @@ void add_render(CLI::App& app) {
             "where anything is; given without --effects it draws none",
             &command->look.shade_name);
   add_look(*sub, command);
-  add_path_option(*sub, "--hits", "FILE.csv", &command->output.hits_path,
-                  "what the ray of each pixel's centre hits, a line a pixel, row by row from the top left: "
-                  "px,py and the columns that trace writes");
+  add_path_option(
+      *sub, "--hits", "FILE.csv|.npy", &command->output.hits_path,
+      std::string("what the ray of each pixel's centre hits, a line a pixel, row by row from the top "
+                  "left: px,py and the columns that trace writes") +
+          kHitArray);
   add_path_option(*sub, "--depth-image", "FILE.pfm", &command->output.depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
   add_effect_options(*sub, &command->effects,

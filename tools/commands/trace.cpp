@@ -18,11 +18,13 @@
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
-#include "output/hit_csv.h"
+#include "output/hit_rows.h"
 #include "output/output_set.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "readers/file_bytes.h"
+#include "readers/formats.h"
+#include "readers/npy.h"
 #include "readers/text.h"
 #include "scene/built_scene.h"
 #include "scene/gpu_engine.h"
@@ -43,7 +45,7 @@ struct RayRules {
   bool only_32 = false;    ///< refuses rays that 32-bit products do not take
 };
 
-/// What is wrong with a line.
+/// What is wrong with a line, or with a row of an array.
 struct RayFault {
   std::size_t line = 0;  ///< counted from the chunk's first, which is 0
   std::string sentence;
@@ -51,26 +53,33 @@ struct RayFault {
 
 class RayFile {
  public:
-  /// `text` outlives it: one ray a line, ox,oy,oz,dx,dy,dz in voxels; a header line is allowed before, empty lines
-  /// anywhere. Looks at a few bytes a chunk.
-  RayFile(std::string_view text, const RayRules& rules);
+  /// One ray a line, ox,oy,oz,dx,dy,dz in voxels; a header line is allowed before, empty lines anywhere. Or a NumPy
+  /// array, one ray a row. Looks at a few bytes a chunk.
+  RayFile(const SharedBytes& file, const RayRules& rules);
 
   std::size_t chunks() const { return ends_.size(); }
-  /// Where a chunk ends in the text.
-  std::size_t end(std::size_t chunk) const { return ends_[chunk]; }
-  /// The line of the file that the first chunk begins with, from 1 on.
-  std::size_t first_line() const { return first_line_; }
+  /// What part of the file is behind us where a chunk ends, up to 1.
+  double part(std::size_t chunk) const {
+    return static_cast<double>(ends_[chunk]) / static_cast<double>(ends_.back());
+  }
+  /// Where a fault is, by the lines or rows before its chunk.
+  std::string place(std::size_t before, const RayFault& fault) const {
+    return (table_ ? "row " : "line ") + std::to_string(first_line_ + before + fault.line);
+  }
 
   /// Puts the rays of a chunk into `rays`, up to the first line that is none: then that is the answer. `lines` gets
   /// the number of its lines. Any number of threads at a time.
   std::optional<RayFault> read(std::size_t chunk, std::vector<Ray>* rays, std::size_t* lines) const;
 
  private:
-  std::string_view text_;
+  void find_lines();
+
+  SharedBytes file_;
   RayRules rules_;
+  std::optional<NumberTable> table_;
   std::size_t begin_ = 0;
-  std::size_t first_line_ = 1;
-  std::vector<std::size_t> ends_;
+  std::size_t first_line_ = 1;     // of the first chunk; rows are counted from 0
+  std::vector<std::size_t> ends_;  // of the chunks, bytes or rows
 };
 
 constexpr std::string_view kBlanks = " \t";
@@ -169,8 +178,27 @@ bool is_blank(std::string_view line) {
 
 // About so many bytes a chunk, some thousand rays.
 constexpr std::size_t kChunkBytes = 256 << 10;
+constexpr std::size_t kChunkRows = 4096;
 
-RayFile::RayFile(std::string_view text, const RayRules& rules) : text_(text), rules_(rules) {
+RayFile::RayFile(const SharedBytes& file, const RayRules& rules) : file_(file), rules_(rules) {
+  if (!looks_like_npy(file.bytes)) {
+    find_lines();
+    return;
+  }
+  table_ = read_npy_table(file);
+  if (table_->columns != 6) {
+    throw InputError("rays are rows of six numbers, ox, oy, oz, dx, dy, dz; this array has " +
+                     std::to_string(table_->columns) + " columns");
+  }
+  first_line_ = 0;
+  for (std::size_t row = 0; row < table_->rows;) {
+    row = std::min<std::size_t>(row + kChunkRows, table_->rows);
+    ends_.push_back(row);
+  }
+}
+
+void RayFile::find_lines() {
+  const std::string_view text = file_.text();
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::string_view rest = text;
   rest.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
@@ -198,8 +226,22 @@ RayFile::RayFile(std::string_view text, const RayRules& rules) : text_(text), ru
 
 std::optional<RayFault> RayFile::read(std::size_t chunk, std::vector<Ray>* rays, std::size_t* lines) const {
   const std::size_t begin = chunk == 0 ? begin_ : ends_[chunk - 1];
-  std::string_view text = text_.substr(begin, ends_[chunk] - begin);
   rays->clear();
+  if (table_) {
+    *lines = ends_[chunk] - begin;
+    for (std::size_t row = 0; row < *lines; ++row) {
+      std::array<double, 6> numbers{};
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        numbers[i] = table_->at(begin + row, i);
+      }
+      std::string fault = quantise(numbers, rules_, &rays->emplace_back());
+      if (!fault.empty()) {
+        return RayFault{row, std::move(fault)};
+      }
+    }
+    return std::nullopt;
+  }
+  std::string_view text = file_.text().substr(begin, ends_[chunk] - begin);
   for (*lines = 0; !text.empty(); ++*lines) {
     const std::string_view line = next_line(&text);
     if (is_blank(line)) {
@@ -251,11 +293,11 @@ std::size_t judge(const TraceCommand& command, const RayFile& file) {
     chunks[task].fault = file.read(task, &rays[worker], &chunks[task].lines);
     chunks[task].rays = rays[worker].size();
   });
-  std::size_t line = file.first_line();
+  std::size_t line = 0;
   std::size_t count = 0;
   for (const Judged& chunk : chunks) {
     if (chunk.fault) {
-      throw OutputError(command.rays_path + ": line " + std::to_string(line + chunk.fault->line) + ": " +
+      throw OutputError(command.rays_path + ": " + file.place(line, *chunk.fault) + ": " +
                         chunk.fault->sentence);
     }
     line += chunk.lines;
@@ -275,7 +317,8 @@ struct Tracing {
 
 // Traces the rays of a chunk and writes their lines.
 void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built, const FirstHits& wide,
-                 GpuEngine* gpu, const TraceOptions& options, Tracing* tracing, std::string* lines) {
+                 GpuEngine* gpu, const TraceOptions& options, const HitRows& rows, Tracing* tracing,
+                 std::string* lines) {
   std::size_t count = 0;
   (void)file.read(chunk, &tracing->rays, &count);  // judged before
   const std::vector<Ray>& rays = tracing->rays;
@@ -294,7 +337,7 @@ void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built
   tracing->seconds += seconds_since(start);
   lines->clear();
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    append_hit(lines, rays[i], hits[i], built.structure() != StructureKind::kDense);
+    rows.append(lines, rays[i], hits[i]);
     tracing->hit_count += hits[i].kind == HitKind::kHit ? 1U : 0U;
     tracing->visits += hits[i].visits;
   }
@@ -307,9 +350,10 @@ void run(const TraceCommand& command) {
   OutputFile& output = *outputs[0];
   const auto source = command.scene.open();
   BuiltScene built = command.scene.build(*source);
-  const FileBytes bytes = about(command.rays_path, [&] { return load_file(command.rays_path); });
-  const std::string_view text = bytes.text();
-  const RayFile file(text, {built.level(), command.direction_bits, command.engine.name == "ray32"});
+  const RayFile file = about(command.rays_path, [&] {
+    return RayFile(share(load_file(command.rays_path)),
+                   {built.level(), command.direction_bits, command.engine.name == "ray32"});
+  });
   Stats stats(command.scene.arguments.scene, *source, built);
   stats.rays = judge(command, file);
   FirstHits wide;
@@ -324,7 +368,8 @@ void run(const TraceCommand& command) {
   if (command.scene.board != nullptr) {
     stats.board = command.scene.board->name;
   }
-  output.write(std::string(kHitColumns) + "\n");
+  const HitRows rows(command.output, false, built.structure() != StructureKind::kDense);
+  output.write(rows.beginning(stats.rays));
   ProgressBar bar("tracing", command.scene.quiet);
   const auto start = Clock::now();
   const auto threads = static_cast<std::size_t>(command.threads);
@@ -333,13 +378,13 @@ void run(const TraceCommand& command) {
   for (std::size_t first = 0; first < file.chunks(); first += lines.size()) {
     const std::size_t count = std::min(lines.size(), file.chunks() - first);
     each_task(count, command.threads, [&](std::size_t task, std::size_t worker) {
-      trace_chunk(file, first + task, built, wide, gpu.get(), command.engine.trace_options(),
+      trace_chunk(file, first + task, built, wide, gpu.get(), command.engine.trace_options(), rows,
                   &workers[worker], &lines[task]);
     });
     for (std::size_t task = 0; task < count; ++task) {
       output.write(lines[task]);
     }
-    bar.update(static_cast<double>(file.end(first + count - 1)) / static_cast<double>(text.size()));
+    bar.update(file.part(first + count - 1));
   }
   stats.frame_seconds = seconds_since(start);
   stats.trace_seconds = 0;
@@ -360,13 +405,16 @@ void add_trace(CLI::App& app) {
   auto command = std::make_shared<TraceCommand>();
   CLI::App* sub = add_command(app, "trace", "Trace rays from a file.");
   command->scene.add_to(*sub);
-  add_path_option(*sub, "--rays", "FILE.csv", &command->rays_path,
-                  "one ray a line: ox,oy,oz,dx,dy,dz in voxels; a header line is allowed")
+  add_path_option(
+      *sub, "--rays", "FILE.csv|.npy", &command->rays_path,
+      "one ray a line: ox,oy,oz,dx,dy,dz in voxels; a header line is allowed; or a NumPy array, a ray "
+      "a row of six numbers")
       .required();
-  add_path_option(*sub, "-o,--output", "FILE.csv", &command->output,
+  add_path_option(*sub, "-o,--output", "FILE.csv|.npy", &command->output,
                   std::string("a header line, then one line a ray: ") + kHitColumns +
                       "; point = q-origin / 256 + t * q-direction, in voxels; a dense grid keeps no "
-                      "material; - is standard output")
+                      "material" +
+                      kHitArray + "; - is standard output, lines")
       .default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
   command->engine.add_ray_engines_to(*sub);

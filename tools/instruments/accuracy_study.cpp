@@ -8,7 +8,7 @@
 #include <set>
 
 #include "instruments/timed_frames.h"
-#include "output/hit_csv.h"
+#include "output/hit_rows.h"
 #include "output/units.h"
 #include "readers/source.h"
 #include "thimble/picture/anytime.h"

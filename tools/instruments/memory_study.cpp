@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "output/hit_csv.h"
+#include "output/hit_rows.h"
 #include "readers/oct.h"
 #include "readers/source.h"
 #include "scene/baking.h"

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "output/npy_header.h"
 #include "output/units.h"
 #include "readers/oct.h"
 
@@ -151,14 +152,8 @@ void write_npy(Writer* to, const CompactTree& tree, const Palette& palette, bool
                      std::to_string(size.z) + " voxels takes " + grouped(bytes) + " bytes, " +
                      grouped(kMostArrayBytes) + " are the most; a .ply lists what is solid alone");
   }
-  std::string header = "{'descr': '|u1', 'fortran_order': False, 'shape': (" + std::to_string(size.x) + ", " +
-                       std::to_string(size.y) + ", " + std::to_string(size.z) + (has_colors ? ", 4" : "") +
-                       "), }";
-  // The magic number, version 1.0 and the length take 10 bytes; data begin at a multiple of 64.
-  header.append(63 - (10 + header.size()) % 64, ' ').append("\n");
-  to->text({"\x93NUMPY\x01\x00", 8});
-  to->little(static_cast<std::uint32_t>(header.size()), 2);
-  to->text(header);
+  to->text(npy_header("'|u1'", std::to_string(size.x) + ", " + std::to_string(size.y) + ", " +
+                                   std::to_string(size.z) + (has_colors ? ", 4" : "")));
   std::vector<char> array(bytes);
   for_each_voxel(tree, progress, [&](const Vec3i& voxel, std::uint8_t material) {
     char* const at =

@@ -26,6 +26,7 @@
 #include "readers/color_scale.h"
 #include "readers/file_bytes.h"
 #include "readers/height_grid.h"
+#include "readers/npy.h"
 #include "readers/text.h"
 #include "readers/zip.h"
 
@@ -324,6 +325,11 @@ SharedBytes largest_member(std::span<const std::uint8_t> file) {
   return share(zip_unpack(*best));
 }
 
+Array array_of(const SharedBytes& file) {
+  const SharedBytes bytes = file.text().starts_with(kZipMagic) ? largest_member(file.bytes) : file;
+  return {read_npy_header(bytes.bytes), bytes};
+}
+
 }  // namespace
 
 /// True for a `.npy` and for a `.zip` whose first member's name ends so.
@@ -343,8 +349,18 @@ bool looks_like_npy(std::span<const std::uint8_t> bytes) {
 ///   takes, a side of voxels over `kGridSideLimit`, no point that is finite, nothing solid;
 ///   an array that is not what the options say
 Source read_npy(const SharedBytes& file, const ReadOptions& options, const Progress&) {
-  const SharedBytes bytes = file.text().starts_with(kZipMagic) ? largest_member(file.bytes) : file;
-  return source_of(Array(read_npy_header(bytes.bytes), bytes), options.as);
+  return source_of(array_of(file), options.as);
+}
+
+NumberTable read_npy_table(const SharedBytes& file) {
+  const auto array = std::make_shared<const Array>(array_of(file));
+  const NpyHeader& header = array->header;
+  if (header.shape.size() != 2) {
+    throw InputError("the array is " + shape_of(header) + ", no table of rows and columns");
+  }
+  return {header.shape[0], header.shape[1], [array](std::uint64_t row, std::uint64_t column) {
+            return array->at(row * array->strides[0] + column * array->strides[1]);
+          }};
 }
 
 }  // namespace thimble::tools
