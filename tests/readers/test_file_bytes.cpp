@@ -1,12 +1,15 @@
 // Whole files, gzip, and the cursor that all binary readers use.
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <lzma.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zstd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <string>
 #include <thread>
@@ -46,6 +49,32 @@ Bytes gzip(const Bytes& bytes) {
   const std::string packed = thimble::tests::deflated({bytes.begin(), bytes.end()}, thimble::tests::kGzip);
   return {packed.begin(), packed.end()};
 }
+
+Bytes zstd(const Bytes& bytes) {
+  Bytes packed(ZSTD_compressBound(bytes.size()));
+  // Checked, so that any damage is seen.
+  const std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+  packed.resize(ZSTD_compress2(context.get(), packed.data(), packed.size(), bytes.data(), bytes.size()));
+  return packed;
+}
+
+Bytes xz(const Bytes& bytes) {
+  Bytes packed(lzma_stream_buffer_bound(bytes.size()));
+  std::size_t size = 0;
+  REQUIRE(lzma_easy_buffer_encode(1, LZMA_CHECK_CRC32, nullptr, bytes.data(), bytes.size(), packed.data(),
+                                  &size, packed.size()) == LZMA_OK);
+  packed.resize(size);
+  return packed;
+}
+
+/// The ways in which whole files are packed.
+struct Packer {
+  const char* name;
+  Bytes (*pack)(const Bytes& bytes);
+  const char* ending;
+};
+constexpr Packer kPackers[] = {{"gzip", gzip, ".gz"}, {"zstd", zstd, ".zst"}, {"xz", xz, ".xz"}};
 
 Bytes operator+(Bytes a, const Bytes& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -109,26 +138,57 @@ TEST_CASE("load_file: plain files of any length -> their bytes") {
   }
 }
 
-TEST_CASE("load_file: gzip by name or only by signature -> what it holds") {
+TEST_CASE("load_file: packed by name or only by signature -> what it holds") {
   const BytesFolder folder;
-  for (const std::size_t size : {1u, 65536u, 300000u}) {
-    CAPTURE(size);
-    const Bytes bytes = noise(size, 2);
-    CHECK(loaded(folder.write("named.gz", gzip(bytes))) == bytes);
-    CHECK(loaded(folder.write("unnamed", gzip(bytes))) == bytes);
+  for (const Packer& packer : kPackers) {
+    CAPTURE(packer.name);
+    const auto name = [&](const char* stem) { return std::string(stem) + packer.ending; };
+    for (const std::size_t size : {1u, 65536u, 300000u}) {
+      CAPTURE(size);
+      const Bytes bytes = noise(size, 2);
+      CHECK(loaded(folder.write(name("named"), packer.pack(bytes))) == bytes);
+      CHECK(loaded(folder.write("unnamed", packer.pack(bytes))) == bytes);
+    }
+    const Bytes zeros(3'000'000, 0);  // far more comes out than goes in
+    CHECK(loaded(folder.write(name("zeros"), packer.pack(zeros))) == zeros);
+    CHECK(contains(refusal(folder.write(name("plain"), noise(100, 7))),
+                   std::string(packer.name) + " signature"));
+    CHECK(refusal(folder.write(name("nothing"), packer.pack({}))) ==
+          std::string(packer.name) + " data holds no bytes");
   }
-  const Bytes zeros(3'000'000, 0);  // far more comes out than goes in
-  CHECK(loaded(folder.write("zeros.gz", gzip(zeros))) == zeros);
+  CHECK(loaded(folder.write("other.gz", zstd(noise(100, 3)))) == noise(100, 3));
 }
 
-TEST_CASE("load_file: gzip of several members and zero padding -> all members in order") {
+TEST_CASE("load_file: beyond 256 MiB, more than a hundred to one -> refused; less of either -> read") {
+  const BytesFolder folder;
+  const Bytes zeros(std::size_t{65} << 20, 0);
+  for (const Packer& packer : kPackers) {
+    CAPTURE(packer.name);
+    const Bytes part = packer.pack(zeros);
+    REQUIRE(part.size() < zeros.size() / 100);
+    const Bytes three = part + part + part;
+    CHECK(contains(refusal(folder.write("four", three + part)), "inflates to more than 256 MiB"));
+    if (packer.pack == gzip) {
+      CHECK(load_file(folder.write("three", three)).size() == 3 * zeros.size());
+      const Bytes hard = gzip(noise(std::size_t{3} << 20, 11));
+      CHECK(load_file(folder.write("hard", hard + three + part)).size() > 4 * zeros.size());
+    }
+  }
+}
+
+TEST_CASE("load_file: several members and zero padding -> all members in order") {
   const BytesFolder folder;
   const Bytes a = noise(70000, 3), b = noise(5, 4);
   const Bytes none;
-  CHECK(loaded(folder.write("two.gz", gzip(a) + gzip(b))) == a + b);
-  CHECK(loaded(folder.write("padded.gz", gzip(a) + Bytes(100000, 0))) == a);
-  CHECK(loaded(folder.write("gap.gz", gzip(a) + Bytes(512, 0) + gzip(b))) == a + b);
-  CHECK(loaded(folder.write("empty_member.gz", gzip(none) + gzip(b))) == b);
+  for (const auto& [name, pack, ending] : kPackers) {
+    CAPTURE(name);
+    CHECK(loaded(folder.write("two", pack(a) + pack(b))) == a + b);
+    CHECK(loaded(folder.write("padded", pack(a) + Bytes(100000, 0))) == a);
+    CHECK(loaded(folder.write("gap", pack(a) + Bytes(512, 0) + pack(b))) == a + b);
+    CHECK(loaded(folder.write("empty_member", pack(none) + pack(b))) == b);
+  }
+  const Bytes table{0x5e, 0x2a, 0x4d, 0x18, 3, 0, 0, 0, 1, 2, 3};  // for those who seek
+  CHECK(loaded(folder.write("table", zstd(a) + table)) == a);
 }
 
 TEST_CASE("load_file: a pipe, plain or gzip -> read to its end") {
@@ -171,8 +231,6 @@ TEST_CASE("load_file: what cannot be read -> a sentence with the reason") {
   CHECK(refusal(folder.path("")) == "is a directory, not a file");
   CHECK(refusal(folder.write("empty", {})) == "is empty");
   CHECK(refusal("/dev/null") == "is empty");
-  CHECK(contains(refusal(folder.write("plain.gz", noise(100, 7))), "gzip signature"));
-  CHECK(refusal(folder.write("nothing.gz", gzip({}))) == "gzip data holds no bytes");
 
   const std::string secret = folder.write("secret", {'a'});
   REQUIRE(::chmod(secret.c_str(), 0) == 0);
@@ -188,43 +246,51 @@ TEST_CASE("load_file: what cannot be read -> a sentence with the reason") {
   CHECK(denied == "cannot be opened: Permission denied");
 }
 
-TEST_CASE("load_file: gzip cut off anywhere -> refused") {
+TEST_CASE("load_file: packed data cut off anywhere -> refused") {
   const BytesFolder folder;
-  const Bytes whole = gzip(noise(500, 8));
-  for (std::size_t length = 2; length < whole.size(); ++length) {
-    CAPTURE(length);
-    const std::string path =
-        folder.write("cut.gz", Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)));
-    CHECK(contains(refusal(path), "gzip data is truncated"));
+  for (const Packer& packer : kPackers) {
+    const Bytes whole = packer.pack(noise(150, 8));
+    for (std::size_t length = 6; length < whole.size(); ++length) {
+      CAPTURE(length);
+      const std::string path =
+          folder.write("cut", Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)));
+      CHECK(contains(refusal(path), std::string(packer.name) + " data is truncated"));
+    }
   }
 }
 
-TEST_CASE("load_file: gzip with any one bit flipped -> refused, or the same bytes where it was decoration") {
+TEST_CASE(
+    "load_file: packed data with any one bit flipped -> refused, or the same bytes where it was decoration") {
   const BytesFolder folder;
   const Bytes bytes = noise(40, 9);
-  Bytes damaged = gzip(bytes);
-  int refused = 0;
-  for (std::size_t bit = 16; bit < damaged.size() * 8; ++bit) {
-    CAPTURE(bit);
-    damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
-    const std::string path = folder.write("flipped.gz", damaged);
-    try {
-      const Bytes read = loaded(path);
-      CHECK(read == bytes);
-    } catch (const InputError& error) {
-      CHECK(contains(error.what(), "gzip data"));
-      ++refused;
+  for (const Packer& packer : kPackers) {
+    CAPTURE(packer.name);
+    Bytes damaged = packer.pack(bytes);
+    int refused = 0;
+    for (std::size_t bit = 48; bit < damaged.size() * 8; ++bit) {  // behind the signature
+      CAPTURE(bit);
+      damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+      const std::string path = folder.write("flipped", damaged);
+      try {
+        const Bytes read = loaded(path);
+        CHECK(read == bytes);
+      } catch (const InputError& error) {
+        CHECK(contains(error.what(), std::string(packer.name) + " data"));
+        ++refused;
+      }
+      damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
     }
-    damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+    CHECK(refused > 300);
   }
-  CHECK(refused > 300);
 }
 
-TEST_CASE("load_file: something else behind gzip data -> refused with the offset") {
+TEST_CASE("load_file: something else behind packed data -> refused with the offset") {
   const BytesFolder folder;
-  const Bytes member = gzip(noise(50, 10));
-  const std::string sentence = refusal(folder.write("tail.gz", member + Bytes{0, 0, 'x'}));
-  CHECK(contains(sentence, "byte offset " + std::to_string(member.size() + 2)));
+  for (const Packer& packer : kPackers) {
+    const Bytes member = packer.pack(noise(50, 10));
+    const std::string sentence = refusal(folder.write("tail", member + Bytes{0, 0, 'x'}));
+    CHECK(contains(sentence, "byte offset " + std::to_string(member.size() + 2)));
+  }
 }
 
 TEST_CASE("FileBytes: moved -> the bytes stay in place and the old one is empty") {

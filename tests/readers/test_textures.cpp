@@ -1,5 +1,6 @@
 // Pictures on meshes: a voxel has the colour that the picture has where the voxel lies, as light, over what it covers.
 #include <doctest/doctest.h>
+#include <webp/encode.h>
 
 #include <algorithm>
 #include <array>
@@ -55,6 +56,13 @@ std::string png(std::int32_t width, std::int32_t height, const std::vector<Pixel
   }
   const auto file = png_file(width, height, 4, bytes);
   return {file.begin(), file.end()};
+}
+
+std::string webp(std::int32_t width, std::int32_t height, const std::vector<Pixel>& pixels) {
+  std::uint8_t* file = nullptr;
+  const std::size_t size = WebPEncodeLosslessRGBA(pixels[0].data(), width, height, 4 * width, &file);
+  const std::unique_ptr<std::uint8_t, void (*)(void*)> kept(file, WebPFree);
+  return {reinterpret_cast<const char*>(file), size};
 }
 
 Rgb color_of(const Texture::Sample& sample) {
@@ -237,6 +245,12 @@ TEST_CASE(
 TEST_CASE("gltf: the picture's coordinates -> their set, their transform, their wrap modes") {
   Quad quad;
   CHECK(columns_of(quad.source()) == "rrrrrrrrbbbbbbbb");
+  quad.texture = R"({"extensions":{"EXT_texture_webp":{"source":0}}})";
+  quad.picture = webp(2, 1, {kRedPixel, kBluePixel});
+  quad.more = R"("extensionsRequired":["EXT_texture_webp"],)";
+  CHECK(columns_of(quad.source()) == "rrrrrrrrbbbbbbbb");
+  CHECK(notes_of(quad.source()).empty());
+  quad = Quad();
   const auto info = [&](const std::string& more) {
     quad.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0,)" + more + "}}}";
     return quad.source();
@@ -378,9 +392,10 @@ TEST_CASE("texture: what is no picture, damaged, too large, not there -> the sha
     CHECK(notes[0].size() < 300);
     return notes[0];
   };
-  CHECK(contains(note("GIF89a"), "is no PNG or JPEG"));
+  CHECK(contains(note("GIF89a"), "is no PNG, JPEG or WebP"));
   CHECK(contains(note("\xABKTX 20\xBB\r\n\x1A\n"), "KTX"));
-  CHECK(contains(note(std::string("RIFF\0\0\0\0WEBPVP8 ", 16)), "WebP"));
+  CHECK(contains(note(std::string("RIFF\0\0\0\0WEBPVP8 ", 16)), "is no PNG, JPEG or WebP"));
+  CHECK(contains(note(webp(2, 1, {kRedPixel, kBluePixel}).substr(0, 30)), "damaged"));
   CHECK(contains(note(red_blue().substr(0, 50)), "damaged"));
   std::string large = red_blue();
   large.replace(16, 8, std::string("\0\0\x40\0\0\0\x40\0", 8));  // 16,384 a side

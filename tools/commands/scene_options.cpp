@@ -26,8 +26,8 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
   Option scene = add_argument(
       app, "scene", "SCENE", &arguments.scene,
       "a file (.vox .scene .oct .ply .obj .off .stl .glb .gltf .xyz .csv .txt .tsv .pts .pcd .las .npy "
-      ".npz .asc .binvox .qb .kvx .schematic .schem .mts, a Gadget-1 snapshot, .gz of any) or a "
-      "generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L; or the name "
+      ".npz .asc .binvox .qb .kvx .schematic .schem .mts, a Gadget-1 snapshot, .gz .zst .xz of any, a .zip of "
+      "one) or a generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L; or the name "
       "of a scene that comes with Thimble, such as castle");
   if (required) {
     scene.required();

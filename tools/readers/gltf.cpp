@@ -27,6 +27,7 @@
 #include <utility>
 #include <vector>
 
+#include "readers/gltf_draco.h"
 #include "readers/gltf_file.h"
 #include "readers/mesh.h"
 #include "readers/text.h"
@@ -193,8 +194,12 @@ class Scene {
 
   /// Refuses a file that says it means nothing without what is not read here; of looks that is a note.
   void check_extensions() {
-    static constexpr std::array<std::string_view, 5> kRead{"EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
-                                                           "KHR_texture_transform", "KHR_materials_unlit",
+    static constexpr std::array<std::string_view, 7> kRead{"EXT_mesh_gpu_instancing",
+                                                           "EXT_texture_webp",
+                                                           "KHR_draco_mesh_compression",
+                                                           "KHR_mesh_quantization",
+                                                           "KHR_texture_transform",
+                                                           "KHR_materials_unlit",
                                                            "KHR_materials_pbrSpecularGlossiness"};
     std::string first;
     std::size_t looks = 0;
@@ -280,16 +285,20 @@ class Scene {
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       Part part{&primitives[i], placing,
                 "primitive " + std::to_string(i) + " of mesh " + std::to_string(mesh)};
-      if (gltf_extension(*part.primitive, "KHR_draco_mesh_compression") != nullptr) {
-        throw InputError(part.place + ": it is compressed (KHR_draco_mesh_compression), which is not read");
-      }
       part.mode = gltf_number(*part.primitive, "mode", part.place).value_or(kTriangles);
       const json* attributes = gltf_member(*part.primitive, "attributes");
       const bool is_drawn = part.mode == kPoints || (part.mode >= kTriangles && part.mode <= kFan);
       if (!is_drawn || attributes == nullptr || gltf_member(*attributes, "POSITION") == nullptr) {
         continue;  // lines, or nothing
       }
-      const GltfAccessor positions = file_.accessor(*gltf_number(*attributes, "POSITION", part.place));
+      const std::uint64_t place = *gltf_number(*attributes, "POSITION", part.place);
+      const json* packed = gltf_extension(*part.primitive, "KHR_draco_mesh_compression");
+      // A file that does not require it has the values as they are, too.
+      if (packed != nullptr && gltf_member(file_.entry("accessors", place), "bufferView") == nullptr) {
+        unpack_draco(file_, *part.primitive, *packed, part.place);
+        part.mode = kTriangles;
+      }
+      const GltfAccessor positions = file_.accessor(place);
       if (positions.components != 3) {
         throw InputError(part.place + ": its positions have " + std::to_string(positions.components) +
                          " components, not 3");
@@ -523,9 +532,13 @@ class Scene {
   }
 
   std::shared_ptr<const Texture> picture_of(const json& texture, const std::string& place) {
-    const auto image = gltf_number(texture, "source", place);
+    auto image = gltf_number(texture, "source", place);
+    const json* webp = gltf_extension(texture, "EXT_texture_webp");
+    if (webp != nullptr && !image) {
+      image = gltf_number(*webp, "source", place);
+    }
     if (!image) {
-      textures_.miss("of " + place, "is of a kind that is not read (KTX2, WebP)");
+      textures_.miss("of " + place, "is of a kind that is not read (KTX2)");
       return nullptr;
     }
     const std::string key = "image " + std::to_string(*image);

@@ -351,12 +351,7 @@ std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor
   }
   const std::string place = "accessor " + std::to_string(i);
   const auto element = static_cast<std::size_t>(accessor.element_bytes());
-  if (accessor.count > (most_bytes() - std::min(most_bytes(), bytes_made_)) / element) {
-    throw InputError(place + ": " + std::to_string(accessor.count) +
-                     " sparse values take more than the limit of " + std::to_string(most_bytes()) +
-                     " bytes, three times what the file holds and 64 MB");
-  }
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(accessor.count) * element);
+  std::vector<std::uint8_t> bytes = room_for(accessor, place);
   const auto set = [&](std::uint64_t to, const GltfAccessor& from, std::uint64_t k) {
     std::copy_n(from.bytes.begin() + static_cast<std::ptrdiff_t>(k * from.stride), element,
                 bytes.begin() + static_cast<std::ptrdiff_t>(to * element));
@@ -390,12 +385,51 @@ std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor
       set(index, values, k);
     }
   }
-  bytes_made_ += bytes.size();
   return made_.emplace(i, std::move(bytes)).first->second;
 }
 
-GltfAccessor GltfFile::accessor(std::uint64_t i) {
+std::vector<std::uint8_t> GltfFile::room_for(const GltfAccessor& accessor, const std::string& place) {
+  const std::uint64_t element = accessor.element_bytes();
+  if (accessor.count > (most_bytes() - std::min(most_bytes(), bytes_made_)) / element) {
+    throw InputError(place + ": " + std::to_string(accessor.count) +
+                     " sparse or compressed values take more than the limit of " +
+                     std::to_string(most_bytes()) + " bytes, three times what the file holds and 64 MB");
+  }
+  bytes_made_ += accessor.count * element;
+  return std::vector<std::uint8_t>(static_cast<std::size_t>(accessor.count * element));
+}
+
+void GltfFile::fill(std::uint64_t i, std::uint64_t count,
+                    const std::function<double(std::uint64_t, std::uint32_t)>& value) {
+  if (made_.contains(i)) {
+    return;
+  }
   const std::string place = "accessor " + std::to_string(i);
+  const GltfAccessor accessor = described(i, place);
+  if (accessor.count != count) {
+    throw InputError(place + ": it has " + std::to_string(accessor.count) +
+                     " values, and its compressed data " + std::to_string(count));
+  }
+  std::vector<std::uint8_t> bytes = room_for(accessor, place);
+  std::size_t at = 0;
+  for (std::uint64_t k = 0; k < count; ++k) {
+    for (std::uint32_t component = 0; component < accessor.components; ++component) {
+      const double number = value(k, component);
+      std::uint64_t bits = 0;
+      if (accessor.type.kind == 'f') {
+        bits = std::bit_cast<std::uint32_t>(static_cast<float>(number));
+      } else if (std::fabs(number) <= UINT32_MAX) {  // else it means nothing
+        bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
+      }
+      for (std::size_t byte = 0; byte < accessor.type.size_bytes; ++byte) {
+        bytes[at++] = static_cast<std::uint8_t>(bits >> 8 * byte);
+      }
+    }
+  }
+  made_.emplace(i, std::move(bytes));
+}
+
+GltfAccessor GltfFile::described(std::uint64_t i, const std::string& place) const {
   const json& entry = this->entry("accessors", i);
   static constexpr std::array<std::pair<std::string_view, std::uint32_t>, 4> kTypes{
       {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}}};
@@ -413,6 +447,13 @@ GltfAccessor GltfFile::accessor(std::uint64_t i) {
   const json* normalized = gltf_member(entry, "normalized");
   accessor.normalized = normalized != nullptr && normalized->is_boolean() && normalized->get<bool>();
   accessor.count = gltf_number(entry, "count", place).value_or(0);
+  return accessor;
+}
+
+GltfAccessor GltfFile::accessor(std::uint64_t i) {
+  const std::string place = "accessor " + std::to_string(i);
+  const json& entry = this->entry("accessors", i);
+  GltfAccessor accessor = described(i, place);
   const auto view = gltf_number(entry, "bufferView", place);
   const json* sparse = gltf_member(entry, "sparse");
   if (view) {

@@ -4,9 +4,11 @@
 #define THIMBLE_TOOLS_READERS_GLTF_FILE_H
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,17 +64,30 @@ class GltfFile {
   std::span<const std::uint8_t> buffer_view(std::uint64_t i);
   /// The bytes behind a link: `data:` or a file beside this one, which is read once however often it is named.
   SharedBytes link(const std::string& uri, const std::string& place);
+  /// Gives accessor `i`, which has no bytes in the file, its values, `value(vector, component)`, in the type that it
+  /// names. Whoever was filled stays as it is.
+  /// @throws InputError  it has another count, or all values made take more than `most_bytes`
+  void fill(std::uint64_t i, std::uint64_t count,
+            const std::function<double(std::uint64_t, std::uint32_t)>& value);
+  /// A buffer view turned out to hold so many bytes, unpacked; counted once.
+  void unpacked(std::uint64_t view, std::uint64_t bytes) {
+    bytes_read_ += unpacked_.insert(view).second ? bytes : 0;
+  }
   /// The file and what it loaded.
   std::uint64_t bytes_read() const { return bytes_read_; }
-  /// What accessors take that no buffer holds as they are: sparse ones.
+  /// What accessors take that no buffer holds as they are: sparse and unpacked ones.
   std::uint64_t bytes_made() const { return bytes_made_; }
   /// What all that is made of the file may take: three times what was read, and 64 MB.
   std::uint64_t most_bytes() const { return 3 * bytes_read_ + (std::uint64_t{64} << 20); }
 
  private:
   std::span<const std::uint8_t> buffer(std::uint64_t i);
+  /// An accessor without its bytes.
+  GltfAccessor described(std::uint64_t i, const std::string& place) const;
   /// Sets stride and bytes of `accessor` to those of a view from `offset` on.
   void lay(GltfAccessor& accessor, std::uint64_t view, std::uint64_t offset, const std::string& place);
+  /// Room for the values of an accessor. @throws InputError  there is none
+  std::vector<std::uint8_t> room_for(const GltfAccessor& accessor, const std::string& place);
   /// The values of a sparse accessor written out; `accessor` is laid on those that it changes, or on nothing.
   std::span<const std::uint8_t> make(std::uint64_t i, const GltfAccessor& accessor,
                                      const nlohmann::json* sparse);
@@ -84,6 +99,7 @@ class GltfFile {
   std::map<std::uint64_t, SharedBytes> buffers_;
   std::map<std::string, SharedBytes> beside_;                ///< by name
   std::map<std::uint64_t, std::vector<std::uint8_t>> made_;  ///< by accessor
+  std::set<std::uint64_t> unpacked_;                         ///< buffer views
   std::uint64_t bytes_read_ = 0, bytes_made_ = 0;
 };
 

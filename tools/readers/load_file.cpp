@@ -1,10 +1,12 @@
-// Files and what is deflated in them, as bytes: what of file_bytes.h needs a system and zlib.
+// Files and what is packed in them, as bytes: what of file_bytes.h needs a system, zlib, liblzma and libzstd.
 #include "readers/file_bytes.h"
 
 #include <fcntl.h>
+#include <lzma.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
+#include <zstd.h>
 
 #include <algorithm>
 #include <array>
@@ -19,7 +21,9 @@ namespace thimble::tools {
 namespace {
 
 constexpr std::size_t kStepBytes = 64 * 1024;
-constexpr std::uint8_t kGzipSignature[2] = {0x1f, 0x8b};
+// Scenes of mostly air are packed well, too; past this many bytes they are not believed more than that many to one.
+constexpr std::uint64_t kBelievedBytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t kBelievedRatio = 100;
 
 std::string reason(int error) {
   return std::generic_category().message(error);
@@ -108,6 +112,14 @@ class FileBuffer {
       refuse(limit_bytes_);
     }
   }
+  /// They were inflated, and all so far from `packed_bytes`.
+  void grew_from(std::uint64_t packed_bytes, std::size_t count) {
+    grew(count);
+    if (bytes_.size_ > kBelievedBytes && bytes_.size_ / kBelievedRatio > packed_bytes) {
+      throw InputError("inflates to more than 256 MiB, more than " + std::to_string(kBelievedRatio) +
+                       " times what it takes packed");
+    }
+  }
   std::size_t size() const { return bytes_.size_; }
   std::span<const std::uint8_t> bytes() const { return bytes_.bytes(); }
   FileBytes finish() {
@@ -171,130 +183,206 @@ class Looker {
   bool asked_ = false;
 };
 
-/// Inflates gzip members as their bytes arrive.
-class Inflater {
+/// What takes packed bytes apart, one member of a file after another.
+class Unpacker {
  public:
-  Inflater(FileBuffer& out, Looker& looker) : out_(out), looker_(looker) {
-    if (inflateInit2(&stream_, kGzipOnly) != Z_OK) {
-      throw InputError("cannot be inflated: zlib does not start");
-    }
-  }
-  Inflater(const Inflater&) = delete;
-  Inflater& operator=(const Inflater&) = delete;
-  ~Inflater() { inflateEnd(&stream_); }
+  struct Step {
+    std::size_t taken = 0, made = 0;  ///< bytes
+    bool is_end = false;              ///< of the member
+    const char* fault = nullptr;      ///< what is wrong with the bytes
+  };
+  virtual ~Unpacker() = default;
+  /// Takes some of `packed` and writes to `room`.
+  virtual Step step(std::span<const std::uint8_t> packed, std::span<std::uint8_t> room) = 0;
+  /// Before the next member.
+  virtual void restart() = 0;
+};
 
-  void feed(std::span<std::uint8_t> input) {
-    stream_.next_in = input.data();
-    stream_.avail_in = static_cast<uInt>(input.size());
-    fed_bytes_ += input.size();
-    while (stream_.avail_in > 0) {
-      if (between_members_) {
-        skip_padding();
-      } else {
-        inflate_step();
-      }
+class ZlibUnpacker final : public Unpacker {
+ public:
+  explicit ZlibUnpacker(int window) {
+    if (inflateInit2(&stream_, window) != Z_OK) {
+      throw InputError("zlib does not start");
     }
   }
-  void finish() const {
-    if (!between_members_) {
-      throw InputError("gzip data is truncated: the file ends at byte offset " + std::to_string(fed_bytes_) +
-                       " within a member");
+  ZlibUnpacker(const ZlibUnpacker&) = delete;
+  ZlibUnpacker& operator=(const ZlibUnpacker&) = delete;
+  ~ZlibUnpacker() override { inflateEnd(&stream_); }
+
+  Step step(std::span<const std::uint8_t> packed, std::span<std::uint8_t> room) override {
+    constexpr std::size_t kMost = std::size_t{1} << 30;  // what zlib's counters hold
+    stream_.next_in = const_cast<Bytef*>(packed.data());
+    stream_.avail_in = static_cast<uInt>(std::min(packed.size(), kMost));
+    stream_.next_out = room.data();
+    stream_.avail_out = static_cast<uInt>(std::min(room.size(), kMost));
+    const int result = inflate(&stream_, Z_NO_FLUSH);
+    const bool is_good = result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR;
+    const char* const reason = stream_.msg != nullptr ? stream_.msg : "zlib refuses it";
+    return {static_cast<std::size_t>(stream_.next_in - packed.data()),
+            static_cast<std::size_t>(stream_.next_out - room.data()), result == Z_STREAM_END,
+            is_good ? nullptr : reason};
+  }
+  void restart() override { inflateReset(&stream_); }
+
+ private:
+  z_stream stream_{};
+};
+
+class ZstdUnpacker final : public Unpacker {
+ public:
+  Step step(std::span<const std::uint8_t> packed, std::span<std::uint8_t> room) override {
+    ZSTD_inBuffer in{packed.data(), packed.size(), 0};
+    ZSTD_outBuffer out{room.data(), room.size(), 0};
+    const std::size_t result = ZSTD_decompressStream(stream_.get(), &out, &in);
+    return {in.pos, out.pos, result == 0, ZSTD_isError(result) != 0 ? ZSTD_getErrorName(result) : nullptr};
+  }
+  void restart() override {}  // it begins again by itself
+
+ private:
+  std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream_{ZSTD_createDStream(),
+                                                                        ZSTD_freeDStream};
+};
+
+class XzUnpacker final : public Unpacker {
+ public:
+  XzUnpacker() = default;
+  XzUnpacker(const XzUnpacker&) = delete;
+  XzUnpacker& operator=(const XzUnpacker&) = delete;
+  ~XzUnpacker() override { lzma_end(&stream_); }
+
+  Step step(std::span<const std::uint8_t> packed, std::span<std::uint8_t> room) override {
+    stream_.next_in = packed.data();
+    stream_.avail_in = packed.size();
+    stream_.next_out = room.data();
+    stream_.avail_out = room.size();
+    const lzma_ret result = lzma_code(&stream_, LZMA_RUN);
+    const bool is_good = result == LZMA_OK || result == LZMA_STREAM_END || result == LZMA_BUF_ERROR;
+    const char* const reason =
+        result == LZMA_MEMLIMIT_ERROR ? "it takes more than 128 MiB to unpack" : "liblzma refuses it";
+    return {static_cast<std::size_t>(stream_.next_in - packed.data()),
+            static_cast<std::size_t>(stream_.next_out - room.data()), result == LZMA_STREAM_END,
+            is_good ? nullptr : reason};
+  }
+  void restart() override {
+    constexpr std::uint64_t kMostBytes = std::uint64_t{128} << 20;  // xz -9 has dictionaries of 64 MiB
+    if (lzma_stream_decoder(&stream_, kMostBytes, 0) != LZMA_OK) {
+      throw InputError("liblzma does not start");
     }
   }
 
  private:
-  static constexpr int kGzipOnly = 15 + 16;  // zlib: the largest window, gzip header and trailer required
-
-  std::uint64_t offset() const { return fed_bytes_ - stream_.avail_in; }
-
-  void skip_padding() {
-    if (*stream_.next_in == 0) {
-      ++stream_.next_in;
-      --stream_.avail_in;
-      return;
-    }
-    if (*stream_.next_in != kGzipSignature[0]) {
-      throw InputError("gzip data ends at byte offset " + std::to_string(offset()) +
-                       " but something else follows it");
-    }
-    inflateReset(&stream_);
-    between_members_ = false;
-  }
-
-  /// One call of zlib. Output that finds no room waits for the next call, which comes: a member's trailer is
-  /// input that zlib leaves alone until all output before it is out.
-  void inflate_step() {
-    const std::span<std::uint8_t> room = out_.room();
-    const std::size_t offered = std::min(room.size(), std::size_t{1} << 30);
-    stream_.next_out = room.data();
-    stream_.avail_out = static_cast<uInt>(offered);
-    const int result = inflate(&stream_, Z_NO_FLUSH);
-    out_.grew(offered - stream_.avail_out);
-    looker_.at(out_.bytes(), false);
-    if (result == Z_STREAM_END) {
-      between_members_ = true;
-    } else if (result != Z_OK) {
-      throw InputError("gzip data is damaged near byte offset " + std::to_string(offset()) + ": " +
-                       (stream_.msg != nullptr ? stream_.msg : "zlib refuses it"));
-    }
-  }
-
-  FileBuffer& out_;
-  Looker& looker_;
-  z_stream stream_{};
-  std::uint64_t fed_bytes_ = 0;
-  bool between_members_ = false;
+  lzma_stream stream_ = LZMA_STREAM_INIT;
 };
 
-FileBytes load_gzip(const Descriptor& file, std::span<std::uint8_t> step, std::size_t got,
-                    std::uint64_t limit_bytes, Looker& looker) {
+/// How whole files are packed.
+struct Packing {
+  const char* name;
+  std::string_view ending;
+  std::string_view signature;  ///< of the first member
+  std::string_view begins;     ///< the bytes one of which any other begins with
+  std::unique_ptr<Unpacker> (*start)();
+};
+constexpr std::array<Packing, 3> kPackings{{
+    {"gzip", ".gz", "\x1f\x8b", "\x1f",
+     [] { return std::unique_ptr<Unpacker>(std::make_unique<ZlibUnpacker>(15 + 16)); }},
+    // Members to be skipped, with tables for those who seek, begin with 50 to 5f.
+    {"zstd", ".zst", "\x28\xb5\x2f\xfd", "\x28PQRSTUVWXYZ[\\]^_",
+     [] { return std::unique_ptr<Unpacker>(std::make_unique<ZstdUnpacker>()); }},
+    {"xz", ".xz",
+     std::string_view("\xfd"
+                      "7zXZ\0",
+                      6),
+     "\xfd", [] { return std::unique_ptr<Unpacker>(std::make_unique<XzUnpacker>()); }},
+}};
+
+/// Unpacks the members of a file as their bytes arrive.
+class Members {
+ public:
+  Members(const Packing& packing, FileBuffer& out, Looker& looker)
+      : packing_(packing), unpacker_(packing.start()), out_(out), looker_(looker) {}
+
+  void feed(std::span<const std::uint8_t> packed) {
+    bool has_more = false;  // that found no room
+    while (!packed.empty() || has_more) {
+      if (between_members_ && !begin_member(&packed)) {
+        continue;
+      }
+      const std::span<std::uint8_t> room = out_.room();
+      const Unpacker::Step step = unpacker_->step(packed, room);
+      packed = packed.subspan(step.taken);
+      taken_bytes_ += step.taken;
+      if (step.fault != nullptr) {
+        throw InputError(std::string(packing_.name) + " data is damaged near byte offset " +
+                         std::to_string(taken_bytes_) + ": " + step.fault);
+      }
+      out_.grew_from(taken_bytes_, step.made);
+      looker_.at(out_.bytes(), false);
+      between_members_ = step.is_end;
+      has_more = !step.is_end && step.made == room.size();
+    }
+  }
+  void finish() const {
+    if (!between_members_) {
+      throw InputError(std::string(packing_.name) + " data is truncated: the file ends at byte offset " +
+                       std::to_string(taken_bytes_) + " within a member");
+    }
+    if (out_.size() == 0) {
+      throw InputError(std::string(packing_.name) + " data holds no bytes");
+    }
+  }
+
+ private:
+  /// Leaves out one zero byte, with which members are padded, or begins with what else there is.
+  bool begin_member(std::span<const std::uint8_t>* packed) {
+    if (packed->front() == 0) {
+      *packed = packed->subspan(1);
+      ++taken_bytes_;
+      return false;
+    }
+    if (packing_.begins.find(static_cast<char>(packed->front())) == std::string_view::npos) {
+      throw InputError(std::string(packing_.name) + " data ends at byte offset " +
+                       std::to_string(taken_bytes_) + " but something else follows it");
+    }
+    unpacker_->restart();
+    return true;
+  }
+
+  const Packing& packing_;
+  std::unique_ptr<Unpacker> unpacker_;
+  FileBuffer& out_;
+  Looker& looker_;
+  std::uint64_t taken_bytes_ = 0;
+  bool between_members_ = true;
+};
+
+FileBytes unpack(const Packing& packing, const Descriptor& file, std::span<std::uint8_t> step,
+                 std::size_t got, std::uint64_t limit_bytes, Looker& looker) {
   FileBuffer out(limit_bytes);
-  Inflater inflater(out, looker);
+  Members members(packing, out, looker);
   while (got > 0) {
-    inflater.feed(step.first(got));
+    members.feed(step.first(got));
     got = file.read(step.data(), step.size());
   }
-  inflater.finish();
-  if (out.size() == 0) {
-    throw InputError("gzip data holds no bytes");
-  }
+  members.finish();
   looker.at(out.bytes(), true);
   return out.finish();
 }
 
-}  // namespace
-
-namespace {
-
-/// Inflates `packed` into `out` until it ends, is damaged or `enough` bytes are there.
-/// @return zlib's last answer
-int inflate_into(FileBuffer& out, std::span<const std::uint8_t> packed, Deflated frame,
-                 std::uint64_t enough) {
-  z_stream stream{};
-  const int window = frame == Deflated::kZlib ? 15 : (frame == Deflated::kGzip ? 15 + 16 : -15);
-  if (inflateInit2(&stream, window) != Z_OK) {
-    throw InputError("cannot be inflated: zlib does not start");
-  }
-  const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, inflateEnd);
-  int result = Z_OK;
-  while (result == Z_OK && out.size() < enough) {
-    if (stream.avail_in == 0) {
-      const std::size_t step = std::min(packed.size(), std::size_t{1} << 30);
-      stream.next_in = const_cast<Bytef*>(packed.data());
-      stream.avail_in = static_cast<uInt>(step);
-      packed = packed.subspan(step);
-    }
-    const std::span<std::uint8_t> room = out.room();
-    const std::size_t offered = std::min(room.size(), std::size_t{1} << 30);
-    stream.next_out = room.data();
-    stream.avail_out = static_cast<uInt>(offered);
-    result = inflate(&stream, Z_NO_FLUSH);
-    out.grew(offered - stream.avail_out);
-    if (result == Z_BUF_ERROR && !packed.empty()) {
-      result = Z_OK;
+/// Inflates `packed` into `out` until it ends, is damaged or ends too early, or `enough` bytes are there.
+/// @return the last step
+Unpacker::Step inflate_into(FileBuffer& out, std::span<const std::uint8_t> packed, Deflated frame,
+                            std::uint64_t enough) {
+  ZlibUnpacker unpacker(frame == Deflated::kZlib ? 15 : (frame == Deflated::kGzip ? 15 + 16 : -15));
+  const std::size_t all = packed.size();
+  for (;;) {
+    const Unpacker::Step step = unpacker.step(packed, out.room());
+    packed = packed.subspan(step.taken);
+    out.grew_from(all - packed.size(), step.made);
+    const bool is_stuck = step.taken == 0 && step.made == 0;
+    if (step.is_end || step.fault != nullptr || is_stuck || out.size() >= enough) {
+      return step;
     }
   }
-  return result;
 }
 
 }  // namespace
@@ -302,9 +390,9 @@ int inflate_into(FileBuffer& out, std::span<const std::uint8_t> packed, Deflated
 FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
                         const std::string& place) {
   FileBuffer out(limit_bytes);
-  const int result = inflate_into(out, packed, frame, UINT64_MAX);
-  if (result != Z_STREAM_END) {
-    throw InputError(place + (result == Z_BUF_ERROR ? ": the deflated data is truncated"
+  const Unpacker::Step last = inflate_into(out, packed, frame, UINT64_MAX);
+  if (!last.is_end) {
+    throw InputError(place + (last.fault == nullptr ? ": the deflated data is truncated"
                                                     : ": the deflated data is damaged"));
   }
   return out.finish();
@@ -350,11 +438,17 @@ FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const Fi
     throw InputError("is empty");
   }
   Looker looker(look);
-  if (got >= 2 && step[0] == kGzipSignature[0] && step[1] == kGzipSignature[1]) {
-    return load_gzip(file, step, got, limit_bytes, looker);
+  const std::string_view head(reinterpret_cast<const char*>(step.data()), got);
+  for (const Packing& packing : kPackings) {
+    if (head.starts_with(packing.signature)) {
+      return unpack(packing, file, step, got, limit_bytes, looker);
+    }
   }
-  if (path.ends_with(".gz")) {
-    throw InputError("its name ends in .gz but it does not begin with the gzip signature 1f 8b");
+  for (const Packing& packing : kPackings) {
+    if (path.ends_with(packing.ending)) {
+      throw InputError("its name ends in " + std::string(packing.ending) +
+                       " but it does not begin with the " + packing.name + " signature");
+    }
   }
   looker.at(step.first(got), true);  // a pipe hands out less only at its end
   if (size_hint_bytes > limit_bytes) {

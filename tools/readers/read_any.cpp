@@ -3,16 +3,60 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "readers/file_bytes.h"
 #include "readers/text.h"
+#include "readers/zip.h"
 
 namespace thimble::tools {
 
 namespace {
 
+bool looks_like_zip(std::span<const std::uint8_t> bytes) {
+  return SharedBytes{bytes, nullptr}.text().starts_with("PK\x03\x04");
+}
+
+/// The scene in an archive: what a reader knows by name or beginning. Text that may be anything is one only where
+/// nothing else is.
+ZipMember scene_member(std::span<const std::uint8_t> file) {
+  std::vector<ZipMember> scenes;
+  std::vector<ZipMember> texts;
+  for (const ZipMember& member : zip_members(file)) {
+    const std::string_view name = member.name.substr(member.name.rfind('/') + 1);
+    if (name.empty() || name.starts_with('.') || member.name.starts_with("__MACOSX/")) {
+      continue;  // folders, and what systems leave
+    }
+    const FileBytes beginning = zip_beginning(member, kFirstLookBytes);
+    const ReaderRow* const row = find_reader(name, beginning.bytes());
+    if (row == nullptr || looks_like_zip(beginning.bytes()) ||
+        (row->beginning == Beginning::kMagic && (!row->looks_like || !row->looks_like(beginning.bytes())))) {
+      continue;
+    }
+    (name.ends_with(".txt") ? texts : scenes).push_back(member);
+  }
+  scenes = scenes.empty() ? texts : scenes;
+  if (scenes.size() == 1) {
+    return scenes[0];
+  }
+  if (scenes.empty()) {
+    throw InputError("the archive holds no scene");
+  }
+  throw InputError("the archive holds " + std::to_string(scenes.size()) + " scenes, " +
+                   quoted(scenes[0].name) + " and " + quoted(scenes[1].name) +
+                   (scenes.size() > 2 ? " among them" : "") + "; unpack the one that is meant");
+}
+
+Source read_zip(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  const ZipMember member = scene_member(file.bytes);
+  ReadOptions inside = options;  // what it names is looked for beside the archive
+  inside.path = options.path.substr(0, options.path.rfind('/') + 1) +
+                std::string(member.name.substr(member.name.rfind('/') + 1));
+  return read_any(inside, share(zip_unpack(member)), progress);
+}
+
 // The one place that knows all formats. Where two recognise the same bytes, the first one counts.
-constexpr std::array<ReaderRow, 22> kRows{{
+constexpr std::array<ReaderRow, 23> kRows{{
     {".vox", "MagicaVoxel model", read_vox, looks_like_vox, Beginning::kMagic},
     {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic},
     {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText},
@@ -29,6 +73,7 @@ constexpr std::array<ReaderRow, 22> kRows{{
     {".binvox", "binvox grid", read_binvox, looks_like_binvox, Beginning::kMagic},
     {".npy", "NumPy array", read_npy, looks_like_npy, Beginning::kMagic},
     {".npz", "NumPy archive", read_npy, nullptr, Beginning::kAny},
+    {".zip", "archive of one scene", read_zip, looks_like_zip},
     {".asc", "grid of heights", read_height_grid, looks_like_height_grid, Beginning::kMagic},
     {".mts", "Minetest schematic", read_mts, looks_like_mts, Beginning::kMagic},
     {".schematic", "Minecraft schematic", read_schematic, looks_like_schematic, Beginning::kMagic},
@@ -77,8 +122,11 @@ const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t
       return &row;
     }
   }
-  if (has_ending(path, ".gz")) {
-    path.remove_suffix(3);
+  for (const std::string_view packed : {".gz", ".zst", ".xz"}) {
+    if (has_ending(path, packed)) {
+      path.remove_suffix(packed.size());
+      break;
+    }
   }
   for (const ReaderRow& row : kRows) {
     std::string_view endings = row.endings;
@@ -117,10 +165,10 @@ void check_beginning(std::string_view path, std::span<const std::uint8_t> first)
 
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress) {
   const ReaderRow& row = row_for(options.path, file.bytes);
-  if (options.frame && row.read != read_vox) {
+  if (options.frame && row.read != read_vox && row.read != read_zip) {
     throw InputError("--frame is for .vox files with frames, and this is a " + std::string(row.name));
   }
-  if (options.as != ArrayAs::kByShape && row.read != read_npy) {
+  if (options.as != ArrayAs::kByShape && row.read != read_npy && row.read != read_zip) {
     throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a " +
                      std::string(row.name));
   }

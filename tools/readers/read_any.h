@@ -34,7 +34,7 @@ struct ReaderRow {
 std::span<const ReaderRow> reader_rows();
 
 /// The first row that recognises `bytes`; otherwise the one whose ending `path` has, in any case and before a
-/// final `.gz`; null when there is none. So what a file holds counts for more than its name, and a `.ply`
+/// final `.gz`, `.zst` or `.xz`; null when there is none. So what a file holds counts for more than its name, and a `.ply`
 /// that no reader recognises is a broken `.ply`.
 const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t> bytes);
 

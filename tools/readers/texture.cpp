@@ -1,5 +1,7 @@
 #include "readers/texture.h"
 
+#include <webp/decode.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -217,14 +219,11 @@ std::shared_ptr<const Texture> Textures::inside(const std::string& key, std::spa
   int channels = 0;
   const auto size = static_cast<int>(std::min<std::size_t>(encoded.size(), std::numeric_limits<int>::max()));
   room_bytes = std::size_t{1} << 20;
-  if (stbi_info_from_memory(encoded.data(), size, &width, &height, &channels) == 0 || width < 1 ||
-      height < 1) {
+  const bool is_webp = WebPGetInfo(encoded.data(), encoded.size(), &width, &height) != 0;
+  if ((!is_webp && stbi_info_from_memory(encoded.data(), size, &width, &height, &channels) == 0) ||
+      width < 1 || height < 1) {
     const std::string_view begins(reinterpret_cast<const char*>(encoded.data()), encoded.size());
-    const bool is_ktx = begins.starts_with("\xABKTX");
-    const bool is_webp = begins.starts_with("RIFF") && begins.substr(0, 12).ends_with("WEBP");
-    miss(key, is_ktx    ? "is KTX, which is not read"
-              : is_webp ? "is WebP, which is not read"
-                        : "is no PNG or JPEG");
+    miss(key, begins.starts_with("\xABKTX") ? "is KTX, which is not read" : "is no PNG, JPEG or WebP");
     return texture;
   }
   encoded_bytes_ += encoded.size();
@@ -236,8 +235,12 @@ std::shared_ptr<const Texture> Textures::inside(const std::string& key, std::spa
     return texture;
   }
   room_bytes = static_cast<std::size_t>(5 * bytes + 3 * encoded.size() + (std::uint64_t{1} << 20));
-  std::shared_ptr<std::uint8_t> rgba(
-      stbi_load_from_memory(encoded.data(), size, &width, &height, &channels, 4), free_block);
+  std::shared_ptr<std::uint8_t> rgba;
+  if (is_webp) {
+    rgba.reset(WebPDecodeRGBA(encoded.data(), encoded.size(), &width, &height), WebPFree);
+  } else {
+    rgba.reset(stbi_load_from_memory(encoded.data(), size, &width, &height, &channels, 4), free_block);
+  }
   if (rgba == nullptr) {
     miss(key, "is damaged");
     return texture;

@@ -61,7 +61,7 @@ class Textures {
   /// @param path  of the file that names them; empty: it has nothing beside it
   explicit Textures(std::string path) : path_(std::move(path)) {}
 
-  /// A PNG or JPEG beside the file: by its name, or, where that leads nowhere, by what is behind its last slash.
+  /// A PNG, JPEG or WebP beside the file: by its name, or, where that leads nowhere, by what is behind its last slash.
   /// Null, and a fault for `add_notes`, where it is missing, damaged, too large or something else.
   /// @param is_opacity  its alpha is wanted alone, which is its grey where all of it is opaque
   /// @throws ShortageError  no descriptors or memory left to open it
