@@ -169,6 +169,17 @@ TEST_CASE("command: scenes that cannot be read -> status 1, the file and the fau
   check_refused({"info", "points:5,depth=13"}, 1, {"12"});
   check_refused({"info", "points:5,color=3"}, 1, {"points:5,color=3"});
   check_refused({"info", "spheres", "--as-voxels"}, 2, {"--as-voxels"});
+  const std::string cloud = folder.write("cloud.xyz", "1 2 3\n4 5 6\n");
+  check_refused({"info", "spheres", "--fit", "100"}, 2, {"--fit"});
+  check_refused({"info", cloud, "--fit", "49"}, 2, {"--fit", "50"});
+  check_refused({"info", cloud, "--as-voxels", "--clip", "0,0,0,9,9,9"}, 2, {"--clip", "--as-voxels"});
+  for (const char* box : {"1,2,3", "0,0,0,1,1,1,1", "0,0,0,1,-1,1", "0,0,0,1,1,x", ""}) {
+    check_refused({"info", cloud, "--clip", box}, 2, {"--clip", "X,Y,Z,X,Y,Z"});
+  }
+  check_refused({"info", cloud, "--clip", "7,0,0,9,9,9"}, 1, {"cloud.xyz", "--clip"});
+  check_refused(
+      {"info", folder.write("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "--fit", "99"}, 1,
+      {"mesh.off", "point files"});
 }
 
 TEST_CASE("command: names with blanks, UTF-8 and line feeds -> read, and told without breaking the line") {

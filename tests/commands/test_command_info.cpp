@@ -50,6 +50,30 @@ TEST_CASE("info: a generator -> depth, points, voxels, a sound compact tree") {
   CHECK(rows["solid voxels"] == "512");
 }
 
+TEST_CASE("info: points far out, or outside of --clip -> a note, and rendering says it, too") {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 400; ++i) {
+    text += std::to_string(i % 20) + " " + std::to_string(i / 20) + " 0\n";
+  }
+  const std::string path = folder.write("far.xyz", text + "1000000 0 0\n");
+  const auto note = [&](const Words& more) {
+    Words words{"info", path};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = run_command(words);
+    CHECK(result.status == 0);
+    CHECK((result.out.find("solid voxels         400") != std::string::npos) == more.empty());
+    return result.out + result.err;
+  };
+  const std::string said = "1 of 401 points are far from all others and left out; --fit 100 takes them";
+  CHECK(note({}).find(said) != std::string::npos);
+  CHECK(note({"--fit", "100"}).find("left out") == std::string::npos);
+  CHECK(note({"--clip", "0,0,-1,4.5,19,1"}).find("301 of 401 points are outside of --clip") !=
+        std::string::npos);
+  const CommandResult drawn = run_command({"render", path, "--size", "9x9", "-o", folder.path("a.png")});
+  CHECK(drawn.err.find(said) != std::string::npos);
+}
+
 TEST_CASE("info: a .vox of two voxels and two materials -> its own indices, the least world that holds it") {
   const TemporaryFolder folder;
   const std::string size = little(20, 4) + little(5, 4) + little(9, 4);

@@ -70,6 +70,7 @@ const std::multimap<std::string, std::string>& values() {
                                                              {"--frames", "1"},
                                                              {"--bounces", "2"},
                                                              {"--camera-path", "@path.csv"},
+                                                             {"--clip", "0,0,0,9,9,9"},
                                                              {"--coarsen", ""},
                                                              {"--cutoff", "3"},
                                                              {"--depth", "4"},
@@ -83,6 +84,7 @@ const std::multimap<std::string, std::string>& values() {
                                                              {"--engine", "wide"},
                                                              {"--eye", "-20,-30,40"},
                                                              {"--format", "oct"},
+                                                             {"--fit", "100"},
                                                              {"--fov", "50"},
                                                              {"--frame", "0"},
                                                              {"--ground", "on"},
@@ -119,10 +121,10 @@ const std::multimap<std::string, std::string>& values() {
 
 // What only a look at the scene, the rays or the budget tells: status 1.
 bool depends_on_input(const std::string& text) {
-  for (const char* phrase : {"is for point files", "are for .npy and .npz", "is for .vox files",
-                             "parallel to the direction of view", "no room for", "does not take this ray",
-                             "more than", "budget", "--memory", "there is no terminal",
-                             "the terminal cannot show", "pixels differ", "does not take the rays"}) {
+  for (const char* phrase :
+       {"for point files", "are for .npy and .npz", "is for .vox files", "parallel to the direction of view",
+        "no room for", "does not take this ray", "more than", "budget", "--memory", "there is no terminal",
+        "the terminal cannot show", "pixels differ", "does not take the rays"}) {
     if (text.find(phrase) != std::string::npos) {
       return true;
     }

@@ -132,6 +132,64 @@ TEST_CASE("fit_points: random clouds of any magnitude -> always inside the world
   }
 }
 
+TEST_CASE(
+    "choose_world: points far out -> left out, and no other; --fit 100 and clouds without such -> all") {
+  SplitMix64 random(9);
+  std::vector<std::array<double, 3>> near;
+  for (int i = 0; i < 3000; ++i) {
+    near.push_back(
+        {random.between(0, 1000) / 10.0, random.between(0, 300) / 10.0, random.between(0, 50) / 10.0});
+  }
+  const auto surveyed = [](const std::vector<std::array<double, 3>>& positions,
+                           const FitWishes& wishes = {}) {
+    const ListCloud cloud(positions);
+    PointSurvey survey = survey_points(cloud);
+    choose_world(cloud, wishes, &survey);
+    std::size_t drawn = 0;
+    fit_points(cloud, survey, 6, nullptr, [&](int, int, int, std::uint8_t) { ++drawn; });
+    CHECK(drawn == positions.size() - survey.left_out);
+    return survey;
+  };
+  const Bounds whole = surveyed(near).world;
+  CHECK(surveyed(near).left_out == 0);
+  for (const double far : {900.0, -1e6, 1e300, -8.9e307}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      CAPTURE(far);
+      std::vector<std::array<double, 3>> positions = near;
+      for (std::size_t i = 0; i < 20; ++i) {
+        positions.insert(positions.begin() + static_cast<std::ptrdiff_t>(100 * i), near[i]);
+        positions[100 * i][axis] = far * (1 + static_cast<double>(i) / 100);
+      }
+      const PointSurvey survey = surveyed(positions);
+      CHECK(survey.left_out == 20);
+      CHECK(survey.world.low == whole.low);
+      CHECK(survey.world.high == whole.high);
+      CHECK(surveyed(positions, {100, std::nullopt}).left_out == 0);
+      CHECK(surveyed(positions, {99.9, std::nullopt}).left_out == 0);  // 20 are more than that
+    }
+  }
+  // Seven times as long: no reason. Most at one place: none, either. Many points: by a sample.
+  std::vector<std::array<double, 3>> positions = near;
+  positions.push_back({700, 0, 0});
+  CHECK(surveyed(positions).left_out == 0);
+  positions.assign(1000, {1, 2, 3});
+  positions.push_back({1000, 0, 0});
+  CHECK(surveyed(positions).left_out == 0);
+  positions.clear();
+  for (int i = 0; i < 100; ++i) {
+    positions.insert(positions.end(), near.begin(), near.end());
+  }
+  positions.push_back({0, 0, 5000});
+  CHECK(surveyed(positions).left_out == 1);
+  CHECK(surveyed(positions, {100, std::nullopt}).left_out == 0);
+  const Bounds clip{{0, 0, 0}, {50, 10, 5}, false};
+  const PointSurvey clipped = surveyed(near, {99, clip});
+  CHECK(clipped.left_out > 2000);
+  CHECK((clipped.world.high[0] <= 50 && clipped.world.high[1] <= 10));
+  CHECK_THROWS_WITH_AS(surveyed(near, {99, Bounds{{200, 0, 0}, {300, 1, 1}, false}}),
+                       "no point is in the box of --clip", InputError);
+}
+
 TEST_CASE("fit_points: colours -> palette indices; without a palette or colours material 0") {
   const ListCloud cloud({{0, 0, 0}, {1, 1, 1}}, {{200, 10, 10}, {10, 200, 10}});
   const PaletteMap colors(survey_points(cloud).colors);

@@ -1,6 +1,7 @@
 #include "commands/scene_options.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <sstream>
 #include <thread>
@@ -22,12 +23,33 @@
 
 namespace thimble::tools {
 
+namespace {
+
+/// Six numbers: the low and the high corner of a box.
+std::optional<std::array<double, 6>> parse_box(std::string_view text) {
+  std::array<double, 6> box{};
+  for (std::size_t i = 0; i < box.size(); ++i) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const auto number = parse_real(text.substr(0, comma));
+    if (!number || (i < 5) != (comma < text.size()) || (i >= 3 && *number < box[i - 3])) {
+      return std::nullopt;
+    }
+    box[i] = *number;
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return box;
+}
+
+}  // namespace
+
 void SceneOptions::add_scene(CLI::App& app, bool required) {
   Option scene = add_argument(
       app, "scene", "SCENE", &arguments.scene,
       "a file (.vox .scene .oct .ply .obj .off .stl .glb .gltf .xyz .csv .txt .tsv .pts .pcd .las .npy "
-      ".npz .asc .binvox .qb .kvx .schematic .schem .mts, a Gadget-1 snapshot, .gz .zst .xz of any, a .zip of "
-      "one) or a generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L; or the name "
+      ".npz .asc .binvox .qb .kvx .schematic .schem .mts, a Gadget-1 snapshot, .gz .zst .xz of any, a .zip "
+      "of "
+      "one) or a generator: points:N, cluster:N, spheres, water or demo, each with ,seed=S,depth=L; or the "
+      "name "
       "of a scene that comes with Thimble, such as castle");
   if (required) {
     scene.required();
@@ -45,6 +67,20 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
   add_flag(app, "--as-heights", &arguments.as_heights,
            ".npy and .npz: an array of H x W numbers is heights at any W");
   add_flag(app, "--z-up", &arguments.z_up, "meshes: z is up in the file (default: y is, but in .stl)");
+  add_real_option(
+      app, "--fit", "P", 50, 100, [this](double percent) { arguments.fit_percent = percent; },
+      "point files: points far from P per cent of them are left out where the world would be eight times as "
+      "long "
+      "for them; 100 takes all (default: 99)");
+  add_text_option(
+      app, "--clip", "BOX",
+      [this](const std::string& text) {
+        arguments.clip = parse_box(text);
+        return arguments.clip ? ""
+                              : "is not X,Y,Z,X,Y,Z, a box's low and high corner in the file's coordinates";
+      },
+      "point files: only the points of the box X,Y,Z,X,Y,Z, its low and high corner in the file's "
+      "coordinates");
   add_whole_option(app, "--frame", "N", 0, UINT32_MAX - 1, &arguments.frame,
                    "frame N of a .vox animation, counted from 0 (default: the first)");
 }

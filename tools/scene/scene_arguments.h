@@ -3,6 +3,7 @@
 #ifndef THIMBLE_TOOLS_SCENE_SCENE_ARGUMENTS_H
 #define THIMBLE_TOOLS_SCENE_SCENE_ARGUMENTS_H
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,13 +12,15 @@ namespace thimble::tools {
 
 /// What is opened.
 struct SceneArguments {
-  std::string scene;                     ///< a file's path or a generator
-  std::optional<int> depth;              ///< --depth
-  bool as_voxels = false;                ///< --as-voxels
-  bool z_up = false;                     ///< --z-up
-  std::optional<std::uint32_t> frame{};  ///< --frame
-  bool as_points = false;                ///< --as-points
-  bool as_heights = false;               ///< --as-heights
+  std::string scene;                            ///< a file's path or a generator
+  std::optional<int> depth;                     ///< --depth
+  bool as_voxels = false;                       ///< --as-voxels
+  bool z_up = false;                            ///< --z-up
+  std::optional<std::uint32_t> frame{};         ///< --frame
+  bool as_points = false;                       ///< --as-points
+  bool as_heights = false;                      ///< --as-heights
+  std::optional<double> fit_percent{};          ///< --fit
+  std::optional<std::array<double, 6>> clip{};  ///< --clip: the box's low corner, its high one
 };
 
 /// What is built of it, and traced.

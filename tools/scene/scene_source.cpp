@@ -120,18 +120,36 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
       });
 }
 
+FitWishes fit_wishes(const SceneArguments& arguments) {
+  FitWishes wishes;
+  wishes.percent = arguments.fit_percent.value_or(wishes.percent);
+  if (arguments.clip) {
+    const auto& [x0, y0, z0, x1, y1, z1] = *arguments.clip;
+    wishes.clip = Bounds{{x0, y0, z0}, {x1, y1, z1}, false};
+  }
+  return wishes;
+}
+
 std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const SceneArguments& arguments) {
   constexpr int kDefaultDepth = 9;
   // A cloud, what the first pass learned of it, and its colours.
   struct Points {
-    explicit Points(std::unique_ptr<PointCloud> read)
-        : cloud(std::move(read)), survey(survey_points(*cloud)), colors(survey.colors) {}
+    Points(std::unique_ptr<PointCloud> read, const FitWishes* wishes)
+        : cloud(std::move(read)), survey(survey_points(*cloud)), colors(survey.colors) {
+      if (wishes != nullptr) {
+        choose_world(*cloud, *wishes, &survey);
+      }
+    }
     std::unique_ptr<PointCloud> cloud;
     PointSurvey survey;
     PaletteMap colors;
   };
-  const auto points = std::make_shared<const Points>(std::move(read));
   const bool as_voxels = arguments.as_voxels;
+  if (as_voxels && (arguments.fit_percent || arguments.clip)) {
+    throw UsageError("--fit and --clip choose what fills the world, and --as-voxels leaves all as it is");
+  }
+  const FitWishes wishes = fit_wishes(arguments);
+  const auto points = std::make_shared<const Points>(std::move(read), as_voxels ? nullptr : &wishes);
   SourceFacts facts;
   facts.kind = as_voxels ? "points as voxels" : "point cloud, fitted to the world";
   facts.level = arguments.depth.value_or(as_voxels ? smallest_level(points->survey) : kDefaultDepth);
@@ -146,7 +164,7 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
   }
   facts.palette = points->colors.palette();
   const int level = facts.level;
-  return std::make_unique<SceneSource>(
+  auto scene = std::make_unique<SceneSource>(
       std::move(facts), [points, as_voxels, level](const VoxelSink& sink, const Progress& progress) {
         const VoxelSink counted = metered(sink, progress, points->survey.points);
         if (as_voxels) {
@@ -155,6 +173,13 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
           fit_points(*points->cloud, points->survey, level, &points->colors, counted);
         }
       });
+  if (points->survey.left_out != 0) {
+    scene->add_notes({printable(arguments.scene) + ": " + std::to_string(points->survey.left_out) + " of " +
+                      std::to_string(points->survey.points) +
+                      (wishes.clip ? " points are outside of --clip and left out"
+                                   : " points are far from all others and left out; --fit 100 takes them")});
+  }
+  return scene;
 }
 
 std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments& arguments) {
@@ -247,6 +272,9 @@ std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& argum
   if (arguments.as_voxels) {
     throw InputError("--as-voxels is for point files");
   }
+  if (arguments.fit_percent || arguments.clip) {
+    throw InputError("--fit and --clip are for point files");
+  }
   if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
     return open_text_scene(**text, arguments, opening, progress);
   }
@@ -314,6 +342,9 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
   if (auto spec = parse_generator(arguments.scene)) {
     if (arguments.as_voxels) {
       throw UsageError("--as-voxels is for point files, and this is a generator");
+    }
+    if (arguments.fit_percent || arguments.clip) {
+      throw UsageError("--fit and --clip are for point files, and this is a generator");
     }
     if (arguments.as_points || arguments.as_heights) {
       throw UsageError("--as-points and --as-heights are for .npy and .npz, and this is a generator");

@@ -16,6 +16,19 @@ void Bounds::add(const std::array<double, 3>& position) {
   empty = false;
 }
 
+bool Bounds::holds(const std::array<double, 3>& position) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(position[axis] >= low[axis] && position[axis] <= high[axis])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+double Bounds::longest() const {
+  return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+}
+
 WorldFit::WorldFit(const Bounds& bounds, int level) : center_{}, center_units_{}, half_extent_(0) {
   const std::int32_t middle = std::int32_t{1} << (level + kUnitBits - 1);
   half_units_ = static_cast<double>(middle - 1);
@@ -82,10 +95,22 @@ std::optional<std::array<std::int32_t, 3>> voxel_at(const CloudPoint& point, std
 }  // namespace
 
 PointSurvey survey_points(const PointCloud& cloud) {
+  constexpr std::size_t kMostSamples = std::size_t{1} << 16;
   PointSurvey survey;
   survey.counts_in = cloud.counts_in();
   const bool colored = cloud.has_color();
+  std::uint64_t every = 1;
   cloud.for_each([&](const CloudPoint& point) {
+    if (survey.points % every == 0) {
+      if (survey.sample.size() == kMostSamples) {
+        for (std::size_t i = 0; i < kMostSamples / 2; ++i) {
+          survey.sample[i] = survey.sample[2 * i];
+        }
+        survey.sample.resize(kMostSamples / 2);
+        every *= 2;
+      }
+      survey.sample.push_back({point.x, point.y, point.z});
+    }
     ++survey.points;
     survey.bounds.add({point.x, point.y, point.z});
     if (colored) {
@@ -98,7 +123,57 @@ PointSurvey survey_points(const PointCloud& cloud) {
   if (survey.points == 0) {
     throw InputError("no points");
   }
+  survey.world = survey.bounds;
   return survey;
+}
+
+void choose_world(const PointCloud& cloud, const FitWishes& wishes, PointSurvey* survey) {
+  if (!wishes.clip && wishes.percent >= 100) {
+    return;
+  }
+  Bounds taken;
+  if (wishes.clip) {
+    taken = *wishes.clip;
+  } else {
+    // On each axis the shortest stretch that holds so many of the sample.
+    const std::size_t count = survey->sample.size();
+    const auto outer = static_cast<std::size_t>(static_cast<double>(count) * (100 - wishes.percent) / 100);
+    const std::size_t last = count - 1 - outer;
+    taken.empty = false;
+    std::vector<double> numbers(count);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::transform(survey->sample.begin(), survey->sample.end(), numbers.begin(),
+                     [&](const std::array<double, 3>& position) { return position[axis]; });
+      std::sort(numbers.begin(), numbers.end());
+      std::size_t first = 0;
+      for (std::size_t i = 1; i <= outer; ++i) {
+        first = numbers[i + last] - numbers[i] < numbers[first + last] - numbers[first] ? i : first;
+      }
+      taken.low[axis] = numbers[first];
+      taken.high[axis] = numbers[first + last];
+    }
+    const double inner = taken.longest();
+    if (!(inner > 0 && inner < survey->bounds.longest() / 8)) {
+      return;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      taken.low[axis] -= inner;
+      taken.high[axis] += inner;
+    }
+  }
+  survey->world = {};
+  std::uint64_t inside = 0;
+  cloud.for_each([&](const CloudPoint& point) {
+    const std::array<double, 3> position{point.x, point.y, point.z};
+    if (taken.holds(position)) {
+      survey->world.add(position);
+      ++inside;
+    }
+  });
+  if (inside == 0) {
+    throw InputError("no point is in the box of --clip");
+  }
+  survey->left_out = survey->points - inside;
 }
 
 int smallest_level(const PointSurvey& survey) {
@@ -115,10 +190,14 @@ int smallest_level(const PointSurvey& survey) {
 
 void fit_points(const PointCloud& cloud, const PointSurvey& survey, int level, const PaletteMap* colors,
                 const VoxelSink& sink) {
-  const WorldFit fit(survey.bounds, level);
+  const WorldFit fit(survey.world, level);
   const PaletteMap* const used = cloud.has_color() ? colors : nullptr;
   cloud.for_each([&](const CloudPoint& point) {
-    const auto voxel = fit.voxel({point.x, point.y, point.z});
+    const std::array<double, 3> position{point.x, point.y, point.z};
+    if (!survey.world.holds(position)) {
+      return;
+    }
+    const auto voxel = fit.voxel(position);
     sink(voxel[0], voxel[1], voxel[2], used != nullptr ? used->index(point.color) : std::uint8_t{0});
   });
 }

@@ -15,6 +15,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "readers/source.h"
 #include "scene/palette.h"
@@ -33,6 +34,9 @@ struct Bounds {
 
   /// Grows the box; `position` is finite.
   void add(const std::array<double, 3>& position);
+  bool holds(const std::array<double, 3>& position) const;
+  /// Of its longest side; infinite where a double does not hold it.
+  double longest() const;
 };
 
 class WorldFit {
@@ -59,11 +63,14 @@ class WorldFit {
 // voxels, either fitted to the world (world_fit.h: one scale, centred, recentred in double) or as they are.
 // Points are never turned: z is up.
 
-/// What the first pass learns. About 1 MiB, whatever the cloud's size.
+/// What the first pass learns. At most 3 MiB, whatever the cloud's size.
 struct PointSurvey {
   std::uint64_t points = 0;  ///< at least 1
   Bounds bounds;
-  ColorHistogram colors;  ///< empty when the cloud has no colours
+  Bounds world;                               ///< what is fitted: `bounds`, or what `choose_world` says
+  std::uint64_t left_out = 0;                 ///< points that are not in there
+  std::vector<std::array<double, 3>> sample;  ///< every nth point
+  ColorHistogram colors;                      ///< empty when the cloud has no colours
   /// The first point that no world holds as it is: its floor is outside 0 .. 2^12 - 1 on some axis.
   std::optional<CloudPoint> unplaceable;
   const char* counts_in = "point";  ///< of the cloud
@@ -72,13 +79,24 @@ struct PointSurvey {
 /// Pass 1. InputError "no points" for an empty cloud.
 PointSurvey survey_points(const PointCloud& cloud);
 
+/// Which points the world is fitted to.
+struct FitWishes {
+  double percent = 99;         ///< that always lie in it; 100: all
+  std::optional<Bounds> clip;  ///< instead: those in this box
+};
+/// Sets the survey's world. Points far out do not make all others small: where the least box that holds `percent` of
+/// the points on each axis is less than an eighth as long as that of all of them, the world is the box of the points that
+/// are at most that long away from it. One more pass over the cloud where something is left out.
+/// @throws InputError  no point is in the clip
+void choose_world(const PointCloud& cloud, const FitWishes& wishes, PointSurvey* survey);
+
 /// The smallest level, 1..12, whose world holds every point as it is. InputError that names the first point
 /// with a coordinate below 0 or at 4096 or above, by its line (its number, where points have no lines).
 int smallest_level(const PointSurvey& survey);
 
-/// Pass 2: the cloud scaled to the world of 2^level voxels a side, level 1..12: the longest axis fills it,
-/// the others are centred. A cloud without extent (one point, or all equal) is the one voxel in the middle.
-/// One call of `sink` a point, in the cloud's order. `colors` may be null: material 0.
+/// Pass 2: the survey's world scaled to that of 2^level voxels a side, level 1..12: the longest axis fills it,
+/// the others are centred. Points outside are left out. A cloud without extent (one point, or all equal) is the one voxel in the middle.
+/// One call of `sink` a point that is not, in the cloud's order. `colors` may be null: material 0.
 void fit_points(const PointCloud& cloud, const PointSurvey& survey, int level, const PaletteMap* colors,
                 const VoxelSink& sink);
 
