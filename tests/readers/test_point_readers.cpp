@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -57,6 +58,46 @@ bool is_at(const CloudPoint& point, double x, double y, double z) {
 }
 
 }  // namespace
+
+TEST_CASE(
+    "xyz: a catalogue of stars by the names of its columns -> places; those without a distance are left "
+    "out") {
+  const auto near = [](const CloudPoint& point, double x, double y, double z) {
+    return std::fabs(point.x - x) + std::fabs(point.y - y) + std::fabs(point.z - z) < 1e-9;
+  };
+  const auto notes = [](const std::string& text) {
+    return notes_of(read_xyz(SharedBytes::own(text), {}, {}));
+  };
+  const std::string hours = "id,ra,dec,dist\n1,0,0,2\n2,6,0,3\n3,12,-90,4\n4,18,30,0\n5,24,0,1\n";
+  const auto places = read_points(read_xyz, hours);
+  REQUIRE(places.size() == 4);
+  CHECK(near(places[0], 2, 0, 0));
+  CHECK(near(places[1], 0, 3, 0));
+  CHECK(near(places[2], 0, 0, -4));
+  CHECK(near(places[3], 1, 0, 0));
+  CHECK(contains(notes(hours)[0], "right ascensions are hours"));
+  CHECK(contains(notes(hours)[0], "1 of 5 have none"));
+  const std::string degrees =
+      "source_id;RA_ICRS;DE_ICRS;Plx\n7;90;0;10\n8;0;60;1\n9;180;0;-3\n10;10;10;\n11;10;10;null\n12;10;;5\n";
+  const auto far = read_points(read_xyz, degrees);
+  REQUIRE(far.size() == 2);
+  CHECK(near(far[0], 0, 100, 0));
+  CHECK(near(far[1], 500, 0, 500 * std::sqrt(3)));
+  CHECK(contains(notes(degrees)[0], "degrees, distances are 1000 / parallax; 4 of 6"));
+  CHECK(near(read_points(read_xyz, "ra dec\n90 0\n270 0\n")[1], 0, -1, 0));
+  const auto galaxy =
+      read_points(read_xyz, "Name;RA;Dec;Const\nA;06:00:00;-90:00:00;x\nB;;;y\nC;00:30:00.0;+00:00:00;z\n");
+  REQUIRE(galaxy.size() == 2);
+  CHECK(near(galaxy[0], 0, 0, -1));
+  CHECK(near(galaxy[1], std::cos(std::acos(-1.0) / 24), std::sin(std::acos(-1.0) / 24), 0));
+  for (const char* word : {"1:2:3:4", "1:", ":1", "1:-2", "1:x", "--1:2"}) {
+    CHECK(contains(error_of(read_xyz, std::string("ra,dec\n") + word + ",0\n"), "line 2"));
+  }
+  // Where there are places as well, they are what is meant.
+  CHECK(near(read_points(read_xyz, "ra,dec,x,y,z\n90,0,1,2,3\n")[0], 1, 2, 3));
+  CHECK(contains(error_of(read_xyz, "ra,dec,plx\n1,2,0\n"), "no point of the file is finite"));
+  CHECK(contains(error_of(read_xyz, "ra,dec,plx\n1,2,x\n"), "line 2"));
+}
 
 TEST_CASE("xyz: blanks, tabs, commas and semicolons -> the same points") {
   for (const char* text :
@@ -163,7 +204,7 @@ TEST_CASE("xyz: what is no finite number -> an error that names the line") {
   CHECK(contains(error_of(read_xyz, "1 2 -inf\n"), "no point of the file is finite"));
   CHECK(contains(error_of(read_xyz, "1 2 1e999\n"), "no point of the file is finite"));
   CHECK(contains(
-      error_of(read_xyz, "Name;RA;Dec\nIC0001;0;27\n"),
+      error_of(read_xyz, "Name;Lon;Lat\nIC0001;0;27\n"),
       "line 2: x is 'IC0001', which is not a number (the first three columns are read, since line 1 names no "
       "columns x, y and z)"));
   CHECK(!contains(error_of(read_xyz, "Name;x;y;z\na;0;27;k\n"), "names no"));

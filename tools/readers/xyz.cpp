@@ -15,6 +15,10 @@
 // 2. A line whose first column is not a number is a header, once, before all points. Columns named x, y, z
 //    (any case, quotes allowed, a leading // allowed) are the coordinates; without these three names they
 //    are the first three columns of what follows. Columns named r, g, b or red, green, blue are the colour.
+//    Columns named ra and dec (raj2000, ra_icrs, dec, de, ...) are a catalogue of stars: right ascension in degrees, or
+//    in hours where none of the file is above 24; declination in degrees; both as 12:34:56.7, too; dist, distance or dist_pc in parsecs, or
+//    parallax or plx in thousandths of an arc second, from which the distance is 1000 / parallax; a sphere without
+//    either. x points to 0 h, z to the north pole. A star whose number is empty, null or no distance is left out.
 // 3. Points. Columns that mean nothing are not read, whatever they hold.
 //
 // Colour without a header: columns 4 to 6, of 7 and 9 columns the last three, when in the whole file all are from 0
@@ -42,7 +46,7 @@ namespace thimble::tools {
 
 namespace {
 
-/// Columns of x, y, z, r, g, b.
+/// Columns of x, y, z, r, g, b. Of a catalogue the first three are right ascension, declination and distance.
 constexpr std::size_t kFields = 6;
 constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
@@ -157,6 +161,15 @@ struct Layout {
   std::uint64_t first_point_line = 1;
   /// Each line begins with an element: a molecule.
   bool has_elements = false;
+  /// How a catalogue says how far away its stars are.
+  enum class Distance : std::uint8_t {
+    kNoCatalogue,
+    kNone,
+    kParsecs,
+    kParallax
+  } distance = Distance::kNoCatalogue;
+  double ascension_degrees = 1;  ///< of a unit of its right ascensions: 15 of an hour
+  bool is_catalogue() const { return distance != Distance::kNoCatalogue; }
   /// A line of words before the points that names no x, y and z; 0 when there is none.
   std::uint64_t title_line = 0;
 };
@@ -181,6 +194,29 @@ struct ColorSurvey {
   bool looks_like_colors() const { return all_numbers && scale.looks_like_colors(); }
 };
 
+/// Degrees or hours, minutes and seconds: "-12:34:56.7".
+bool parse_sexagesimal(std::string_view word, double& value) {
+  const bool is_below = word.starts_with('-');
+  word.remove_prefix(is_below || word.starts_with('+') ? 1 : 0);
+  double whole = 0;
+  double unit = 1;
+  for (int part = 0; part < 3; ++part) {
+    const std::size_t colon = std::min(word.find(':'), word.size());
+    double number = 0;
+    if (parse_number(word.substr(0, colon), number) != NumberKind::kFinite || !(number >= 0)) {
+      return false;
+    }
+    whole += number * unit;
+    unit /= 60;
+    if (colon == word.size()) {
+      value = is_below ? -whole : whole;
+      return part != 0;
+    }
+    word.remove_prefix(colon + 1);
+  }
+  return false;
+}
+
 /// A coordinate as a number, NaN for one that is not finite. Where it is no number because of another separator, the
 /// error says what was expected.
 double coordinate(std::string_view word, std::uint64_t line, const char* name, const Layout& layout) {
@@ -189,8 +225,12 @@ double coordinate(std::string_view word, std::uint64_t line, const char* name, c
   if (kind == NumberKind::kFinite) {
     return value;
   }
-  if (kind == NumberKind::kNotFinite) {
+  if (kind == NumberKind::kNotFinite ||
+      (layout.is_catalogue() && (word.empty() || equals_ignoring_case(word, "null")))) {
     return std::nan("");
+  }
+  if (layout.is_catalogue() && parse_sexagesimal(word, value)) {
+    return value;
   }
   const Separator separator = layout.separator;
   const std::string_view marks =
@@ -207,6 +247,20 @@ double coordinate(std::string_view word, std::uint64_t line, const char* name, c
                            std::to_string(layout.title_line) + " names no columns x, y and z)");
   }
   return finite_number(word, line, name);
+}
+
+/// From right ascension, declination and what says the distance to a place; NaN where that says none.
+void place_star(const Layout& layout, CloudPoint& point) {
+  constexpr double kRadians = 3.14159265358979323846 / 180;
+  const double ascension = point.x * layout.ascension_degrees * kRadians;
+  const double declination = point.y * kRadians;
+  const double distance = layout.distance == Layout::Distance::kNone       ? 1
+                          : layout.distance == Layout::Distance::kParallax ? 1000 / point.z
+                                                                           : point.z;
+  const double known = distance > 0 && std::isfinite(distance) ? distance : std::nan("");
+  point.x = known * std::cos(declination) * std::cos(ascension);
+  point.y = known * std::cos(declination) * std::sin(ascension);
+  point.z = known * std::sin(declination);
 }
 
 /// Reads the points of `text` and calls `visit(point, words, line)`; the words of columns that a line does
@@ -239,7 +293,7 @@ void read_points(std::string_view text, const Layout& layout, ProgressMeter& met
     point.line = layout.first_point_line + lines.line_number() - 1;
     point.x = coordinate(words[0], point.line, kFieldNames[0], layout);
     point.y = coordinate(words[1], point.line, kFieldNames[1], layout);
-    point.z = coordinate(words[2], point.line, kFieldNames[2], layout);
+    point.z = layout.columns[2] == kNoColumn ? 1 : coordinate(words[2], point.line, kFieldNames[2], layout);
     visit(point, words, line);
   }
 }
@@ -252,6 +306,9 @@ class XyzCloud final : public PointCloud {
     ProgressMeter meter;
     read_points(file_.text(), layout_, meter,
                 [&](CloudPoint& point, const std::array<std::string_view, kFields>& words, std::string_view) {
+                  if (layout_.is_catalogue()) {
+                    place_star(layout_, point);
+                  }
                   if (!point.is_finite()) {
                     return;
                   }
@@ -284,11 +341,32 @@ std::string_view without_quotes(std::string_view name) {
   return name;
 }
 
-/// Finds the columns that a header names; true when x, y and z are among them.
+/// Finds the columns that a header names; true when those of places are among them.
 bool read_header(std::string_view line, Layout& layout) {
-  static constexpr std::array<std::pair<const char*, std::size_t>, 9> kNames{
-      {{"x", 0}, {"y", 1}, {"z", 2}, {"r", 3}, {"g", 4}, {"b", 5}, {"red", 3}, {"green", 4}, {"blue", 5}}};
-  std::array<std::size_t, kFields> found{};
+  enum : std::size_t { kAscension = kFields, kDeclination, kParsecs, kParallax, kKnown };
+  static constexpr std::array<std::pair<const char*, std::size_t>, 22> kNames{{{"x", 0},
+                                                                               {"y", 1},
+                                                                               {"z", 2},
+                                                                               {"r", 3},
+                                                                               {"g", 4},
+                                                                               {"b", 5},
+                                                                               {"red", 3},
+                                                                               {"green", 4},
+                                                                               {"blue", 5},
+                                                                               {"ra", kAscension},
+                                                                               {"ra_deg", kAscension},
+                                                                               {"raj2000", kAscension},
+                                                                               {"ra_icrs", kAscension},
+                                                                               {"dec", kDeclination},
+                                                                               {"de", kDeclination},
+                                                                               {"dec_deg", kDeclination},
+                                                                               {"dej2000", kDeclination},
+                                                                               {"de_icrs", kDeclination},
+                                                                               {"dist", kParsecs},
+                                                                               {"distance", kParsecs},
+                                                                               {"parallax", kParallax},
+                                                                               {"plx", kParallax}}};
+  std::array<std::size_t, kKnown> found{};
   found.fill(kNoColumn);
   // "// x y z": the slashes are no column.
   const std::size_t slashes = line.find("//");
@@ -307,15 +385,24 @@ bool read_header(std::string_view line, Layout& layout) {
       }
     }
   }
-  const bool names_position = std::find(found.begin(), found.begin() + 3, kNoColumn) == found.begin() + 3;
+  bool names_position = std::find(found.begin(), found.begin() + 3, kNoColumn) == found.begin() + 3;
+  if (!names_position && found[kAscension] != kNoColumn && found[kDeclination] != kNoColumn) {
+    names_position = true;
+    layout.distance = found[kParsecs] != kNoColumn    ? Layout::Distance::kParsecs
+                      : found[kParallax] != kNoColumn ? Layout::Distance::kParallax
+                                                      : Layout::Distance::kNone;
+    found[0] = found[kAscension];
+    found[1] = found[kDeclination];
+    found[2] = found[kParsecs] != kNoColumn ? found[kParsecs] : found[kParallax];
+  }
   if (names_position) {
     layout.separator = separator_of(line);
     layout.model_columns = i;
     layout.model_ends_open = columns.ends_open();
     std::copy(found.begin(), found.begin() + 3, layout.columns.begin());
   }
-  if (std::find(found.begin() + 3, found.end(), kNoColumn) == found.end()) {
-    std::copy(found.begin() + 3, found.end(), layout.columns.begin() + 3);
+  if (std::find(found.begin() + 3, found.begin() + kFields, kNoColumn) == found.begin() + kFields) {
+    std::copy(found.begin() + 3, found.begin() + kFields, layout.columns.begin() + 3);
   }
   return names_position;
 }
@@ -467,20 +554,26 @@ Source read_xyz(const SharedBytes& file, const ReadOptions&, const Progress& pro
   ColorSurvey survey;
   std::uint64_t count = 0;
   std::uint64_t finite = 0;
-  read_points(file.text(), layout, meter,
-              [&](const CloudPoint& point, const std::array<std::string_view, kFields>& words,
-                  std::string_view line) {
-                ++count;
-                check_columns(line, point.line, layout);
-                if (!point.is_finite()) {
-                  return;
-                }
-                ++finite;
-                // Without a header, one line that does not look like a colour settles the matter.
-                for (std::size_t i = 3; i < kFields && (names_color || survey.all_numbers); ++i) {
-                  survey.see(words[i], point.line);
-                }
-              });
+  double last_ascension = 0;
+  read_points(
+      file.text(), layout, meter,
+      [&](const CloudPoint& read, const std::array<std::string_view, kFields>& words, std::string_view line) {
+        ++count;
+        CloudPoint point = read;
+        check_columns(line, point.line, layout);
+        if (layout.is_catalogue()) {
+          last_ascension = std::max(last_ascension, point.x);
+          place_star(layout, point);
+        }
+        if (!point.is_finite()) {
+          return;
+        }
+        ++finite;
+        // Without a header, one line that does not look like a colour settles the matter.
+        for (std::size_t i = 3; i < kFields && (names_color || survey.all_numbers); ++i) {
+          survey.see(words[i], point.line);
+        }
+      });
   if (finite == 0) {
     throw InputError(count == 0 ? "the file holds no points" : "no point of the file is finite");
   }
@@ -503,8 +596,21 @@ Source read_xyz(const SharedBytes& file, const ReadOptions&, const Progress& pro
   if (!layout.has_color) {
     std::fill(layout.columns.begin() + 3, layout.columns.end(), kNoColumn);
   }
+  layout.ascension_degrees = last_ascension <= 24 ? 15 : 1;
   auto cloud = std::make_unique<XyzCloud>(file, layout);
-  note_left_out(cloud->notes, count - finite);
+  if (layout.is_catalogue()) {
+    cloud->notes.push_back(std::string("it is a catalogue of stars: right ascensions are ") +
+                           (last_ascension <= 24 ? "hours" : "degrees") + ", " +
+                           (layout.distance == Layout::Distance::kNone ? "all are drawn as far away"
+                            : layout.distance == Layout::Distance::kParsecs
+                                ? "distances are as they are"
+                                : "distances are 1000 / parallax") +
+                           (count == finite ? ""
+                                            : "; " + std::to_string(count - finite) + " of " +
+                                                  std::to_string(count) + " have none and are left out"));
+  } else {
+    note_left_out(cloud->notes, count - finite);
+  }
   if (layout.has_elements) {
     cloud->notes.push_back("it is a molecule: its atoms are points, their elements are not shown");
   } else if (columns > (layout.has_color ? 6U : 3U)) {
