@@ -108,6 +108,7 @@ Option add_choice_option(CLI::App& app, const std::string& name,
                          const std::vector<std::pair<std::string, std::type_identity_t<Value>>>& choices,
                          Value* to, const std::string& help) {
   std::vector<std::string> words;
+  words.reserve(choices.size());
   for (const auto& [word, value] : choices) {
     words.push_back(word);
   }
