@@ -93,6 +93,9 @@ TEST_CASE(
   for (const char* word : {"1:2:3:4", "1:", ":1", "1:-2", "1:x", "--1:2"}) {
     CHECK(contains(error_of(read_xyz, std::string("ra,dec\n") + word + ",0\n"), "line 2"));
   }
+  const std::string quoted = "ra;dec;note\n0;0;\"far; \"\"very; far\"\"\"\n\"90\";0;near\n";
+  CHECK(contains(error_of(read_xyz, quoted), "line 3: x is '\"90\"'"));
+  CHECK(read_points(read_xyz, quoted.substr(0, quoted.find("\"90"))).size() == 1);
   // Where there are places as well, they are what is meant.
   CHECK(near(read_points(read_xyz, "ra,dec,x,y,z\n90,0,1,2,3\n")[0], 1, 2, 3));
   CHECK(contains(error_of(read_xyz, "ra,dec,plx\n1,2,0\n"), "no point of the file is finite"));

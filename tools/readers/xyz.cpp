@@ -3,7 +3,7 @@
 // Columns are separated by blanks and tabs, by commas or by semicolons (with or without blanks around
 // them): one of the three for the whole file, decided by the first line of points or by the header that
 // names x, y and z. Two commas or semicolons in a row are an empty column; one at the end of a line is an
-// empty column or nothing. All lines have the same number of columns. Blank lines are skipped, and so is
+// empty column or nothing; in a column that begins with a double quote they stand for themselves. All lines have the same number of columns. Blank lines are skipped, and so is
 // everything from # to the end of a line. A byte order mark is skipped.
 //
 // Numbers have a decimal point, never a decimal comma. A line that could be read either way, such as
@@ -84,8 +84,11 @@ class ColumnReader {
     if (rest_.empty()) {
       return false;
     }
+    const bool has_quotes = separator_ != Separator::kBlanks && rest_.front() == '"';
+    bool is_quoted = false;
     std::size_t end = 0;
-    while (end < rest_.size() && !ends_column(rest_[end])) {
+    while (end < rest_.size() && (is_quoted || !ends_column(rest_[end]))) {
+      is_quoted = has_quotes && is_quoted != (rest_[end] == '"');
       ++end;
     }
     column = rest_.substr(0, end);
