@@ -179,7 +179,8 @@ TEST_CASE(
   for (int i = 0; i < 100; ++i) {
     positions.insert(positions.end(), near.begin(), near.end());
   }
-  positions.push_back({0, 0, 5000});
+  positions.push_back(near[0]);
+  positions.push_back({0, 0, 5000});  // an odd one, which no sample holds
   CHECK(surveyed(positions).left_out == 1);
   CHECK(surveyed(positions, {100, std::nullopt}).left_out == 0);
   const Bounds clip{{0, 0, 0}, {50, 10, 5}, false};
