@@ -27,6 +27,7 @@ const std::multimap<std::string, std::string>& values() {
                                                              {"--bodies", "@bodies.txt"},
                                                              {"--bounciness", "0.5"},
                                                              {"--check", "@ref.png"},
+                                                             {"--colors", "255"},
                                                              {"--count", "4"},
                                                              {"--display", "none"},
                                                              {"--display", "terminal"},

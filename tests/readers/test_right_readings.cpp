@@ -79,6 +79,53 @@ std::string numbers(const std::vector<Number>& values) {
 
 }  // namespace
 
+TEST_CASE("colours: what full is follows the file's highest, noted where it is a guess, or --colors") {
+  const auto read = [](FormatReader* reader, const std::string& text, std::uint16_t full) {
+    return reader(SharedBytes::own(text), {"", {}, ArrayAs::kByShape, full}, {});
+  };
+  const auto floats = [](float red) { return npy("<f4", "1, 6", numbers<float>({1, 2, 3, red, 0, 0})); };
+  const std::string fields =
+      "FIELDS x y z r g b\nSIZE 4 4 4 4 4 4\nTYPE F F F F F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n";
+  const std::string floats_of_ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float red\nproperty float green\nproperty float blue\nend_header\n";
+  struct Row {
+    FormatReader* reader;
+    std::string file;
+    bool is_noted;
+    std::uint8_t guessed, of_bytes;  ///< the red that is read without --colors, and with --colors 255
+  };
+  const std::vector<Row> rows{{read_xyz, "1 2 3 1 0 0\n", true, 255, 1},
+                              {read_xyz, "1 2 3 0.5 0 0\n", false, 128, 1},
+                              {read_xyz, "1 2 3 51 0 0\n", false, 51, 51},
+                              {read_npy, floats(1), true, 255, 1},
+                              {read_npy, floats(51), false, 51, 51},
+                              {read_pcd, fields + "1 2 3 1 0 0\n", true, 255, 1},
+                              {read_pcd, fields + "1 2 3 257 0 0\n", true, 1, 255},
+                              {read_ply, floats_of_ply + "1 2 3 1 0 0\n", true, 255, 1},
+                              {read_ply, floats_of_ply + "1 2 3 51 0 0\n", false, 51, 51}};
+  for (const Row& row : rows) {
+    CAPTURE(row.file);
+    const Source guessed = read(row.reader, row.file, 0);
+    CHECK(notes_hold(guessed, "--colors") == row.is_noted);
+    CHECK(colors_of(guessed) == Colors{{row.guessed, 0, 0}});
+    const Source stated = read(row.reader, row.file, 255);
+    CHECK_FALSE(notes_hold(stated, "--colors"));
+    CHECK(colors_of(stated) == Colors{{row.of_bytes, 0, 0}});
+  }
+  CHECK(colors_of(read(read_xyz, "1 2 3 0.5 300 7\n", 0)).empty());  // no scale that whole numbers have
+  CHECK(colors_of(read(read_xyz, "1 2 3 0 300 0\n", 300)) == Colors{{0, 255, 0}});
+
+  const std::string corners = "COFF\n3 1 0\n0 0 0 1 0 0\n1 0 0 0 1 0\n0 1 0 0 0 1\n3 0 1 2\n";
+  const Source mesh = read(read_off, corners, 0);
+  CHECK(std::get<TriangleMesh>(mesh).colors == Colors{kRed, kGreen, kBlue});
+  CHECK(notes_hold(mesh, "--colors"));
+  CHECK(std::get<TriangleMesh>(read(read_off, corners, 255)).colors.front() == Rgb{1, 0, 0});
+
+  CHECK_THROWS_WITH_AS(read_any({"a.obj", {}, ArrayAs::kByShape, 255}, SharedBytes::own("v 0 0 0\n")),
+                       doctest::Contains("--colors is for formats"), InputError);
+}
+
 TEST_CASE("npy: N x 3 to N x 9 numbers of any type -> points, heights only by --as-heights") {
   const std::string places = numbers<std::int64_t>({1, 2, 3, 2, 2, 3, 5, 5, 5});
   CHECK(points_of(source_of(read_npy, npy("<i8", "3, 3", places))) == 3);

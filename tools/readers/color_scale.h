@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
+#include "readers/formats.h"
 #include "readers/mesh.h"
 #include "readers/source.h"
 
@@ -16,23 +18,39 @@ namespace thimble::tools {
 /// The components of a file's colours, seen one by one.
 class ColorScale {
  public:
+  explicit ColorScale(const ReadOptions& options) : stated_(options.full_color) {}
   void see(double component) {
     is_valid_ = is_valid_ && component >= 0 && component <= 65535;
     is_whole_ = is_whole_ && component == std::floor(component);
     highest_ = std::max(highest_, component);
   }
+  /// Within what bytes have, unless something else was stated.
+  float clamped(double component) const {
+    return static_cast<float>(std::fmax(0, std::fmin(component, stated_ != 0 ? stated_ : 255)));
+  }
   /// Nothing was below 0, above 65,535 or no number.
   bool is_valid() const { return is_valid_; }
   /// What may be a colour where no name says so: 0 to 1, or whole numbers up to 255.
-  bool looks_like_colors() const { return is_valid_ && (highest_ <= 1 || (is_whole_ && highest_ <= 255)); }
-  /// 1 where no component is above 1, else 255, else 65,535.
-  double full() const { return highest_ <= 1 ? 1 : (highest_ <= 255 ? 255 : 65535); }
+  bool looks_like_colors() const {
+    return is_valid_ && (stated_ != 0 || highest_ <= 1 || (is_whole_ && highest_ <= 255));
+  }
+  /// What was stated; else 1 where no component is above 1, else 255, else 65,535.
+  double full() const { return stated_ != 0 ? stated_ : highest_ <= 1 ? 1 : highest_ <= 255 ? 255 : 65535; }
+  /// Says what they are taken for where they could be something else.
+  void add_note(Notes& notes) const {
+    if (stated_ == 0 && highest_ > 0 && (highest_ > 255 || (is_whole_ && highest_ <= 1))) {
+      notes.push_back("no color is above " + std::to_string(static_cast<int>(highest_)) +
+                      ": full is taken to be " + std::to_string(static_cast<int>(full())) +
+                      " (--colors says otherwise)");
+    }
+  }
 
   Rgb color(double red, double green, double blue) const {
     return {unit_to_byte(red / full()), unit_to_byte(green / full()), unit_to_byte(blue / full())};
   }
 
  private:
+  double stated_;
   bool is_valid_ = true;
   bool is_whole_ = true;
   double highest_ = 0;

@@ -18,6 +18,7 @@ struct ReadOptions {
   std::string path{};                    ///< of the file, for the other files that it names; may be empty
   std::optional<std::uint32_t> frame{};  ///< of an animation; by default the earliest key of each node
   ArrayAs as = ArrayAs::kByShape;        ///< of an array of numbers
+  std::uint16_t full_color = 0;  ///< what a full red, green or blue is; 0: what the file's colors let guess
 };
 
 /// Reads all of `file`, already decompressed, and checks it. What streams (points, voxels) keeps the file and reads it

@@ -43,7 +43,7 @@ constexpr std::array<PointFormat, 11> kFormats{{{20, 0},
 
 class LasCloud final : public PointCloud {
  public:
-  LasCloud(const SharedBytes& file, const Progress& progress) : file_(file) {
+  LasCloud(const SharedBytes& file, const ReadOptions& options, const Progress& progress) : file_(file) {
     read_header();
     ProgressMeter meter(progress, file.bytes.size());
     std::uint16_t highest = 0;
@@ -64,10 +64,14 @@ class LasCloud final : public PointCloud {
     }
     has_color_ = highest > 0;
     // 16 bits by the specification; cameras of 8 and 12 bits write what they have, or 8 bits times 16.
-    full_ = highest <= 255 ? 255 : highest <= 4080 ? 4080 : highest <= 4095 ? 4095 : 65535;
-    if (has_color_ && full_ != 65535) {
+    full_ = options.full_color != 0 ? options.full_color
+            : highest <= 255        ? 255
+            : highest <= 4080       ? 4080
+            : highest <= 4095       ? 4095
+                                    : 65535;
+    if (has_color_ && full_ != 65535 && options.full_color == 0) {
       notes.push_back("no color is above " + std::to_string(highest) + ": they are taken for " +
-                      (full_ == 255 ? "8" : "12") + " bits, not 16");
+                      (full_ == 255 ? "8" : "12") + " bits, not 16 (--colors says otherwise)");
     }
   }
 
@@ -184,8 +188,8 @@ bool looks_like_las(std::span<const std::uint8_t> bytes) {
 
 /// @throws InputError  another version or format, compressed points, a count that the bytes cannot hold, a
 ///   record too short for its format, a position that is not finite, no point
-Source read_las(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
-  return std::make_unique<LasCloud>(file, progress);
+Source read_las(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return std::make_unique<LasCloud>(file, options, progress);
 }
 
 }  // namespace thimble::tools

@@ -159,7 +159,7 @@ struct Array {
 
 class ArrayPoints final : public PointCloud {
  public:
-  explicit ArrayPoints(Array array) : array_(std::move(array)) {
+  ArrayPoints(Array array, const ReadOptions& options) : array_(std::move(array)), scale_(options) {
     const std::uint64_t columns = array_.header.shape[1];
     first_color_ = columns < 6 ? 0 : (columns == 8 ? 3 : columns - 3);
     std::uint64_t finite = 0;
@@ -178,6 +178,9 @@ class ArrayPoints final : public PointCloud {
     }
     note_left_out(notes, array_.header.shape[0] - finite);
     has_color_ = first_color_ != 0 && scale_.looks_like_colors();
+    if (has_color_) {
+      scale_.add_note(notes);
+    }
     const std::uint64_t used = has_color_ ? 6 : 3;
     if (columns > used) {
       notes.push_back("of the array's " + std::to_string(columns) + " columns, " +
@@ -277,14 +280,14 @@ std::string shape_of(const NpyHeader& header) {
   return text.empty() ? "one number" : text;
 }
 
-Source source_of(Array array, ArrayAs as) {
+Source source_of(Array array, const ReadOptions& options) {
   const NpyHeader& header = array.header;
   const std::size_t dimensions = header.shape.size();
   const bool has_rows_of_points = dimensions == 2 && header.shape[1] >= 3 && header.shape[1] <= 9;
-  if (has_rows_of_points && as != ArrayAs::kHeights) {
-    return std::make_unique<ArrayPoints>(std::move(array));
+  if (has_rows_of_points && options.as != ArrayAs::kHeights) {
+    return std::make_unique<ArrayPoints>(std::move(array), options);
   }
-  if (as == ArrayAs::kPoints) {
+  if (options.as == ArrayAs::kPoints) {
     throw InputError("--as-points: points are N x 3 to N x 9 numbers, and this is " + shape_of(header));
   }
   if (dimensions == 2) {
@@ -349,7 +352,7 @@ bool looks_like_npy(std::span<const std::uint8_t> bytes) {
 ///   takes, a side of voxels over `kGridSideLimit`, no point that is finite, nothing solid;
 ///   an array that is not what the options say
 Source read_npy(const SharedBytes& file, const ReadOptions& options, const Progress&) {
-  return source_of(array_of(file), options.as);
+  return source_of(array_of(file), options);
 }
 
 NumberTable read_npy_table(const SharedBytes& file) {

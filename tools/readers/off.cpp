@@ -67,8 +67,8 @@ Keyword parse_keyword(std::string_view word) {
 
 class OffParser {
  public:
-  OffParser(std::string_view text, const Progress& progress)
-      : words_(text, '#'), meter_(progress, text.size()) {}
+  OffParser(std::string_view text, const ReadOptions& options, const Progress& progress)
+      : words_(text, '#'), meter_(progress, text.size()), scale_(options), face_scale_(options) {}
 
   Source parse() {
     header();
@@ -77,6 +77,7 @@ class OffParser {
     if (const std::string_view word = is_by_line_ ? std::string_view() : words_.next(); !word.empty()) {
       fail(quoted(word) + " comes after the last face");
     }
+    (face_colors_.empty() ? scale_ : face_scale_).add_note(mesh_.notes);
     return mesh_or_points(std::move(mesh_), face_count_);
   }
 
@@ -160,7 +161,6 @@ class OffParser {
   void vertices() {
     mesh_.positions.reserve(static_cast<std::size_t>(vertex_count_));
     std::vector<std::array<float, 3>> colors;
-    ColorScale scale;
     if (keyword_.has_colors) {
       colors.reserve(static_cast<std::size_t>(vertex_count_));
     }
@@ -177,8 +177,8 @@ class OffParser {
         std::array<float, 3> color{};
         for (float& component : color) {
           const double value = number("the color", vertex);
-          component = static_cast<float>(std::fmax(0, std::fmin(value, 255)));
-          scale.see(static_cast<double>(component));
+          component = scale_.clamped(value);
+          scale_.see(static_cast<double>(component));
         }
         colors.push_back(color);
       }
@@ -188,7 +188,7 @@ class OffParser {
     mesh_.colors.reserve(colors.size());
     for (const auto& [red, green, blue] : colors) {
       mesh_.colors.push_back(
-          scale.color(static_cast<double>(red), static_cast<double>(green), static_cast<double>(blue)));
+          scale_.color(static_cast<double>(red), static_cast<double>(green), static_cast<double>(blue)));
     }
   }
 
@@ -254,7 +254,7 @@ class OffParser {
     }
     std::array<float, 3> color{};
     for (std::size_t i = 0; i < 3; ++i) {
-      color[i] = static_cast<float>(std::fmax(0, std::fmin(values[i], 255)));
+      color[i] = face_scale_.clamped(values[i]);
       face_scale_.see(static_cast<double>(color[i]));
     }
     return color;
@@ -270,7 +270,7 @@ class OffParser {
   TriangleMesh mesh_;
   Polygons polygons_{mesh_};
   std::vector<std::array<float, 3>> face_colors_;
-  ColorScale face_scale_;
+  ColorScale scale_, face_scale_;  ///< of vertices, of faces
 };
 
 }  // namespace
@@ -285,8 +285,8 @@ bool looks_like_off(std::span<const std::uint8_t> bytes) {
 /// are held against the bytes that follow before anything is allocated.
 /// @throws InputError  naming the line: no keyword, a count that the bytes cannot hold, a file that ends
 ///   early, a word that is no finite number, an index that is no vertex
-Source read_off(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
-  return OffParser(file.text(), progress).parse();
+Source read_off(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return OffParser(file.text(), options, progress).parse();
 }
 
 }  // namespace thimble::tools

@@ -191,7 +191,8 @@ Rgb color_of(std::uint32_t bits) {
 
 class PcdCloud final : public PointCloud {
  public:
-  PcdCloud(const SharedBytes& file, const Progress& progress) : file_(file) {
+  PcdCloud(const SharedBytes& file, const ReadOptions& options, const Progress& progress)
+      : file_(file), scale_(options) {
     const PcdHeader header = PcdHeaderParser(file.text()).parse();
     is_text_ = header.encoding == PcdEncoding::kText;
     data_offset_ = header.data_offset;
@@ -232,6 +233,7 @@ class PcdCloud final : public PointCloud {
       throw InputError("the fields r, g and b hold values that are no colors");
     }
     note_left_out(notes, count_ - finite);
+    scale_.add_note(notes);
   }
 
   void for_each(const Visit& visit) const override {
@@ -421,8 +423,8 @@ bool looks_like_pcd(std::span<const std::uint8_t> bytes) {
 /// Checks the whole file once; the result keeps `file`, or what it unpacks to, and streams from it.
 /// @throws InputError  a broken header, a field's type or size that there is not, a count that the bytes
 ///   cannot hold, a line with too few values, damaged LZF, no finite point
-Source read_pcd(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
-  return std::make_unique<PcdCloud>(file, progress);
+Source read_pcd(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  return std::make_unique<PcdCloud>(file, options, progress);
 }
 
 }  // namespace thimble::tools

@@ -220,7 +220,8 @@ struct PlyVertex {
 /// What the three components of an element's colours are parts of.
 class ColorParts {
  public:
-  explicit ColorParts(const PlyElement& element) {
+  ColorParts(const PlyElement& element, const ReadOptions& options)
+      : stated_(options.full_color), floats_(options) {
     for (const PlyProperty& property : element.properties) {
       if (property.role >= PlyRole::kRed && property.role <= PlyRole::kBlue) {
         types_[static_cast<std::size_t>(property.role) - 3] = property.type;
@@ -234,12 +235,14 @@ class ColorParts {
       }
     }
   }
+  void add_note(Notes& notes) const { floats_.add_note(notes); }
   /// Floats are of 0 to 1, or of 0 to 255 where any that was seen is above 1.
   Rgb color(const PlyVertex& vertex) const {
     std::array<std::uint8_t, 3> bytes{};
     for (std::size_t i = 0; i < 3; ++i) {
-      const double full =
-          types_[i].kind == 'f' ? floats_.full() : (types_[i] == NumberType{'u', 2} ? 65535.0 : 255.0);
+      const double full = stated_ != 0 || types_[i].kind == 'f' ? floats_.full()
+                          : types_[i] == NumberType{'u', 2}     ? 65535
+                                                                : 255;
       bytes[i] = unit_to_byte(vertex.values[3 + i] / full);
     }
     return {bytes[0], bytes[1], bytes[2]};
@@ -247,6 +250,7 @@ class ColorParts {
 
  private:
   std::array<NumberType, 3> types_{};
+  std::uint16_t stated_;
   ColorScale floats_;
 };
 
@@ -412,7 +416,8 @@ void add_pictures(const std::string& path, const PlyHeader& header, TriangleMesh
 
 /// Walks a whole body and gathers its mesh.
 template <class Body>
-TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& vertices, ProgressMeter& meter) {
+TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& vertices,
+                       const ReadOptions& options, ProgressMeter& meter) {
   if (vertices.count > kMeshVertexLimit) {
     throw InputError("the mesh has " + std::to_string(vertices.count) + " vertices, the limit is " +
                      std::to_string(kMeshVertexLimit));
@@ -428,7 +433,7 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
       const bool has_places = !header.pictures.empty() && has_role(element, PlyRole::kU) &&
                               has_role(element, PlyRole::kV) && !has_face_texcoords(header);
       Body first = body;
-      ColorParts parts(element);
+      ColorParts parts(element, options);
       read_vertices(body, element, meter, [&](const PlyVertex& vertex) {
         if (!vertex.is_finite()) {
           body.fail("a coordinate of vertex " + std::to_string(mesh.positions.size()) + " is not finite");
@@ -440,6 +445,7 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
                                                vertex.values[static_cast<std::size_t>(PlyRole::kV)]));
         }
       });
+      parts.add_note(mesh.notes);
       if (colored) {
         mesh.colors.reserve(static_cast<std::size_t>(element.count));
         ProgressMeter again;
@@ -466,8 +472,9 @@ template <class Body>
 class PlyCloud final : public PointCloud {
  public:
   /// Reads them once, and leaves `body` behind them.
-  PlyCloud(SharedBytes file, const PlyElement& vertices, Body& body, ProgressMeter& meter)
-      : file_(std::move(file)), vertices_(vertices), body_(body), parts_(vertices) {
+  PlyCloud(SharedBytes file, const PlyElement& vertices, Body& body, const ReadOptions& options,
+           ProgressMeter& meter)
+      : file_(std::move(file)), vertices_(vertices), body_(body), parts_(vertices, options) {
     std::uint64_t finite = 0;
     std::uint64_t drawn = 0;
     read_vertices(body, vertices_, meter, [&](const PlyVertex& vertex) {
@@ -482,6 +489,7 @@ class PlyCloud final : public PointCloud {
                                    : "all splats of the file are nearly clear");
     }
     note_left_out(notes, vertices_.count - finite);
+    parts_.add_note(notes);
     if (is_splat(vertices_)) {
       notes.push_back("Gaussian splats are drawn as points; " + std::to_string(finite - drawn) + " of " +
                       std::to_string(finite) + " are nearly clear and left out");
@@ -522,7 +530,7 @@ class PlyCloud final : public PointCloud {
 };
 
 template <class Body>
-Source read_body(const SharedBytes& file, const std::string& path, const PlyHeader& header,
+Source read_body(const SharedBytes& file, const ReadOptions& options, const PlyHeader& header,
                  const Progress& progress) {
   const PlyElement* vertices = nullptr;
   bool has_polygons = false;
@@ -543,14 +551,14 @@ Source read_body(const SharedBytes& file, const std::string& path, const PlyHead
   ProgressMeter meter(progress, file.bytes.size());
   Body body(file, header);
   if (has_polygons) {
-    TriangleMesh mesh = read_mesh(body, header, *vertices, meter);
-    add_pictures(path, header, mesh);
+    TriangleMesh mesh = read_mesh(body, header, *vertices, options, meter);
+    add_pictures(options.path, header, mesh);
     return mesh;
   }
   std::unique_ptr<PointCloud> cloud;
   for (const PlyElement& element : header.elements) {
     if (&element == vertices) {
-      cloud = std::make_unique<PlyCloud<Body>>(file, element, body, meter);
+      cloud = std::make_unique<PlyCloud<Body>>(file, element, body, options, meter);
     } else {
       skip_element(body, element, meter);
     }
@@ -582,9 +590,9 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes) {
 Source read_ply(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
   const PlyHeader header = read_ply_header(file.text());
   if (header.encoding == PlyEncoding::kAscii) {
-    return read_body<AsciiBody>(file, options.path, header, progress);
+    return read_body<AsciiBody>(file, options, header, progress);
   }
-  return read_body<BinaryBody>(file, options.path, header, progress);
+  return read_body<BinaryBody>(file, options, header, progress);
 }
 
 }  // namespace thimble::tools

@@ -172,6 +172,11 @@ Source read_any(const ReadOptions& options, const SharedBytes& file, const Progr
     throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a " +
                      std::string(row.name));
   }
+  constexpr std::array kColorGuessers{read_las, read_npy, read_off, read_pcd, read_ply, read_xyz, read_zip};
+  if (options.full_color != 0 && std::ranges::find(kColorGuessers, row.read) == kColorGuessers.end()) {
+    throw InputError("--colors is for formats that do not say what a full color is, and this is a " +
+                     std::string(row.name));
+  }
   Source source = row.read(file, options, progress);
   if (progress) {
     progress(1);

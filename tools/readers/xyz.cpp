@@ -154,6 +154,7 @@ struct Layout {
   std::array<std::size_t, kFields> columns{0, 1, 2, kNoColumn, kNoColumn, kNoColumn};
   bool has_color = false;
   ColorScale scale;
+  explicit Layout(const ReadOptions& options) : scale(options) {}
   Separator separator = Separator::kBlanks;
   /// The line that all others must have as many columns as: a header that names x, y and z, or else the
   /// first point.
@@ -182,6 +183,7 @@ constexpr std::array<const char*, kFields> kFieldNames{"x", "y", "z", "red", "gr
 /// Looks at colour columns without trusting them to be colours.
 struct ColorSurvey {
   ColorScale scale;
+  explicit ColorSurvey(const ReadOptions& options) : scale(options) {}
   bool all_numbers = true;
   std::uint64_t bad_line = 0;
 
@@ -543,8 +545,8 @@ std::size_t columns_of_first(std::string_view text, const Layout& layout) {
 /// @throws InputError  naming the line: a column that is missing, empty or no number, a colour out of
 ///   range, a number of columns that differs; an announced number of points that
 ///   is wrong; no point that is finite
-Source read_xyz(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
-  Layout layout;
+Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
+  Layout layout(options);
   const Preamble preamble = read_preamble(file.text(), layout);
   const bool names_color = layout.columns[3] != kNoColumn;
   const std::size_t columns = preamble.has_header ? 0 : columns_of_first(file.text(), layout);
@@ -554,7 +556,7 @@ Source read_xyz(const SharedBytes& file, const ReadOptions&, const Progress& pro
     layout.columns = {0, 1, 2, color, color + 1, color + 2};
   }
   ProgressMeter meter(progress, file.bytes.size());
-  ColorSurvey survey;
+  ColorSurvey survey(options);
   std::uint64_t count = 0;
   std::uint64_t finite = 0;
   double last_ascension = 0;
@@ -613,6 +615,9 @@ Source read_xyz(const SharedBytes& file, const ReadOptions&, const Progress& pro
                                                   std::to_string(count) + " have none and are left out"));
   } else {
     note_left_out(cloud->notes, count - finite);
+  }
+  if (layout.has_color) {
+    layout.scale.add_note(cloud->notes);
   }
   if (layout.has_elements) {
     cloud->notes.push_back("it is a molecule: its atoms are points, their elements are not shown");

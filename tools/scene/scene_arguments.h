@@ -19,6 +19,7 @@ struct SceneArguments {
   std::optional<std::uint32_t> frame{};         ///< --frame
   bool as_points = false;                       ///< --as-points
   bool as_heights = false;                      ///< --as-heights
+  std::uint16_t full_color = 0;                 ///< --colors
   std::optional<double> fit_percent{};          ///< --fit
   std::optional<std::array<double, 6>> clip{};  ///< --clip: the box's low corner, its high one
 };

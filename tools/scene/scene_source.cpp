@@ -349,6 +349,9 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
     if (arguments.as_points || arguments.as_heights) {
       throw UsageError("--as-points and --as-heights are for .npy and .npz, and this is a generator");
     }
+    if (arguments.full_color != 0) {
+      throw UsageError("--colors is for files, and this is a generator");
+    }
     if (arguments.frame) {
       throw UsageError("--frame is for .vox files with frames, and this is a generator");
     }
@@ -360,7 +363,7 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
   const ArrayAs as = arguments.as_heights  ? ArrayAs::kHeights
                      : arguments.as_points ? ArrayAs::kPoints
                                            : ArrayAs::kByShape;
-  Source source = read_scene_file({arguments.scene, arguments.frame, as}, progress);
+  Source source = read_scene_file({arguments.scene, arguments.frame, as, arguments.full_color}, progress);
   Notes notes = notes_of(source);
   auto scene = scene_of(std::move(source), arguments, opening, progress);
   scene->add_file(arguments.scene);
