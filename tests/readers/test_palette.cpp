@@ -56,6 +56,21 @@ TEST_CASE("palette: one colour -> kept exactly, index 0 stays the default") {
   CHECK(map.index({255, 0, 0}) == 1);
 }
 
+TEST_CASE("palette: colours that glow -> entries of their own, however many others there are") {
+  ColorHistogram histogram;
+  for (std::uint32_t bin = 0; bin < kColorBins; ++bin) {
+    histogram.add(bin_color(bin));
+  }
+  histogram.add({248, 0, 0}, true);
+  const PaletteMap map(histogram, 8);
+  CHECK(map.colors() == 255);
+  const Material& entry = map.palette()[map.index({248, 0, 0}, true)];
+  CHECK(entry.kind == thimble::SurfaceKind::kEmit);
+  CHECK(entry.color == Rgb{248, 0, 0});
+  CHECK(entry.flux == 3);
+  CHECK(map.palette()[map.index({248, 0, 0})].kind == thimble::SurfaceKind::kDiffuse);
+}
+
 TEST_CASE("palette: a bin of several colours -> their rounded average") {
   const PaletteMap map(histogram_of({{16, 16, 16}, {16, 16, 17}, {16, 23, 17}}));
   CHECK(map.colors() == 1);

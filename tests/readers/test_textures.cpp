@@ -343,6 +343,70 @@ TEST_CASE("gltf: alpha -> with MASK and BLEND what is clear is nothing, with OPA
   CHECK(std::get<TriangleMesh>(quad.source()).triangles.size() == 1);
 }
 
+TEST_CASE(
+    "gltf, obj: light that materials give off -> voxels of that light, by its picture, the others as they "
+    "were") {
+  /// The first letters of the columns' colours, capital where they glow; and the power of what glows.
+  const auto glow_of = [](const Source& source, double* power) {
+    const auto& mesh = std::get<TriangleMesh>(source);
+    const PaletteMap colors(mesh_colors(mesh, 4, false), glow_power(mesh));
+    std::string columns(16, ' ');
+    voxelise(mesh, 4, false, &colors, [&](std::int32_t x, std::int32_t, std::int32_t, std::uint8_t material) {
+      const Material& entry = colors.palette()[material];
+      const bool glows = entry.kind == SurfaceKind::kEmit && entry.emission == 1;
+      *power = glows ? std::exp2(entry.flux) : *power;
+      const std::size_t letter = entry.color == kRed     ? 0
+                                 : entry.color == kGreen ? 1
+                                 : entry.color == kBlue  ? 2
+                                                         : 3;
+      columns[static_cast<std::size_t>(x)] = (glows ? "RGB?" : "rgb?")[letter];
+    });
+    return columns;
+  };
+  const auto columns_of_quad = [&](const std::string& light, double* power,
+                                   std::string texture = R"({"source":0})") {
+    Quad quad;
+    quad.texture = std::move(texture);
+    quad.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})" + light + "}";
+    return glow_of(quad.source(), power);
+  };
+  const auto light = [](const std::string& factor, const std::string& more) {
+    return R"(,"emissiveFactor":)" + factor + more;
+  };
+  const std::string by_picture = R"(,"emissiveTexture":{"index":0})";
+  const std::string strong = R"(,"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":4}})";
+  double power = 0;
+  CHECK(columns_of_quad("", &power) == "rrrrrrrrbbbbbbbb");
+  CHECK(power == 0);
+  CHECK(columns_of_quad(light("[0, 1, 0]", ""), &power) == "GGGGGGGGGGGGGGGG");
+  CHECK(power == 1);
+  CHECK(columns_of_quad(light("[0, 1, 0]", strong), &power) == "GGGGGGGGGGGGGGGG");
+  CHECK(power == 4);
+  CHECK(columns_of_quad(light("[1, 0, 0]", by_picture), &power) == "RRRRRRRRbbbbbbbb");
+  CHECK(columns_of_quad(light("[0.05, 0, 0]", ""), &power) == "rrrrrrrrbbbbbbbb");
+  CHECK(columns_of_quad(light("[0, 0, 0]", by_picture), &power) == "rrrrrrrrbbbbbbbb");
+  // Its picture lies elsewhere than the colour's: it is not drawn, and that is said.
+  Quad apart;
+  apart.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"emissiveFactor":[1,1,1],)"
+                   R"("emissiveTexture":{"index":0,"texCoord":1}})";
+  CHECK(glow_of(apart.source(), &power) == "rrrrrrrrbbbbbbbb");
+  CHECK(notes_hold(apart.source(), "the light of material 0 is not drawn"));
+  // Nothing but light, without any picture or coordinates.
+  Quad plain;
+  plain.material = R"({"emissiveFactor":[0,0,1]})";
+  CHECK(glow_of(plain.source(), &power) == "BBBBBBBBBBBBBBBB");
+
+  TemporaryFolder folder;
+  const std::string quad = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  folder.write("red.png", red_blue());
+  folder.write("a.mtl", "newmtl a\nKd 1 0 0\nKe 0 0 2\n");
+  CHECK(glow_of(read_beside(folder, "a.obj", quad + "usemtl a\nf 1 2 3 4\n"), &power) == "BBBBBBBBBBBBBBBB");
+  CHECK(power == 2);
+  folder.write("a.mtl", "newmtl a\nKd 0 1 0\nKe 1 0 0\nmap_Ke red.png\n");
+  const std::string places = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n";
+  CHECK(glow_of(read_beside(folder, "a.obj", quad + places), &power) == "RRRRRRRRgggggggg");
+}
+
 TEST_CASE("texture: clear beside a mesh's part of it -> no voxel of the mesh's rims is lost") {
   Quad quad;
   std::vector<Pixel> pixels(64, {255, 0, 0, 0});

@@ -5,7 +5,8 @@
 // colours: the material's base colour (or the diffuse one of KHR_materials_pbrSpecularGlossiness), its picture (PNG
 // or JPEG) by its coordinates, transform and wrap modes, and COLOR_0, multiplied. With alphaMode MASK what is less
 // opaque than the cutoff is nothing, with BLEND what is less than a tenth; vertices' alpha decides for a whole
-// triangle. Buffers are in the file, in `data:` links or in files beside it; a link that leaves the file's folder is
+// triangle. Light that a material gives off (emissive factor, strength and picture) is drawn where its picture lies as
+// the colour's. Buffers are in the file, in `data:` links or in files beside it; a link that leaves the file's folder is
 // refused. y is up.
 //
 // Not read: compressed meshes (Draco, meshopt) and what a file requires and is not known here, which are refused by
@@ -102,10 +103,15 @@ enum : std::uint64_t { kPoints = 0, kTriangles = 4, kStrip = 5, kFan = 6 };
 struct Look {
   std::array<double, 4> factor{1, 1, 1, 1};
   double cutoff = 0;          ///< of alpha, or 0
-  std::uint32_t surface = 0;  ///< of the mesh; 0: it has no picture
+  std::uint32_t surface = 0;  ///< of the mesh; 0: it has neither pictures nor light of its own
   std::string texcoord;       ///< the attribute's name
   /// From coordinates as they are written to those on the picture: rows of a matrix.
   std::array<std::array<double, 3>, 2> moved{{{1, 0, 0}, {0, 1, 0}}};
+  std::array<Wrap, 2> wraps{Wrap::kRepeat, Wrap::kRepeat};
+
+  bool lies_as(const Look& other) const {
+    return texcoord == other.texcoord && moved == other.moved && wraps == other.wraps;
+  }
 };
 
 /// A primitive at a node.
@@ -143,10 +149,10 @@ class Scene {
     if (has_faces && mesh_.triangles.empty()) {
       throw InputError(is_clear_ ? "all triangles of the scene are clear" : "the scene holds no triangles");
     }
-    if (mesh_.texcoords.empty()) {
+    if (mesh_.surface_of.empty()) {
       mesh_.surfaces = {};
     } else {
-      mesh_.texcoords.resize(mesh_.positions.size());
+      mesh_.texcoords.resize(mesh_.texcoords.empty() ? 0 : mesh_.positions.size());
       mesh_.surface_of.resize(mesh_.triangles.size());
     }
     add_notes();
@@ -194,13 +200,11 @@ class Scene {
 
   /// Refuses a file that says it means nothing without what is not read here; of looks that is a note.
   void check_extensions() {
-    static constexpr std::array<std::string_view, 7> kRead{"EXT_mesh_gpu_instancing",
-                                                           "EXT_texture_webp",
-                                                           "KHR_draco_mesh_compression",
-                                                           "KHR_mesh_quantization",
-                                                           "KHR_texture_transform",
-                                                           "KHR_materials_unlit",
-                                                           "KHR_materials_pbrSpecularGlossiness"};
+    static constexpr std::array<std::string_view, 8> kRead{
+        "EXT_mesh_gpu_instancing",         "EXT_texture_webp",
+        "KHR_draco_mesh_compression",      "KHR_mesh_quantization",
+        "KHR_texture_transform",           "KHR_materials_unlit",
+        "KHR_materials_emissive_strength", "KHR_materials_pbrSpecularGlossiness"};
     std::string first;
     std::size_t looks = 0;
     for (const json& required : gltf_list(file_.root(), "extensionsRequired")) {
@@ -358,7 +362,7 @@ class Scene {
     }
     const Look look = look_of(part);
     const std::vector<float> alphas = add_colors(part, attributes, look);
-    const bool has_picture = add_texcoords(part, attributes, look);
+    const bool has_place = add_texcoords(part, attributes, look);
     if (part.mode == kPoints) {
       return;
     }
@@ -367,7 +371,7 @@ class Scene {
     if (look.cutoff > 0) {
       leave_out_clear(look, alphas, first, first_triangle);
     }
-    if (has_picture) {
+    if (has_place && look.surface != 0) {
       mesh_.surface_of.resize(first_triangle);
       mesh_.surface_of.resize(mesh_.triangles.size(), look.surface);
     }
@@ -440,13 +444,13 @@ class Scene {
     return alphas;
   }
 
-  /// @return whether the part has a picture and says where
+  /// @return whether the part has no picture, or says where
   bool add_texcoords(const Part& part, const json& attributes, const Look& look) {
     const auto texcoord =
-        look.surface == 0 ? std::nullopt : gltf_number(attributes, look.texcoord.c_str(), part.place);
+        look.texcoord.empty() ? std::nullopt : gltf_number(attributes, look.texcoord.c_str(), part.place);
     const GltfAccessor corners = texcoord ? file_.accessor(*texcoord) : GltfAccessor{};
     if (corners.components != 2 || corners.count < part.vertices) {
-      return false;
+      return look.texcoord.empty();
     }
     mesh_.texcoords.reserve(mesh_.positions.capacity());
     mesh_.texcoords.resize(mesh_.positions.size() - static_cast<std::size_t>(part.vertices));
@@ -489,13 +493,59 @@ class Scene {
     } else if (mode != nullptr && *mode == "BLEND") {
       look.cutoff = kNearlyClear;
     }
-    if (texture != nullptr && gltf_member(*texture, "index") != nullptr) {
-      add_texture(*texture, look, place);
+    MeshSurface made;
+    made.color = texture_of(texture, look, place);
+    made.alpha = look.factor[3];
+    made.cutoff = look.cutoff;
+    add_glow(entry, look, made, place);
+    if (made.color == nullptr && made.glow == nullptr) {
+      look.texcoord.clear();
+    }
+    made.wrap_u = look.wraps[0];
+    made.wrap_v = look.wraps[1];
+    if (made.color != nullptr || made.emission != std::array<double, 3>{}) {
+      mesh_.surfaces.resize(
+          std::max<std::size_t>(mesh_.surfaces.size(), 1));  // the first has its colour alone
+      look.surface = static_cast<std::uint32_t>(mesh_.surfaces.size());
+      mesh_.surfaces.push_back(std::move(made));
     }
     return look;
   }
 
-  void add_texture(const json& info, Look& look, const std::string& place) {
+  /// The light that a material gives off, and the picture of it where that lies as the colour's does.
+  void add_glow(const json& entry, Look& look, MeshSurface& made, const std::string& place) {
+    std::array<double, 3> factor{};
+    gltf_reals(entry, "emissiveFactor", factor, place);
+    double strength = 1;
+    if (const json* extension = gltf_extension(entry, "KHR_materials_emissive_strength")) {
+      gltf_real(*extension, "emissiveStrength", strength, place);
+    }
+    for (double& light : factor) {
+      light = std::fmax(0, light * strength);
+    }
+    Look seen;
+    const json* texture = gltf_member(entry, "emissiveTexture");
+    made.glow = factor == std::array<double, 3>{} ? nullptr : texture_of(texture, seen, place);
+    if (made.glow != nullptr && made.color != nullptr && !seen.lies_as(look)) {
+      textures_.fault("the light of " + place +
+                      " is not drawn: its picture lies elsewhere than that of its color");
+      made.glow = nullptr;
+    } else if (made.glow != nullptr || texture == nullptr) {
+      made.emission = factor;
+    }
+    if (made.glow != nullptr && made.color == nullptr) {
+      look.texcoord = seen.texcoord;
+      look.moved = seen.moved;
+      look.wraps = seen.wraps;
+    }
+  }
+
+  /// The picture that `info`, which may be null, names, and in `look` where it lies.
+  std::shared_ptr<const Texture> texture_of(const json* found, Look& look, const std::string& place) {
+    if (found == nullptr || gltf_member(*found, "index") == nullptr) {
+      return nullptr;
+    }
+    const json& info = *found;
     std::uint64_t texcoord = gltf_number(info, "texCoord", place).value_or(0);
     if (const json* transform = gltf_extension(info, "KHR_texture_transform")) {
       std::array<double, 2> offset{};
@@ -511,24 +561,15 @@ class Scene {
     }
     look.texcoord = "TEXCOORD_" + std::to_string(texcoord);
     const json& texture = file_.entry("textures", *gltf_number(info, "index", place));
-    MeshSurface surface;
-    surface.color = picture_of(texture, place);
-    surface.alpha = look.factor[3];
-    surface.cutoff = look.cutoff;
     if (const auto sampler = gltf_number(texture, "sampler", place)) {
       const auto wrap = [&](const char* name) {
         const std::uint64_t mode =
             gltf_number(file_.entry("samplers", *sampler), name, place).value_or(kRepeat);
         return mode == kMirror ? Wrap::kMirror : (mode == kClamp ? Wrap::kClamp : Wrap::kRepeat);
       };
-      surface.wrap_u = wrap("wrapS");
-      surface.wrap_v = wrap("wrapT");
+      look.wraps = {wrap("wrapS"), wrap("wrapT")};
     }
-    if (surface.color != nullptr) {
-      mesh_.surfaces.resize(std::max<std::size_t>(mesh_.surfaces.size(), 1));  // the first has no picture
-      look.surface = static_cast<std::uint32_t>(mesh_.surfaces.size());
-      mesh_.surfaces.push_back(std::move(surface));
-    }
+    return picture_of(texture, place);
   }
 
   std::shared_ptr<const Texture> picture_of(const json& texture, const std::string& place) {

@@ -167,10 +167,12 @@ void Polygons::cut_ears() {
 }
 
 void check_texcoords(TriangleMesh& mesh) {
-  const bool has_picture = std::any_of(
-      mesh.surfaces.begin(), mesh.surfaces.end(),
-      [](const MeshSurface& surface) { return surface.color != nullptr || surface.opacity != nullptr; });
-  if (!has_picture || mesh.texcoords.empty()) {
+  const bool is_shaded =
+      std::any_of(mesh.surfaces.begin(), mesh.surfaces.end(), [&](const MeshSurface& surface) {
+        const bool has_picture = surface.color != nullptr || surface.opacity != nullptr;
+        return (has_picture && !mesh.texcoords.empty()) || surface.emission != std::array<double, 3>{};
+      });
+  if (!is_shaded) {
     mesh.surfaces = {};
     mesh.surface_of = {};
     mesh.texcoords = {};

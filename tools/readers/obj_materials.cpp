@@ -16,7 +16,8 @@ struct ObjMaterial {
   bool is_described = false;
   std::optional<Rgb> color;
   double opacity = 1;
-  std::string picture, opacity_picture;  ///< names from the file's folder, or empty
+  std::array<double, 3> emission{};
+  std::string picture, opacity_picture, glow_picture;  ///< names from the file's folder, or empty
   bool clamps = false;
 };
 
@@ -63,18 +64,23 @@ void read_library(std::string_view text, const std::string& folder,
       const auto found = numbers.find(std::string(trimmed(line)));
       material = found == numbers.end() || found->second == 0 ? &unused : &materials[found->second];
       material->is_described = true;
-    } else if (word == "map_Kd" || word == "map_d") {
+    } else if (word == "map_Kd" || word == "map_d" || word == "map_Ke") {
       const std::string_view name = picture_name(line, &material->clamps);
       const bool is_whole = name.empty() || name.starts_with('/') || name.starts_with('\\');
-      (word == "map_d" ? material->opacity_picture : material->picture) =
-          (is_whole ? "" : folder) + std::string(name);
-    } else if (word == "Kd") {
+      (word == "map_d"    ? material->opacity_picture
+       : word == "map_Ke" ? material->glow_picture
+                          : material->picture) = (is_whole ? "" : folder) + std::string(name);
+    } else if (word == "Kd" || word == "Ke") {
       std::array<double, 3> color{};
       bool is_color = true;
       for (double& component : color) {
         is_color = is_color && parse_number(take_word(line), component) == NumberKind::kFinite;
       }
-      if (is_color) {
+      if (is_color && word == "Ke") {
+        for (std::size_t i = 0; i < color.size(); ++i) {
+          material->emission[i] = std::clamp(color[i], 0.0, 256.0);
+        }
+      } else if (is_color) {
         material->color = {unit_to_byte(color[0]), unit_to_byte(color[1]), unit_to_byte(color[2])};
       }
     } else if (word == "d" && parse_number(take_word(line), value) == NumberKind::kFinite) {
@@ -167,6 +173,7 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
   mesh.surfaces.resize(used.size());
   std::size_t missing = 0;
   bool has_picture = false;
+  bool has_surface = false;
   bool has_color = false;
   for (std::size_t i = 1; i < used.size(); ++i) {
     missing += used[i].is_described ? 0U : 1U;
@@ -183,6 +190,12 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
     surface.opacity = picture(used[i].opacity_picture, true);
     surface.cutoff = surface.opacity != nullptr ? 0.5 : 0;
     has_picture = has_picture || surface.color != nullptr || surface.opacity != nullptr;
+    surface.glow = picture(used[i].glow_picture, false);
+    surface.emission = used[i].emission;
+    if (surface.glow != nullptr && surface.emission == std::array<double, 3>{}) {
+      surface.emission = {1, 1, 1};  // as of Kd: some programs write no light at all where a picture says it
+    }
+    has_surface = has_surface || has_picture || surface.emission != std::array<double, 3>{};
     // Some programs write no light at all where a picture says it.
     if (surface.color != nullptr && used[i].color == Rgb{0, 0, 0}) {
       used[i].color = Rgb{};
@@ -220,7 +233,7 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
     if (colors_faces) {
       mesh.face_colors.push_back(used[number].color.value_or(Rgb{}));
     }
-    if (has_picture) {
+    if (has_surface) {
       mesh.surface_of.push_back(number);
     }
     ++kept;

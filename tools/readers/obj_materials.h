@@ -1,5 +1,5 @@
 /// @file obj_materials.h
-/// The materials of `.obj` files: `.mtl`, of which `Kd`, `d`, `map_Kd` and `map_d` are read. Internal to the `.obj` reader.
+/// The materials of `.obj` files: `.mtl`, of which `Kd`, `d`, `Ke` and their pictures are read. Internal to the `.obj` reader.
 #ifndef THIMBLE_TOOLS_READERS_OBJ_MATERIALS_H
 #define THIMBLE_TOOLS_READERS_OBJ_MATERIALS_H
 

@@ -131,6 +131,8 @@ enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
 struct MeshSurface {
   std::shared_ptr<const Texture> color{};    ///< times the triangle's own colour, as light; null: that alone
   std::shared_ptr<const Texture> opacity{};  ///< its alpha counts; null: that of `color`
+  std::shared_ptr<const Texture> glow{};     ///< times `emission`; null: that alone
+  std::array<double, 3> emission{};  ///< light that it gives off itself; 1: as bright as a screen's white
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
   double alpha = 1;   ///< times that of the pictures
   double cutoff = 0;  ///< nothing is there where alpha is less; 0: alpha means nothing

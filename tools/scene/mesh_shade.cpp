@@ -26,14 +26,20 @@ Real3 in_voxels(const UnitPoint& point) {
 /// What is clear does not end the search for what a voxel is of, as all else does.
 constexpr std::uint64_t kMostClearVoxels = std::uint64_t{1} << 28;
 
+struct Shade {
+  Rgb color;
+  bool glows = false;
+};
+
 /// One triangle of a mesh, seen from voxels.
 class MeshShade {
  public:
-  MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitTriangle& corners);
+  /// @param power  glow_power
+  MeshShade(const TriangleMesh& mesh, double power, std::size_t triangle, const UnitTriangle& corners);
 
   /// Nothing where the triangle is clear; nor, where `only_over`, where the voxel's middle is not over the triangle.
   /// @param edges  those of all triangles, sorted
-  std::optional<Rgb> at(const UnitPoint& voxel, bool only_over, std::span<const std::uint64_t> edges) const;
+  std::optional<Shade> at(const UnitPoint& voxel, bool only_over, std::span<const std::uint64_t> edges) const;
   /// Adds the edges of a triangle that may be clear.
   void add_edges(std::vector<std::uint64_t>& edges) const;
 
@@ -51,11 +57,13 @@ class MeshShade {
   /// triangle lies there; or a neighbour, on the other side.
   std::uint64_t edge_key(std::size_t corner, bool is_neighbour) const;
   /// @param size  of the piece of the picture that is averaged; 1: what a voxel covers
+  Texture::Box box_at(const Place& place, double size) const;
   Texture::Sample sample_at(const Place& place, double size) const;
   /// Clear on the average and at the place itself: a voxel may cover much that is beside the mesh's part of a picture.
   bool is_clear(const Place& place) const;
 
   const TriangleMesh& mesh_;
+  double power_;
   std::size_t triangle_;
   UnitTriangle corners_;
   const MeshSurface* surface_ = nullptr;  ///< null: the triangle has its own colour alone
@@ -74,8 +82,9 @@ bool is_inside(const std::array<double, 2>& place) {
   return place[0] >= 0 && place[1] >= 0 && place[0] + place[1] <= 1;
 }
 
-MeshShade::MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitTriangle& corners)
-    : mesh_(mesh), triangle_(triangle), corners_(corners), corner_(in_voxels(corners[0])) {
+MeshShade::MeshShade(const TriangleMesh& mesh, double power, std::size_t triangle,
+                     const UnitTriangle& corners)
+    : mesh_(mesh), power_(power), triangle_(triangle), corners_(corners), corner_(in_voxels(corners[0])) {
   edge_b_ = minus(in_voxels(corners[1]), corner_);
   edge_c_ = minus(in_voxels(corners[2]), corner_);
   bb_ = dot(edge_b_, edge_b_);
@@ -84,14 +93,16 @@ MeshShade::MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitT
   area_ = bb_ * cc_ - bc_ * bc_;
   const auto& numbers =
       mesh.texcoord_corners.empty() ? mesh.triangles[triangle] : mesh.texcoord_corners[triangle];
-  for (std::size_t i = 0; i < 3; ++i) {
+  const MeshSurface& surface = mesh.surfaces[mesh.surface_of[triangle]];
+  const bool has_picture = surface.color != nullptr || surface.opacity != nullptr || surface.glow != nullptr;
+  for (std::size_t i = 0; i < 3 && has_picture; ++i) {
     if (numbers[i] >= mesh.texcoords.size()) {
       return;
     }
     const auto [u, v] = mesh.texcoords[numbers[i]];
     texcoord_[i] = {static_cast<double>(u), static_cast<double>(v)};
   }
-  surface_ = &mesh.surfaces[mesh.surface_of[triangle]];
+  surface_ = &surface;
   if (area_ <= 0) {
     return;
   }
@@ -170,10 +181,13 @@ bool MeshShade::goes_on(const Place& place, std::span<const std::uint64_t> edges
   return is_on;
 }
 
+Texture::Box MeshShade::box_at(const Place& place, double size) const {
+  return {mixed(texcoord_[0][0], texcoord_[1][0], texcoord_[2][0], place),
+          mixed(texcoord_[0][1], texcoord_[1][1], texcoord_[2][1], place), half_u_ * size, half_v_ * size};
+}
+
 Texture::Sample MeshShade::sample_at(const Place& place, double size) const {
-  const Texture::Box box{mixed(texcoord_[0][0], texcoord_[1][0], texcoord_[2][0], place),
-                         mixed(texcoord_[0][1], texcoord_[1][1], texcoord_[2][1], place), half_u_ * size,
-                         half_v_ * size};
+  const Texture::Box box = box_at(place, size);
   const auto sample_of = [&](const std::shared_ptr<const Texture>& texture) {
     return texture == nullptr ? Texture::Sample{} : texture->average(box, surface_->wrap_u, surface_->wrap_v);
   };
@@ -193,20 +207,37 @@ bool MeshShade::is_clear(const Place& place) const {
   return is_below(sample_at(place, 1)) && is_below(sample_at({inwards(place[0]), inwards(place[1])}, 0));
 }
 
-std::optional<Rgb> MeshShade::at(const UnitPoint& voxel, bool only_over,
-                                 std::span<const std::uint64_t> edges) const {
+std::optional<Shade> MeshShade::at(const UnitPoint& voxel, bool only_over,
+                                   std::span<const std::uint64_t> edges) const {
   const Real3 out = minus(Real3{voxel[0] + 0.5, voxel[1] + 0.5, voxel[2] + 0.5}, corner_);
   const Place below = place_of(out);
   const bool is_over = is_inside(below);
   if (only_over && !is_over) {
     return std::nullopt;
   }
-  if (surface_ == nullptr || (surface_->color == nullptr && surface_->opacity == nullptr)) {
-    return has_colors(mesh_) ? triangle_color(mesh_, triangle_) : Rgb{};
+  const bool may_glow = surface_ != nullptr && surface_->emission != std::array<double, 3>{};
+  if (surface_ == nullptr || (surface_->color == nullptr && surface_->opacity == nullptr && !may_glow)) {
+    return Shade{has_colors(mesh_) ? triangle_color(mesh_, triangle_) : Rgb{}};
   }
   const Place place = is_over ? below : edge_place_of(out);
   if (surface_->cutoff > 0 && (is_clear(place) || (!is_over && goes_on(below, edges) && is_clear(below)))) {
     return std::nullopt;
+  }
+  if (may_glow) {
+    constexpr double kLeast = 0.1;
+    std::array<double, 3> light = surface_->emission;
+    const Texture::Sample glow =
+        surface_->glow == nullptr
+            ? Texture::Sample{}
+            : surface_->glow->average(box_at(place, 1), surface_->wrap_u, surface_->wrap_v);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      light[channel] *= glow.light[channel];
+    }
+    if (std::max({light[0], light[1], light[2]}) >= kLeast) {
+      return Shade{
+          {screen_byte(light[0] / power_), screen_byte(light[1] / power_), screen_byte(light[2] / power_)},
+          true};
+    }
   }
   const Texture::Sample sample = sample_at(place, 1);
   std::array<double, 3> tint{1, 1, 1};
@@ -222,15 +253,16 @@ std::optional<Rgb> MeshShade::at(const UnitPoint& voxel, bool only_over,
     const auto& corners = mesh_.triangles[triangle_];
     tint_by(mesh_.colors[corners[0]], mesh_.colors[corners[1]], mesh_.colors[corners[2]]);
   }
-  return Rgb{screen_byte(tint[0] * sample.light[0]), screen_byte(tint[1] * sample.light[1]),
-             screen_byte(tint[2] * sample.light[2])};
+  return Shade{{screen_byte(tint[0] * sample.light[0]), screen_byte(tint[1] * sample.light[1]),
+                screen_byte(tint[2] * sample.light[2])}};
 }
 
 }  // namespace
 
 void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
-                     const std::function<std::uint8_t(Rgb)>& material_of, const BlockSink& sink,
+                     const std::function<std::uint8_t(Rgb, bool glows)>& material_of, const BlockSink& sink,
                      const Progress& progress) {
+  const double power = glow_power(mesh);
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
   const std::size_t count = mesh.triangles.size();
   std::uint64_t all_cost = 0;
@@ -242,16 +274,16 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
   for (std::size_t i = 0; i < count; ++i) {
     const CellTriangle triangle = triangle_at(i);
     all_cost += rough_cost(triangle.corners);
-    MeshShade(mesh, i, triangle.corners).add_edges(edges);
+    MeshShade(mesh, power, i, triangle.corners).add_edges(edges);
   }
   std::sort(edges.begin(), edges.end());
   std::uint64_t clear = 0;
   const auto material_at = [&](const MeshShade& shade, const CellTriangle& triangle, const UnitPoint& voxel) {
-    const auto color = shade.at(voxel, triangle.only_over, edges);
-    if (!color && !triangle.only_over && ++clear > kMostClearVoxels) {
+    const auto shown = shade.at(voxel, triangle.only_over, edges);
+    if (!shown && !triangle.only_over && ++clear > kMostClearVoxels) {
       throw InputError("its triangles lie over each other too often where they are clear");
     }
-    return color ? std::optional<std::uint8_t>(material_of(*color)) : std::nullopt;
+    return shown ? std::optional<std::uint8_t>(material_of(shown->color, shown->glows)) : std::nullopt;
   };
   if (goes_by_cells(all_cost, count)) {
     std::vector<CellTriangle> triangles;
@@ -265,7 +297,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
                    [&](const CellTriangle& triangle, const UnitPoint& voxel) {
                      if (!shade || number != triangle.number) {
                        number = triangle.number;
-                       shade.emplace(mesh, number, triangle.corners);
+                       shade.emplace(mesh, power, number, triangle.corners);
                      }
                      return material_at(*shade, triangle, voxel);
                    });
@@ -276,7 +308,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
       progress(static_cast<double>(i) / static_cast<double>(2 * count));
     }
     const CellTriangle triangle = triangle_at(i);
-    const MeshShade shade(mesh, triangle.number, triangle.corners);
+    const MeshShade shade(mesh, power, triangle.number, triangle.corners);
     voxelise_triangle(triangle.corners, 0, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
       if (const auto material = material_at(shade, triangle, {x, y, z})) {
         sink({x, y, z}, 0, *material);
@@ -290,12 +322,20 @@ ColorHistogram mesh_colors(const TriangleMesh& mesh, int level, bool z_up) {
     return triangle_colors(mesh);
   }
   ColorHistogram histogram;
-  const auto count = [&](Rgb color) {
-    histogram.add(color);
+  const auto count = [&](Rgb color, bool glows) {
+    histogram.add(color, glows);
     return std::uint8_t{0};
   };
   voxelise_shaded(mesh, level, z_up, count, [](const UnitPoint&, int, std::uint8_t) {}, {});
   return histogram;
+}
+
+double glow_power(const TriangleMesh& mesh) {
+  double power = 1;
+  for (const MeshSurface& surface : mesh.surfaces) {
+    power = std::max({power, surface.emission[0], surface.emission[1], surface.emission[2]});
+  }
+  return power;
 }
 
 }  // namespace thimble::tools

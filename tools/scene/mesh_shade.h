@@ -3,7 +3,8 @@
 ///
 /// A voxel has the colour that the picture has on a triangle next to the voxel's middle, averaged over as much of the
 /// picture as a voxel covers. Where that is clear, the triangle gives no voxel; nor does its edge where the middle is
-/// beyond it and the picture, which continues there on a neighbour, is clear.
+/// beyond it and the picture, which continues there on a neighbour, is clear. A voxel that gives off a tenth of a screen's
+/// white is of that light alone.
 #ifndef THIMBLE_TOOLS_SCENE_MESH_SHADE_H
 #define THIMBLE_TOOLS_SCENE_MESH_SHADE_H
 
@@ -20,12 +21,14 @@ namespace thimble::tools {
 /// the lists.
 /// @throws InputError  no triangles, or so many clear ones over each other that it does not end
 void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
-                     const std::function<std::uint8_t(Rgb)>& material_of, const BlockSink& sink,
+                     const std::function<std::uint8_t(Rgb, bool glows)>& material_of, const BlockSink& sink,
                      const Progress& progress);
 
 /// For PaletteMap: the colours of all triangles, but of a mesh with pictures those of its voxels in a world of 2^level,
 /// for which it is voxelised. Empty when it has no colours.
 ColorHistogram mesh_colors(const TriangleMesh& mesh, int level, bool z_up);
+/// The most light that a surface of the mesh gives off, at least 1: what its glowing colours are parts of.
+double glow_power(const TriangleMesh& mesh);
 
 }  // namespace thimble::tools
 

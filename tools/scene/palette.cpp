@@ -1,7 +1,9 @@
 #include "scene/palette.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace thimble::tools {
 namespace {
@@ -32,7 +34,7 @@ std::uint8_t rounded_average(std::uint64_t sum, std::uint64_t count) {
 
 std::vector<Swatch> used_bins(const ColorHistogram& histogram) {
   std::vector<Swatch> swatches;
-  for (std::size_t index = 0; index < kColorBins; ++index) {
+  for (std::size_t index = 0; index < 2 * kColorBins; ++index) {
     const ColorHistogram::Bin& bin = histogram.bin(index);
     if (bin.count == 0) {
       continue;
@@ -87,7 +89,18 @@ std::size_t cut(std::vector<Swatch>& swatches, const Box& box) {
 /// Boxes of swatches, at most kMaxColors. The box cut next is the one with the most colours times extent;
 /// the earliest on a tie.
 std::vector<Box> median_cut(std::vector<Swatch>& swatches) {
-  std::vector<Box> boxes{measure(swatches, 0, swatches.size())};
+  // What glows, the bins behind all others, shares no box with what does not.
+  const auto glowing =
+      static_cast<std::size_t>(std::find_if(swatches.begin(), swatches.end(),
+                                            [](const Swatch& swatch) { return swatch.bin >= kColorBins; }) -
+                               swatches.begin());
+  std::vector<Box> boxes;
+  for (const auto& [first, last] :
+       {std::pair(std::size_t{0}, glowing), std::pair(glowing, swatches.size())}) {
+    if (first < last) {
+      boxes.push_back(measure(swatches, first, last));
+    }
+  }
   while (boxes.size() < kMaxColors) {
     std::size_t best = 0;
     std::uint64_t best_weight = 0;
@@ -132,7 +145,7 @@ Material default_material() {
   return material;
 }
 
-PaletteMap::PaletteMap(const ColorHistogram& histogram) : table_(kColorBins) {
+PaletteMap::PaletteMap(const ColorHistogram& histogram, double power) : table_(2 * kColorBins) {
   palette_.fill(default_material());
   std::vector<Swatch> swatches = used_bins(histogram);
   if (swatches.empty()) {
@@ -148,7 +161,13 @@ PaletteMap::PaletteMap(const ColorHistogram& histogram) : table_(kColorBins) {
   }
   colors_ = static_cast<int>(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    palette_[i + 1].color = average_of(histogram, swatches, boxes[i]);
+    Material& entry = palette_[i + 1];
+    entry.color = average_of(histogram, swatches, boxes[i]);
+    if (swatches[boxes[i].first].bin >= kColorBins) {
+      entry.kind = SurfaceKind::kEmit;
+      entry.emission = 1;
+      entry.flux = std::log2(power);
+    }
     for (std::size_t j = boxes[i].first; j < boxes[i].last; ++j) {
       table_[swatches[j].bin] = static_cast<std::uint8_t>(i + 1);
     }

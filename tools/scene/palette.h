@@ -8,7 +8,7 @@
 /// arithmetic with fixed tie rules: the same colours give the same palette on every machine, whatever the
 /// order they came in.
 ///
-/// Memory: fixed. A histogram is 1 MiB, a palette map 32 KiB, however many colours there are.
+/// Memory: fixed. A histogram is 2 MiB, a palette map 64 KiB, however many colours there are.
 #ifndef THIMBLE_TOOLS_SCENE_PALETTE_H
 #define THIMBLE_TOOLS_SCENE_PALETTE_H
 
@@ -39,9 +39,10 @@ class ColorHistogram {
     std::array<std::uint64_t, 3> sum{};  ///< of red, green, blue
   };
 
-  ColorHistogram() : bins_(kColorBins) {}
-  void add(Rgb color) {
-    Bin& bin = bins_[color_bin(color)];
+  ColorHistogram() : bins_(2 * kColorBins) {}
+  /// @param glows  it is light that is given off: it gets an entry of its own, a light's
+  void add(Rgb color, bool glows = false) {
+    Bin& bin = bins_[color_bin(color) + (glows ? kColorBins : 0)];
     ++bin.count;
     bin.sum[0] += color.r;
     bin.sum[1] += color.g;
@@ -59,10 +60,13 @@ class PaletteMap {
   /// Chooses the colours; some milliseconds. An empty histogram gives a palette of default materials in which
   /// every colour maps to 0. A colour whose bin was not counted maps to the entry nearest to the bin's
   /// middle (squared distance, the lowest index on a tie).
-  explicit PaletteMap(const ColorHistogram& histogram);
+  /// @param power  of the entries that glow: how many times as bright as a screen's white theirs is
+  explicit PaletteMap(const ColorHistogram& histogram, double power = 1);
 
   /// Palette index of `color`: 1..255, or 0 when no colour was counted.
-  std::uint8_t index(Rgb color) const { return table_[color_bin(color)]; }
+  std::uint8_t index(Rgb color, bool glows = false) const {
+    return table_[color_bin(color) + (glows ? kColorBins : 0)];
+  }
   /// Entries `colors() + 1` .. 255 are default materials.
   const Palette& palette() const { return palette_; }
   /// Entries in use besides index 0: 0..255.

@@ -192,7 +192,8 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
   SourceFacts facts;
   facts.kind = "triangle mesh, voxelised";
   facts.level = arguments.depth.value_or(kDefaultDepth);
-  const auto colors = std::make_shared<const PaletteMap>(mesh_colors(*mesh, facts.level, z_up));
+  const auto colors =
+      std::make_shared<const PaletteMap>(mesh_colors(*mesh, facts.level, z_up), glow_power(*mesh));
   facts.points = mesh->positions.size();
   facts.is_mesh = true;
   facts.single_material = colors->colors() == 0;

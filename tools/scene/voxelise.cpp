@@ -373,8 +373,8 @@ ColorHistogram triangle_colors(const TriangleMesh& mesh) {
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress) {
   if (!mesh.surfaces.empty()) {
-    const auto material_of = [&](Rgb color) {
-      return colors == nullptr ? std::uint8_t{0} : colors->index(color);
+    const auto material_of = [&](Rgb color, bool glows) {
+      return colors == nullptr ? std::uint8_t{0} : colors->index(color, glows);
     };
     voxelise_shaded(mesh, level, z_up, material_of, sink, progress);
     return;

@@ -29,8 +29,11 @@ void Textures::add_notes(Notes& notes) const {
   }
 }
 void voxelise_shaded(const TriangleMesh& /*mesh*/, int /*level*/, bool /*z_up*/,
-                     const std::function<std::uint8_t(Rgb)>& /*material_of*/, const BlockSink& /*sink*/,
+                     const std::function<std::uint8_t(Rgb, bool)>& /*material_of*/, const BlockSink& /*sink*/,
                      const Progress& /*progress*/) {}
+double glow_power(const TriangleMesh& /*mesh*/) {
+  return 1;
+}
 ColorHistogram mesh_colors(const TriangleMesh& mesh, int /*level*/, bool /*z_up*/) {
   return triangle_colors(mesh);
 }
