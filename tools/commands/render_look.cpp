@@ -151,10 +151,14 @@ class LookStudio {
   std::uint32_t exposure_ = 0;
 };
 
-void print_look(const RenderCommand& command, const LookStudio& studio) {
+void print_look(const RenderCommand& command, const SceneSource& source, const LookStudio& studio) {
   if (command.look.verbose) {
     std::fprintf(stderr, "look: %s; exposure %s\n", studio.look().text.c_str(),
                  fixed(studio.exposure() / 256.0, 2).c_str());
+    if (source.color_error() > 0) {
+      std::fprintf(stderr, "colors: 255 at most; a channel differs by %s of 255 (root of the mean square)\n",
+                   fixed(source.color_error(), 2).c_str());
+    }
   }
 }
 
@@ -212,7 +216,7 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
   }
   Stats stats = stats_of(command, source, studio, painting);
   stats.frame_crc32 = crc_of(file_pixels(shown, kind));
-  print_look(command, studio);
+  print_look(command, source, studio);
   finish(command, stats, studio.framing().note, outputs);
 }
 
@@ -291,7 +295,7 @@ void render_film(const RenderCommand& command, const SceneSource& source, LookSt
   const Painting last = filming.end();
   Stats stats = stats_of(command, source, studio, last);
   stats.frame_crc32 = crc_text(filming.crc());
-  print_look(command, studio);
+  print_look(command, source, studio);
   finish(command, stats, note, outputs);
 }
 

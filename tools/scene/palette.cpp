@@ -6,18 +6,20 @@
 #include <utility>
 
 namespace thimble::tools {
-namespace {
-
-constexpr std::size_t kMaxColors = 255;
-
-using Channels = std::array<std::uint8_t, 3>;
 
 /// A bin in use: its rounded average and how many colours it stands for.
-struct Swatch {
-  Channels average{};
+struct PaletteMap::Swatch {
+  std::array<std::uint8_t, 3> average{};
   std::uint16_t bin = 0;
   std::uint64_t count = 0;
 };
+
+namespace {
+
+using Swatch = PaletteMap::Swatch;
+constexpr std::size_t kMaxColors = 255;
+
+using Channels = std::array<std::uint8_t, 3>;
 
 /// A box of the median cut: swatches [first, last) of the list, and its longest side.
 struct Box {
@@ -122,17 +124,6 @@ std::vector<Box> median_cut(std::vector<Swatch>& swatches) {
   return boxes;
 }
 
-Rgb average_of(const ColorHistogram& histogram, const std::vector<Swatch>& swatches, const Box& box) {
-  std::array<std::uint64_t, 3> sum{};
-  for (std::size_t i = box.first; i < box.last; ++i) {
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      sum[channel] += histogram.bin(swatches[i].bin).sum[channel];
-    }
-  }
-  return {rounded_average(sum[0], box.count), rounded_average(sum[1], box.count),
-          rounded_average(sum[2], box.count)};
-}
-
 int square(int value) {
   return value * value;
 }
@@ -161,36 +152,77 @@ PaletteMap::PaletteMap(const ColorHistogram& histogram, double power) : table_(2
   }
   colors_ = static_cast<int>(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    Material& entry = palette_[i + 1];
-    entry.color = average_of(histogram, swatches, boxes[i]);
     if (swatches[boxes[i].first].bin >= kColorBins) {
-      entry.kind = SurfaceKind::kEmit;
-      entry.emission = 1;
-      entry.flux = std::log2(power);
+      palette_[i + 1].kind = SurfaceKind::kEmit;
+      palette_[i + 1].emission = 1;
+      palette_[i + 1].flux = std::log2(power);
     }
     for (std::size_t j = boxes[i].first; j < boxes[i].last; ++j) {
       table_[swatches[j].bin] = static_cast<std::uint8_t>(i + 1);
     }
   }
-  // Bins nobody counted: the nearest entry.
-  for (std::size_t bin = 0; bin < kColorBins; ++bin) {
-    if (table_[bin] != 0) {
-      continue;
+  constexpr int kRounds = 4;
+  average_entries(histogram, swatches);
+  for (int round = 0; swatches.size() > kMaxColors && round < kRounds; ++round) {
+    for (const Swatch& swatch : swatches) {
+      table_[swatch.bin] = nearest_entry(swatch.average, swatch.bin >= kColorBins);
     }
-    const std::array<int, 3> middle{static_cast<int>(bin >> 10) * 8 + 4,
-                                    static_cast<int>(bin >> 5 & 31) * 8 + 4,
-                                    static_cast<int>(bin & 31) * 8 + 4};
-    int nearest = std::numeric_limits<int>::max();
-    for (std::size_t entry = 1; entry <= boxes.size(); ++entry) {
-      const Rgb color = palette_[entry].color;
-      const int distance =
-          square(middle[0] - color.r) + square(middle[1] - color.g) + square(middle[2] - color.b);
-      if (distance < nearest) {
-        nearest = distance;
-        table_[bin] = static_cast<std::uint8_t>(entry);
-      }
+    average_entries(histogram, swatches);
+  }
+  for (std::size_t bin = 0; bin < table_.size(); ++bin) {  // those that nobody counted
+    if (table_[bin] == 0) {
+      const auto middle = [&](unsigned shift) {
+        return static_cast<std::uint8_t>((bin >> shift & 31) * 8 + 4);
+      };
+      table_[bin] = nearest_entry({middle(10), middle(5), middle(0)}, bin >= kColorBins);
     }
   }
+}
+
+void PaletteMap::average_entries(const ColorHistogram& histogram, const std::vector<Swatch>& swatches) {
+  std::array<ColorHistogram::Bin, kMaxColors + 1> entries{};
+  for (const Swatch& swatch : swatches) {
+    ColorHistogram::Bin& entry = entries[table_[swatch.bin]];
+    const ColorHistogram::Bin& bin = histogram.bin(swatch.bin);
+    entry.count += bin.count;
+    entry.squares += bin.squares;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      entry.sum[channel] += bin.sum[channel];
+    }
+  }
+  double squares = 0;
+  double count = 0;
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    const auto& [colors, sum, all_squares] = entries[i];
+    if (colors == 0) {
+      continue;
+    }
+    const Channels average{rounded_average(sum[0], colors), rounded_average(sum[1], colors),
+                           rounded_average(sum[2], colors)};
+    palette_[i].color = {average[0], average[1], average[2]};
+    count += static_cast<double>(colors);
+    squares += static_cast<double>(all_squares);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const double value = average[channel];
+      squares += value * (value * static_cast<double>(colors) - 2 * static_cast<double>(sum[channel]));
+    }
+  }
+  error_ = std::sqrt(std::fmax(0, squares) / (3 * count));
+}
+
+std::uint8_t PaletteMap::nearest_entry(const Channels& color, bool glows) const {
+  std::uint8_t found = 0;
+  int nearest = std::numeric_limits<int>::max();
+  for (int entry = 1; entry <= colors_; ++entry) {
+    const Material& to = palette_[static_cast<std::size_t>(entry)];
+    const int distance =
+        square(color[0] - to.color.r) + square(color[1] - to.color.g) + square(color[2] - to.color.b);
+    if (distance < nearest && (to.kind == SurfaceKind::kEmit) == glows) {
+      nearest = distance;
+      found = static_cast<std::uint8_t>(entry);
+    }
+  }
+  return found;
 }
 
 }  // namespace thimble::tools

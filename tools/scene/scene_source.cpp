@@ -110,6 +110,7 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
   facts.single_material = colors->colors() == 0;
   facts.is_scalable = false;
   facts.palette = colors->palette();
+  facts.color_error = colors->error();
   const std::uint64_t voxels = facts.points;
   return std::make_unique<SceneSource>(
       std::move(facts), [grid, colors, voxels](const VoxelSink& sink, const Progress& progress) {
@@ -163,6 +164,7 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
     (*facts.extent)[axis] = static_cast<std::int32_t>(high) + 1;
   }
   facts.palette = points->colors.palette();
+  facts.color_error = points->colors.error();
   const int level = facts.level;
   auto scene = std::make_unique<SceneSource>(
       std::move(facts), [points, as_voxels, level](const VoxelSink& sink, const Progress& progress) {
@@ -198,6 +200,7 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
   facts.is_mesh = true;
   facts.single_material = colors->colors() == 0;
   facts.palette = colors->palette();
+  facts.color_error = colors->error();
   const int level = facts.level;
   return std::make_unique<SceneSource>(
       std::move(facts),

@@ -35,6 +35,7 @@ struct SourceFacts {
   /// One past the greatest index on each axis that can occur: what a dense grid must hold; else the whole world.
   std::optional<std::array<std::int32_t, 3>> extent{};
   Palette palette{};
+  double color_error = 0;  ///< root of the mean square by which its channels differ from the file's, of 255
   std::optional<SceneCamera> camera{};  ///< that the scene brings along: a baked one, or a generator's own
   /// What light does in it by its file, its text or its generator; else the palette's surfaces alone.
   std::optional<LitDescription> lighting{};
@@ -62,6 +63,7 @@ class SceneSource {
   bool single_material() const { return facts_.single_material; }
   std::array<std::int32_t, 3> extent() const;
   const Palette& palette() const { return facts_.palette; }
+  double color_error() const { return facts_.color_error; }
   bool has_colors() const { return facts_.has_colors.value_or(!facts_.single_material); }
   bool is_scalable() const { return facts_.is_scalable; }
   const SceneCamera* camera() const { return facts_.camera ? &*facts_.camera : nullptr; }
