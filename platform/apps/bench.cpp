@@ -32,7 +32,6 @@ namespace {
 
 // The larger functions are not inlined: what one keeps on the stack is gone when the next one draws.
 
-constexpr int32_t kBandRows = 8;
 /// Whether the brick map's frames alone are measured (bench_frames.sh, which has their CRCs from the host).
 #ifdef THIMBLE_MEASURED
 constexpr bool kFastestOnly = true;
@@ -49,12 +48,10 @@ struct Bench : Placed {
   Orbit orbit;
   Shading shading;
   Camera camera;
-  Bytes bands;
-  int32_t band_rows = 0;
+  Bands bands;
   BitWorld grid;  ///< of the baseline; without bits where there is no room
   uint8_t face_grays[6] = {};
   bool counts_instructions = false;
-  bool second_band = false;  ///< of `bands` is next
   uint32_t costs[kGoldenFrames] = {};
   uint32_t crcs[kGoldenFrames] = {};  ///< of the first engine
   RenderCounts counts;
@@ -72,18 +69,10 @@ uint32_t now(const Bench& bench) {
 }
 
 void tell(const char* group, const char* name, uint64_t value) {
-  put(group);
-  put(".");
-  put(name);
-  put(",");
-  put_number(value);
-  put("\n");
+  put(group, ".", name, ",", value, "\n");
 }
 void tell(const char* name, uint64_t value) {
-  put(name);
-  put(",");
-  put_number(value);
-  put("\n");
+  put(name, ",", value, "\n");
 }
 
 Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* counts) {
@@ -110,17 +99,14 @@ Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* c
 /// `counts` the rays are counted; the cost is of a frame without either.
 [[gnu::noinline]] Status draw_frame(Bench* bench, Engine engine, uint32_t frame, uint32_t* crc,
                                     RenderCounts* counts) {
-  const port::Display& screen = port::facts().display;
+  const port::Display& screen = display();
   Status status = view_at(bench->orbit, bench->shown.scene.tree(), frame, {}, screen.width_px,
                           screen.height_px, &bench->camera);
-  for (int32_t y = 0; y < screen.height_px && status == Status::kOk; y += bench->band_rows) {
-    const int32_t left = screen.height_px - y;
-    Band band{bench->bands, screen.format, 0, y, left < bench->band_rows ? left : bench->band_rows};
-    band.pixels =
-        next_band(bench->bands, bench->second_band, band_bytes(screen.format, screen.width_px, band.rows));
+  for (int32_t y = 0; y < screen.height_px && status == Status::kOk; y += bench->bands.rows) {
+    const Band band = bench->bands.next(y, screen.height_px);
     status = draw(*bench, engine, band, counts);
     if (status == Status::kOk) {
-      send_band(band, &bench->second_band);
+      bench->bands.send(band);
       if (crc != nullptr) {
         *crc = crc32(band.pixels, *crc);
       }
@@ -143,7 +129,7 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
 /// Measures an engine and tells its lines. `exact`: whether its pictures were those of the first engine, or
 /// it is the first. `*median` gets a frame's cost.
 [[gnu::noinline]] Status measure(Bench* bench, Engine engine, bool* exact, uint32_t* median) {
-  const port::Display& screen = port::facts().display;
+  const port::Display& screen = display();
   const char* const name = name_of(engine);
   RenderCounts& counts = bench->counts;
   counts = {};
@@ -165,12 +151,7 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
     const bool is_lit = engine == Engine::kLit;
     *exact = *exact && (crc == bench->crcs[i] || engine == Engine::kDda || is_lit);
     if (engine != Engine::kDda) {
-      put(name);
-      put(is_lit ? ".lit_crc." : ".crc.");
-      put_number(frame);
-      put(",");
-      put_hex(crc);
-      put("\n");
+      put(name, is_lit ? ".lit_crc." : ".crc.", frame, ",", Hex{crc}, "\n");
     }
   }
   sort(bench->costs);
@@ -183,8 +164,7 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
   tell(name, "instructions_max", bench->costs[kGoldenFrames - 1]);
   tell(name, "instructions_a_ray", *median / pixels);
   if (bench->counts_instructions && *median >= 1000) {
-    put(name);
-    put(".frames_a_second_estimate,");
+    put(name, ".frames_a_second_estimate,");
     put_thousandths(port::facts().core_mhz * 1000000 / (*median / 1000), 2);
     put("\n");
   }
@@ -194,8 +174,7 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
   // Counts of eight small pictures fit in 32 bits.
   const auto hits = static_cast<uint32_t>(counts.hits);
   tell(name, "node_visits", static_cast<uint32_t>(counts.node_visits) / kGoldenFrames);
-  put(name);
-  put(".coverage_percent,");
+  put(name, ".coverage_percent,");
   // In thousandths of a percent; up to 2^20 pixels a picture.
   put_thousandths(hits / kGoldenFrames * 4000 / ((pixels + 24) / 25), 2);
   put("\n");
@@ -205,7 +184,7 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
 /// Traces the set of rays with one arithmetic width; false where that width does not take them.
 [[gnu::noinline]] bool trace_set(const Bench& bench, Width width, uint32_t* rays, uint32_t* cost,
                                  uint32_t* visits, uint32_t* sum) {
-  const port::Display& screen = port::facts().display;
+  const port::Display& screen = display();
   TraceOptions options;
   options.width = width;
   for (int32_t y = kRayStep / 2; y < screen.height_px; y += kRayStep) {
@@ -236,7 +215,7 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
 
 /// Both widths on the rays of the first frame. Whether they agree.
 [[gnu::noinline]] bool measure_rays(Bench* bench) {
-  const port::Display& screen = port::facts().display;
+  const port::Display& screen = display();
   if (view_at(bench->orbit, bench->shown.scene.tree(), 0, {}, screen.width_px, screen.height_px,
               &bench->camera) != Status::kOk) {
     return false;
@@ -263,7 +242,7 @@ void sort(uint32_t (&values)[kGoldenFrames]) {
 
 /// The baseline's grid, where the arena holds it and the picture is one that it draws.
 [[gnu::noinline]] void make_grid(Bench* bench) {
-  const port::Display& screen = port::facts().display;
+  const port::Display& screen = display();
   const CompactTree& tree = bench->shown.scene.tree();
   if (screen.format != PixelFormat::kGray4 || !bench->shown.has_map || tree.level() > 6) {
     return;
@@ -299,16 +278,12 @@ int bench() {
   if (const char* wrong = open_scene(&bench->shown)) {
     return refuse(wrong);
   }
-  const port::Display& screen = port::facts().display;
-  const size_t row = row_bytes(screen.format, screen.width_px);
-  bench->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
-  while (bench->band_rows > band_row_multiple(screen.format) &&
-         all_bands(row * row_place(screen.format, bench->band_rows)) > bench->arena.free_bytes()) {
-    --bench->band_rows;
+  const port::Display& screen = display();
+  int32_t rows = kBandRows;
+  while (!bench->bands.take(&bench->arena, rows) && rows > band_row_multiple(screen.format)) {
+    --rows;
   }
-  bench->bands = bench->arena.take(
-      all_bands(row * row_place(screen.format, whole_rows(screen.format, bench->band_rows))));
-  if (bench->bands.empty()) {
+  if (bench->bands.memory.empty()) {
     return refuse("the arena does not hold a row of the picture");
   }
   if (const char* wrong = open_light(bench->shown.scene, &bench->light)) {
@@ -322,10 +297,8 @@ int bench() {
   bench->shading = demo_shading(bench->shown.scene.palette());
   bench->counts_instructions = port::instructions() != 0;
 
-  put("name,value\nboard,");
-  put(port::facts().name);
-  put("\nunit,");
-  put(bench->counts_instructions ? "instructions\n" : "microseconds\n");
+  put("name,value\nboard,", port::facts().name, "\nunit,",
+      bench->counts_instructions ? "instructions\n" : "microseconds\n");
   tell("width_px", static_cast<uint32_t>(screen.width_px));
   tell("height_px", static_cast<uint32_t>(screen.height_px));
   tell("frames", kGoldenFrames);

@@ -36,8 +36,6 @@ namespace {
 
 // The larger functions are not inlined: what one keeps on the stack is gone when the next one draws.
 
-/// Rows in a band, where the arena holds as many.
-constexpr int32_t kBandRows = 8;
 /// Bytes over the UART that are looked at in one frame.
 constexpr int kKeysAFrame = 16;
 /// Places that are looked at for a voxel of the scene that is built, in one frame.
@@ -77,13 +75,11 @@ struct Demo : Placed {
   Steering steering;
   Camera camera;
   Shading shading;
-  Bytes bands;
-  int32_t band_rows = 0;
+  Bands bands;
   uint32_t frame = 0;   ///< of the scene that is shown
   uint32_t turned = 0;  ///< frames in which the camera has turned
   bool turns = true;
   bool tells_crc = false;
-  bool second_band = false;  ///< of `bands` is next
   [[no_unique_address]] Crew crew;
 
   // Holding a rate of frames.
@@ -107,10 +103,6 @@ struct Demo : Placed {
   Octree pool;
   SphereBuilder spheres;
 };
-
-const port::Display& display() {
-  return port::facts().display;
-}
 
 /// Where bands are sent while others are drawn, one holds what a tile of a thinned picture becomes, every 4th
 /// pixel both ways, so that the next tile is drawn meanwhile.
@@ -170,14 +162,11 @@ Status draw(const Demo& demo, const Band& band) {
 
 /// The rows of the picture from `y` on that the band's memory holds, those before `end`.
 [[gnu::noinline]] Band band_at(const Demo& demo, int32_t y, int32_t end) {
-  const port::Display& screen = display();
-  const int32_t rows = end - y < demo.band_rows ? end - y : demo.band_rows;
-  const size_t bytes = band_bytes(screen.format, screen.width_px, rows);
-  return {next_band(demo.bands, demo.second_band, bytes), screen.format, 0, y, rows};
+  return demo.bands.next(y, end);
 }
 
 void flush(Demo* demo, const Band& band, uint32_t* crc) {
-  send_band(band, &demo->second_band);
+  demo->bands.send(band);
   demo->crew.leave();
   if (demo->tells_crc) {
     *crc = crc32(band.pixels, *crc);
@@ -219,10 +208,10 @@ void draw_other_bands(void* demo) {
   Crew& crew = demo->crew;
   CrewFrame& frame = crew.frame;
   frame.height_px = display().height_px;
-  frame.band_rows = demo->band_rows > 2 * kBrickTilePx ? 2 * kBrickTilePx : demo->band_rows;
+  frame.band_rows = demo->bands.rows > 2 * kBrickTilePx ? 2 * kBrickTilePx : demo->bands.rows;
   frame.in_order = demo->tells_crc;
   if (!crew.was_last) {
-    frame.begin_after(demo->second_band ? 0 : 1);
+    frame.begin_after(demo->bands.second ? 0 : 1);
   }
   frame.begin();
   crew.crc = 0;
@@ -230,7 +219,7 @@ void draw_other_bands(void* demo) {
   draw_bands(demo, 0);
   port::await_share();
   crew.was_last = true;
-  demo->second_band = frame.sending == 0;
+  demo->bands.second = frame.sending == 0;
   *crc = crew.crc;
   return frame.status;
 }
@@ -251,11 +240,8 @@ void tell_crew(const Demo& demo) {
   while (unused < demo.crew.stack.size && demo.crew.stack[unused] == port::kStackPaint) {
     ++unused;
   }
-  put("second core's stack: ");
-  put_number(static_cast<uint32_t>(demo.crew.stack.size) - unused);
-  put(" of ");
-  put_number(demo.crew.stack.size);
-  put(" bytes used\n");
+  put("second core's stack: ", static_cast<uint32_t>(demo.crew.stack.size) - unused, " of ",
+      demo.crew.stack.size, " bytes used\n");
 }
 #else
 bool draws_together(const Demo& /*demo*/) {
@@ -281,7 +267,7 @@ void tell_crew(const Demo& /*demo*/) {}
     }
     return status;
   }
-  for (int32_t y = 0; y < height; y += demo->band_rows) {
+  for (int32_t y = 0; y < height; y += demo->bands.rows) {
     const Band band = band_at(*demo, y, height);
     const bool slow = kCanLight && demo->is_lit && demo->is_whole && !demo->light.moves_whole();
     if (slow && port::buttons() != 0) {
@@ -330,8 +316,8 @@ void tell_crew(const Demo& /*demo*/) {}
   const bool flushes_again = rows_alike && port::band_buffers() == 1;
   // Rows of a tile, or as many as fill a band where it is sent meanwhile.
   const int32_t most_rows =
-      rows_alike && !flushes_again && demo->band_rows >= step && demo->band_rows < kBrickTilePx * step
-          ? demo->band_rows / step
+      rows_alike && !flushes_again && demo->bands.rows >= step && demo->bands.rows < kBrickTilePx * step
+          ? demo->bands.rows / step
           : kBrickTilePx;
   demo->inexact = static_cast<uint32_t>(screen.width_px * screen.height_px - width * height);
   *crc = 0;
@@ -416,15 +402,12 @@ void tell_crew(const Demo& /*demo*/) {}
   const PixelFormat format = screen.format;
   const bool has_colors = !is_gray(format);
   port::await_flush();  // the bands' memory is used here
-  put(has_colors ? "P6\n" : "P5\n");
-  put_number(static_cast<uint32_t>(screen.width_px));
-  put(" ");
-  put_number(static_cast<uint32_t>(screen.height_px));
-  put("\n255\n");
+  put(has_colors ? "P6\n" : "P5\n", static_cast<uint32_t>(screen.width_px), " ",
+      static_cast<uint32_t>(screen.height_px), "\n255\n");
   for (int32_t y = 0; y < screen.height_px; ++y) {
     const int32_t together = band_row_multiple(format);
     const int32_t left = screen.height_px - y;
-    const Band band{demo.bands.subspan(0, row_bytes(format, screen.width_px)), format, 0, y,
+    const Band band{demo.bands.memory.subspan(0, row_bytes(format, screen.width_px)), format, 0, y,
                     left < together ? left : together};
     if (begins_bytes(format, y) && draw(demo, band) != Status::kOk) {
       return;
@@ -476,9 +459,7 @@ void tell_crew(const Demo& /*demo*/) {}
   const int32_t side = int32_t{1} << level;
   demo->orbit = orbit_of(VoxelBox{{0, 0, 0}, {side, side, side}});
   demo->shading = demo_shading(SphereBuilder::palette());
-  put("building in a pool of ");
-  put_number(demo->pool.capacity());
-  put(" nodes\n");
+  put("building in a pool of ", demo->pool.capacity(), " nodes\n");
 }
 
 /// Some voxels more. When the pool is full the tree coarsens from then on, for a few spheres more.
@@ -489,11 +470,7 @@ void tell_crew(const Demo& /*demo*/) {}
       continue;
     }
     if (demo->pool.insert(voxel.position, voxel.material) == Status::kOutOfMemory && !demo->is_full) {
-      put("pool full: voxels ");
-      put_number(demo->pool.voxels());
-      put(" nodes ");
-      put_number(demo->pool.nodes_used());
-      put("; coarsening\n");
+      put("pool full: voxels ", demo->pool.voxels(), " nodes ", demo->pool.nodes_used(), "; coarsening\n");
       demo->is_full = true;
       demo->pool.set_coarsen(true);
       demo->spheres.end_after(demo->spheres.finished() + kSpheresBeyond);
@@ -522,16 +499,11 @@ void tell_crew(const Demo& /*demo*/) {}
     }
   }
   demo->holds = true;
-  put("holding ");
-  put_number(demo->fps);
-  put(" frames a second: ");
+  put("holding ", demo->fps, " frames a second: ");
   if (demo->shown.has_map) {
-    put("a pixel of ");
-    put_number(static_cast<uint32_t>(thinning_for(demo->fps)));
-    put(" both ways\n");
+    put("a pixel of ", static_cast<uint32_t>(thinning_for(demo->fps)), " both ways\n");
   } else {
-    put_number(visits_a_frame(demo->fps));
-    put(" visits a frame\n");
+    put(visits_a_frame(demo->fps), " visits a frame\n");
   }
 }
 
@@ -613,26 +585,17 @@ bool lights_next(const Demo& demo) {
   return kCanHold && demo->holds && !(kCanLight && lights) ? draw_held(demo, crc) : draw_frame(demo, crc);
 }
 
-void tell_frame(const Demo& demo, uint32_t crc) {
-  put(demo.builds ? "build " : "frame ");
-  put_number(demo.frame);
-  put(" crc ");
-  put_hex(crc);
+[[gnu::noinline]] void tell_frame(const Demo& demo, uint32_t crc) {
+  put(demo.builds ? "build " : "frame ", demo.frame, " crc ", Hex{crc});
   if (demo.builds) {
-    put(" voxels ");
-    put_number(demo.pool.voxels());
-    put(" nodes ");
-    put_number(demo.pool.nodes_used());
-    put(" added ");
-    put_number(demo.pool.solid_added());
-    put(demo.spheres.is_done() ? " done" : "");
+    put(" voxels ", demo.pool.voxels(), " nodes ", demo.pool.nodes_used(), " added ", demo.pool.solid_added(),
+        demo.spheres.is_done() ? " done" : "");
   }
   if (kCanLight && demo.is_lit) {
     put(" lit");
   }
   if (demo.holds) {
-    put(" inexact ");
-    put_number(demo.inexact);
+    put(" inexact ", demo.inexact);
   }
   put("\n");
 }
@@ -646,22 +609,20 @@ void tell_frame(const Demo& demo, uint32_t crc) {
 /// Takes memory for bands, at most half of what is left: the other half is for the pool. False: not a row fits.
 bool take_bands(Demo* demo) {
   const port::Display& screen = display();
-  const size_t row = row_bytes(screen.format, screen.width_px);
   Bytes stack;
   if (port::cores() > 1 && demo->arena.free_bytes() > 8 * port::facts().stack_bytes) {
     stack = demo->arena.take(port::facts().stack_bytes);
   }
-  demo->band_rows = most_band_rows();
-  while (demo->band_rows > band_row_multiple(screen.format) &&
-         crew_bands(band_bytes(screen.format, screen.width_px, demo->band_rows)) >
-             demo->arena.free_bytes() / 2) {
-    --demo->band_rows;
+  demo->bands.rows = most_band_rows();
+  while (demo->bands.rows > band_row_multiple(screen.format) &&
+         crew_bands(Bands::bytes_for(demo->bands.rows)) > demo->arena.free_bytes() / 2) {
+    --demo->bands.rows;
   }
-  const size_t one = row * row_place(screen.format, whole_rows(screen.format, demo->band_rows));
+  const size_t one = Bands::bytes_for(demo->bands.rows);
   const Bytes bands = demo->arena.take(crew_bands(one));
-  demo->bands = bands.subspan(0, all_bands(one));
+  demo->bands.memory = bands.subspan(0, all_bands(one));
   demo->crew.take(stack, bands);
-  return !demo->bands.empty();
+  return !demo->bands.memory.empty();
 }
 
 /// Opens the scene, its light and map, and takes memory for bands. Null, or why not.
@@ -735,14 +696,10 @@ int demo() {
     demo->turned += demo->turns ? 1 : 0;
   }
   if (demo->most_instructions != 0) {
-    put("most instructions of a held frame: ");
-    put_number(demo->most_instructions);
-    put("\n");
+    put("most instructions of a held frame: ", demo->most_instructions, "\n");
   }
   if (kCanLight && demo->lit_instructions != 0) {
-    put("instructions of a lit frame: ");
-    put_number(demo->lit_instructions);
-    put("\n");
+    put("instructions of a lit frame: ", demo->lit_instructions, "\n");
   }
   tell_crew(*demo);
   return 0;

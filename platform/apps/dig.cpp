@@ -26,7 +26,6 @@
 namespace thimble::apps {
 namespace {
 
-constexpr int32_t kBandRows = 8;
 constexpr int kKeysAFrame = 16;
 /// A bite: the voxels whose middles lie within the root of 2 of the middle one's.
 constexpr int32_t kBiteSquare = 2;
@@ -43,19 +42,13 @@ struct Dig : Placed {
   Steering steering;
   Camera camera;
   Shading shading;
-  Bytes bands;
-  int32_t band_rows = 0;
-  bool second_band = false;  ///< of `bands` is next
-  bool is_touched = false;   ///< a key or button has come
-  uint32_t held = 0;         ///< buttons
+  Bands bands;
+  bool is_touched = false;  ///< a key or button has come
+  uint32_t held = 0;        ///< buttons
   uint32_t edits = 0;
   uint32_t refused = 0;
   uint32_t most_instructions = 0;  ///< of the edit of a voxel, where they are counted
 };
-
-const port::Display& display() {
-  return port::facts().display;
-}
 
 /// The cross with its middle at (x, y).
 void draw_cross(const Band& band, int32_t x, int32_t y, Rgb8 color) {
@@ -91,15 +84,12 @@ void draw_cross(const Band& band) {
   const port::Display& screen = display();
   Status status = view_at(dig->orbit, dig->world.tree(), 0, dig->steering, screen.width_px, screen.height_px,
                           &dig->camera);
-  for (int32_t y = 0; y < screen.height_px && status == Status::kOk; y += dig->band_rows) {
-    const int32_t left = screen.height_px - y;
-    const int32_t rows = left < dig->band_rows ? left : dig->band_rows;
-    const size_t bytes = band_bytes(screen.format, screen.width_px, rows);
-    const Band band{next_band(dig->bands, dig->second_band, bytes), screen.format, 0, y, rows};
+  for (int32_t y = 0; y < screen.height_px && status == Status::kOk; y += dig->bands.rows) {
+    const Band band = dig->bands.next(y, screen.height_px);
     status = render_band(dig->world.tree(), dig->world.map(), dig->camera, dig->shading, band);
     if (status == Status::kOk) {
       draw_cross(band);
-      send_band(band, &dig->second_band);
+      dig->bands.send(band);
       *crc = crc32(band.pixels, *crc);
     }
   }
@@ -142,17 +132,10 @@ void edit(Dig* dig, const Vec3i& voxel, bool puts, uint8_t material) {
   const EditRoom left = dig->world.free_room();
   put(puts ? "put at " : "dug at ");
   for (int axis = 0; axis < 3; ++axis) {
-    put_number(static_cast<uint32_t>(middle[axis]));
-    put(axis < 2 ? "," : ": voxels ");
+    put(static_cast<uint32_t>(middle[axis]), axis < 2 ? "," : ": voxels ");
   }
-  put_number(dig->world.tree().voxel_count());
-  put(", left are nodes ");
-  put_number(left.nodes);
-  put(" leaves ");
-  put_number(left.leaves);
-  put(" bricks ");
-  put_number(left.bricks);
-  put(dig->refused != 0 ? "; no room for all of it\n" : "\n");
+  put(dig->world.tree().voxel_count(), ", left are nodes ", left.nodes, " leaves ", left.leaves, " bricks ",
+      left.bricks, dig->refused != 0 ? "; no room for all of it\n" : "\n");
 }
 
 void obey_buttons(Dig* dig) {
@@ -198,14 +181,10 @@ void obey_buttons(Dig* dig) {
     return wrong;
   }
   const CompactTree& tree = dig->shown.scene.tree();
-  const port::Display& screen = display();
-  const size_t row = row_bytes(screen.format, screen.width_px);
-  dig->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
-  dig->bands =
-      arena->take(all_bands(row * row_place(screen.format, whole_rows(screen.format, dig->band_rows))));
+  const bool has_bands = dig->bands.take(arena);
   const Bytes rest = arena->rest();
   const EditRoom room = EditedWorld::room_in(tree, rest.size);
-  const Status status = dig->bands.empty() || (room.nodes == 0 && !tree.empty())
+  const Status status = !has_bands || (room.nodes == 0 && !tree.empty())
                             ? Status::kOutOfMemory
                             : EditedWorld::make(tree, room, rest, &dig->world);
   if (status == Status::kOutOfMemory) {
@@ -233,13 +212,7 @@ int dig() {
   }
   tell_board_and_scene("dig", state->shown);
   const EditRoom room = state->world.room();
-  put("room for nodes ");
-  put_number(room.nodes);
-  put(" leaves ");
-  put_number(room.leaves);
-  put(" bricks ");
-  put_number(room.bricks);
-  put("\n");
+  put("room for nodes ", room.nodes, " leaves ", room.leaves, " bricks ", room.bricks, "\n");
   uint32_t crc = 0;
   for (uint32_t drawn = 0; port::running(drawn); ++drawn) {
     // The first picture comes before the first key: the cross wants a camera.
@@ -255,13 +228,9 @@ int dig() {
       return refuse(status_text(status));
     }
   }
-  put("last crc ");
-  put_hex(crc);
-  put("\n");
+  put("last crc ", Hex{crc}, "\n");
   if (state->most_instructions != 0) {
-    put("most instructions of an edit: ");
-    put_number(state->most_instructions);
-    put("\n");
+    put("most instructions of an edit: ", state->most_instructions, "\n");
   }
   return 0;
 }

@@ -23,7 +23,6 @@
 namespace thimble::apps {
 namespace {
 
-constexpr int32_t kBandRows = 8;
 constexpr int kKeysAFrame = 16;
 constexpr int32_t kGravityQ16 = 6554;
 
@@ -31,22 +30,12 @@ struct Game : Placed {
   ParticleWorld world;
   ParticleConfig config;
   Bytes bytes;  ///< the world's
-  Bytes bands;
-  int32_t band_rows = 0;
-  uint32_t held = 0;         ///< buttons
-  bool second_band = false;  ///< of `bands` is next
+  Bands bands;
+  uint32_t held = 0;  ///< buttons
 };
 
-const port::Display& display() {
-  return port::facts().display;
-}
-
 [[gnu::noinline]] void tell_state(const ParticleWorld& world) {
-  put("steps ");
-  put_number(world.steps());
-  put(" crc ");
-  put_hex(world.state_crc32());
-  put("\n");
+  put("steps ", world.steps(), " crc ", Hex{world.state_crc32()}, "\n");
 }
 
 /// Balls only: here nobody draws walls. Formats below a byte take each pixel once, so nothing may lie below.
@@ -82,14 +71,11 @@ const port::Display& display() {
 }
 
 [[gnu::noinline]] void draw_frame(Game* game) {
-  const port::Display& screen = display();
-  for (int32_t y = 0; y < screen.height_px; y += game->band_rows) {
-    const int32_t left = screen.height_px - y;
-    Band band{game->bands, screen.format, 0, y, left < game->band_rows ? left : game->band_rows};
-    band.pixels =
-        next_band(game->bands, game->second_band, band_bytes(screen.format, screen.width_px, band.rows));
-    draw_band(game->world, band, screen.width_px);
-    send_band(band, &game->second_band);
+  const int32_t height = display().height_px;
+  for (int32_t y = 0; y < height; y += game->bands.rows) {
+    const Band band = game->bands.next(y, height);
+    draw_band(game->world, band, display().width_px);
+    game->bands.send(band);
   }
 }
 
@@ -162,24 +148,14 @@ int particles() {
   }
   const port::Display& screen = display();
   // Rows of the picture first, then as many balls as what is left holds.
-  const size_t row = row_bytes(screen.format, screen.width_px);
-  game->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
-  game->bands =
-      arena.take(all_bands(row * row_place(screen.format, whole_rows(screen.format, game->band_rows))));
+  const bool has_bands = game->bands.take(&arena);
   game->bytes = arena.rest();
   game->config = particles_config(screen.width_px, screen.height_px, game->bytes.size);
-  if (game->bands.empty() || game->config.capacity == 0 || !begin(game)) {
+  if (!has_bands || game->config.capacity == 0 || !begin(game)) {
     return refuse("the arena holds no world of the display's size");
   }
-  put("particles ");
-  put_number(game->world.count());
-  put(" in ");
-  put_number(static_cast<uint32_t>(game->config.width));
-  put(" x ");
-  put_number(static_cast<uint32_t>(game->config.height));
-  put(", world of ");
-  put_number(game->world.used_bytes());
-  put(" bytes\n");
+  put("particles ", game->world.count(), " in ", static_cast<uint32_t>(game->config.width), " x ",
+      static_cast<uint32_t>(game->config.height), ", world of ", game->world.used_bytes(), " bytes\n");
 
   for (uint32_t i = 0; i < kToldSteps; ++i) {
     game->world.step();

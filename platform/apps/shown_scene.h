@@ -68,36 +68,14 @@ inline Status draw_scene(const ShownScene& shown, const Camera& camera, const Sh
 [[gnu::noinline]] inline void tell_board_and_scene(const char* application, const ShownScene& shown) {
   const port::Facts& facts = port::facts();
   const BakedScene& scene = shown.scene;
-  put("thimble ");
-  put(application);
-  put(" on ");
-  put(facts.name);
-  put(": RAM ");
-  put_number(facts.ram_bytes);
-  put(" flash ");
-  put_number(facts.flash_bytes);
-  put(" stack ");
-  put_number(facts.stack_bytes);
-  put(" arena ");
-  put_number(port::arena().size);
-  put(" bytes\nscene ");
+  put("thimble ", application, " on ", facts.name, ": RAM ", facts.ram_bytes, " flash ", facts.flash_bytes,
+      " stack ", facts.stack_bytes, " arena ", port::arena().size, " bytes\nscene ");
   const ConstBytes name = scene.section(SectionKind::kName);
   port::write(name.subspan(0, 64));
-  put(name.empty() ? "without a name" : "");
-  put(": depth ");
-  put_number(static_cast<uint32_t>(scene.tree().level()));
-  put(" voxels ");
-  put_number(scene.tree().voxel_count());
-  put(" tree ");
-  put_number(scene.tree().size_bytes());
-  put(" scene ");
-  put_number(scene.bytes().size);
-  put(" map ");
-  put_number(shown.has_map ? shown.map.size_bytes() : 0);
-  put(shown.map_in_ram ? " in RAM" : "");
-  put(" bytes crc ");
-  put_hex(scene.crc32());
-  put("\n");
+  put(name.empty() ? "without a name" : "", ": depth ", static_cast<uint32_t>(scene.tree().level()),
+      " voxels ", scene.tree().voxel_count(), " tree ", scene.tree().size_bytes(), " scene ",
+      scene.bytes().size, " map ", shown.has_map ? shown.map.size_bytes() : 0,
+      shown.map_in_ram ? " in RAM" : "", " bytes crc ", Hex{scene.crc32()}, "\n");
 }
 
 }  // namespace thimble::apps

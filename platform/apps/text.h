@@ -20,7 +20,7 @@ inline void put(const char* text) {
 }
 
 /// Sends a number in decimal, by subtracting powers of ten: no division of 64 bits.
-inline void put_number(uint64_t number) {
+inline void put(uint64_t number) {
   static constexpr uint64_t kPowers[] = {10000000000000000000U,
                                          1000000000000000000U,
                                          100000000000000000U,
@@ -55,31 +55,39 @@ inline void put_number(uint64_t number) {
   port::write({digits, count});
 }
 
-/// Sends `thousandths` / 1000 with a point and `places` digits behind it (1 .. 3), cut off.
-inline void put_thousandths(uint32_t thousandths, int places) {
-  put_number(thousandths / 1000);
-  put(".");
-  uint32_t unit = 100;
-  for (int i = 0; i < places; ++i, unit /= 10) {
-    put_number(thousandths / unit % 10);
-  }
-}
-
-/// Sends eight hexadecimal digits, as CRC-32s are written.
-inline void put_hex(uint32_t number) {
+/// A number that is sent in eight hexadecimal digits, as CRC-32s are written.
+struct Hex {
+  uint32_t number;
+};
+inline void put(Hex hex) {
   uint8_t digits[8];
   for (uint32_t i = 0; i < 8; ++i) {
-    const uint32_t nibble = number >> (28 - 4 * i) & 15U;
+    const uint32_t nibble = hex.number >> (28 - 4 * i) & 15U;
     digits[i] = static_cast<uint8_t>(nibble + (nibble < 10 ? '0' : 'a' - 10));
   }
   port::write({digits, 8});
 }
 
+/// Sends several of these, one after the other.
+template <class First, class Second, class... Rest>
+[[gnu::always_inline]] inline void put(const First& first, const Second& second, const Rest&... rest) {
+  put(first);
+  put(second);
+  (put(rest), ...);
+}
+
+/// Sends `thousandths` / 1000 with a point and `places` digits behind it (1 .. 3), cut off.
+inline void put_thousandths(uint32_t thousandths, int places) {
+  put(uint64_t{thousandths / 1000}, ".");
+  uint32_t unit = 100;
+  for (int i = 0; i < places; ++i, unit /= 10) {
+    put(uint64_t{thousandths / unit % 10});
+  }
+}
+
 /// Says why an application cannot run; its exit status.
 inline int refuse(const char* why) {
-  put("error: ");
-  put(why);
-  put("\n");
+  put("error: ", why, "\n");
   return 1;
 }
 

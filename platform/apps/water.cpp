@@ -36,7 +36,6 @@
 namespace thimble::apps {
 namespace {
 
-constexpr int32_t kBandRows = 8;
 constexpr int kKeysAFrame = 64;
 constexpr int kBalls = 4;
 static_assert(kBalls <= DirtyBands::kBalls);
@@ -63,8 +62,7 @@ struct Pool : Placed {
   Steering steering;
   Camera camera;
   Shading shading;
-  Bytes bands;
-  int32_t band_rows = 0;
+  Bands bands;
   DirtyBands dirty;
   Pointing pointing;
   uint32_t buttons = 0;  ///< of the frame before
@@ -75,24 +73,18 @@ struct Pool : Placed {
   uint32_t touches = 0;
   uint32_t splashes = 0;
   bool turns = false;
-  bool redraws = false;      ///< every band of every frame
-  bool moved = true;         ///< the camera
-  bool rippled = false;      ///< the water
-  bool dropped = false;      ///< a new ball: any ray may meet it
-  bool second_band = false;  ///< of `bands` is next
+  bool redraws = false;  ///< every band of every frame
+  bool moved = true;     ///< the camera
+  bool rippled = false;  ///< the water
+  bool dropped = false;  ///< a new ball: any ray may meet it
 };
-
-const port::Display& display() {
-  return port::facts().display;
-}
 
 const CompactTree& tree_of(const Pool& pool) {
   return pool.shown.scene.tree();
 }
 
 void put_fact(const char* name, uint64_t number) {
-  put(name);
-  put_number(number);
+  put(name, number);
 }
 
 [[gnu::noinline]] void tell_counters(const Pool& pool) {
@@ -103,9 +95,8 @@ void put_fact(const char* name, uint64_t number) {
   put_fact(" columns stepped ", pool.water.columns.columns_updated());
   put_fact(" touches ", pool.touches);
   put_fact(" splashes ", pool.splashes);
-  put(" water ");
-  put_hex(pool.water.columns.state_crc32());
-  put(pool.water.columns.is_still() ? " still\n" : " moving\n");
+  put(" water ", Hex{pool.water.columns.state_crc32()},
+      pool.water.columns.is_still() ? " still\n" : " moving\n");
 }
 
 // ---- what happens
@@ -257,9 +248,7 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts, uint32_t
       dirty.skip(i, screen.format);
       continue;
     }
-    Band band{pool->bands, screen.format, 0, dirty.first_row(i), dirty.rows(i)};
-    band.pixels =
-        next_band(pool->bands, pool->second_band, band_bytes(screen.format, screen.width_px, band.rows));
+    const Band band = pool->bands.next(dirty.first_row(i), screen.height_px);
     const bool looks = moved || dirty.passes_any(i);
     pool->lighting.scene.water = surface_of(pool->water, looks);
     LitCounts counts;
@@ -273,7 +262,7 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts, uint32_t
       dirty.note_sees(i, counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] != 0);
     }
     dirty.note_passes(i, passed);
-    send_band(band, &pool->second_band);
+    pool->bands.send(band);
     dirty.drawn(i);
   }
   return Status::kOk;
@@ -400,16 +389,13 @@ void zoom(Pool* pool, int32_t by) {
   }
 #endif
   pool->rest = pool->lighting.scene.water;
-  const port::Display& screen = display();
-  pool->band_rows = screen.height_px < kBandRows ? screen.height_px : kBandRows;
-  const size_t row = row_bytes(screen.format, screen.width_px);
-  pool->bands =
-      pool->arena.take(all_bands(row * row_place(screen.format, whole_rows(screen.format, pool->band_rows))));
-  const Bytes flags = pool->arena.take(DirtyBands::bytes_for(screen.height_px, pool->band_rows), 1);
-  if (pool->bands.empty() || flags.empty()) {
+  const int32_t height = display().height_px;
+  const bool has_bands = pool->bands.take(&pool->arena);
+  const Bytes flags = pool->arena.take(DirtyBands::bytes_for(height, pool->bands.rows), 1);
+  if (!has_bands || flags.empty()) {
     return "the arena does not hold a band of the picture";
   }
-  pool->dirty.begin(flags, screen.height_px, pool->band_rows);
+  pool->dirty.begin(flags, height, pool->bands.rows);
   if (!still(pool)) {
     return "the arena does not hold the water's columns";
   }

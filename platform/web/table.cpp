@@ -11,7 +11,7 @@ namespace {
 
 void field(const char* name, uint32_t value) {
   apps::put(name);
-  apps::put_number(value);
+  apps::put(uint64_t{value});
 }
 
 void text_field(const char* name, const char* value) {

@@ -86,11 +86,7 @@ int draw_frame() {
     port::flush(band);
     crc = crc32(band.pixels, crc);
   }
-  apps::put("instructions ");
-  apps::put_number(instructions);
-  apps::put(" crc ");
-  apps::put_hex(crc);
-  apps::put("\n");
+  apps::put("instructions ", instructions, " crc ", Hex{crc}, "\n");
   return 0;
 }
 

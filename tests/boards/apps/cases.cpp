@@ -36,14 +36,14 @@ constexpr int step_of(const Group& group) {
 }
 
 void put_count(int count) {
-  put_number(static_cast<uint32_t>(count));
+  put(static_cast<uint32_t>(count));
 }
 
 void put_value(int64_t value) {
   if (value < 0) {
     put("-");
   }
-  put_number(value < 0 ? 0 - static_cast<uint64_t>(value) : static_cast<uint64_t>(value));
+  put(value < 0 ? 0 - static_cast<uint64_t>(value) : static_cast<uint64_t>(value));
 }
 
 // Where there are no names (THIMBLE_TERSE_CASES) the number, counted from 0 in the group's file.
@@ -54,19 +54,16 @@ void put_name(const Group& group, const Case& one, int number) {
     put_count(number);
     return;
   }
-  put(": ");
-  put(one.name);
+  put(": ", one.name);
   if (one.detail != nullptr) {
-    put(" (");
-    put(one.detail);
+    put(" (", one.detail);
     put(")");
   }
 }
 
 void put_what(const portable::What& what) {
 #ifdef THIMBLE_TERSE_CASES
-  put("line ");
-  put_number(what.line);
+  put("line ", what.line);
 #else
   put(what.text);
 #endif
@@ -81,8 +78,7 @@ void put_what(const portable::What& what) {
   put_value(failure.got);
   put(", wanted ");
   put_value(failure.wanted);
-  put(" (");
-  put(group.file);
+  put(" (", group.file);
   put(" or what it calls)\n");
 }
 
@@ -103,8 +99,7 @@ void put_what(const portable::What& what) {
   for (int i = 0; i < group.count; i += step_of(group)) {
     run += runner.fits(group.at(i)) ? 1 : 0;
   }
-  put(group.name);
-  put(": ");
+  put(group.name, ": ");
   put_count(run);
   put(" of ");
   put_count(group.count);
@@ -120,9 +115,7 @@ int put_skipped(const Runner& runner, Span<const Group* const> groups) {
         ++skipped;
         put("skipped: ");
         put_name(*group, one, i);
-        put(" needs ");
-        put_number(one.arena_bytes + portable::runner_bytes());
-        put(" bytes\n");
+        put(" needs ", one.arena_bytes + portable::runner_bytes(), " bytes\n");
       }
     }
   }
@@ -134,13 +127,7 @@ int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
   if (got == wanted) {
     return 0;
   }
-  put("FAILED result crc of ");
-  put(of_what);
-  put(" is ");
-  put_hex(got);
-  put(", wanted ");
-  put_hex(wanted);
-  put("\n");
+  put("FAILED result crc of ", of_what, " is ", Hex{got}, ", wanted ", Hex{wanted}, "\n");
   return 1;
 }
 
@@ -161,13 +148,9 @@ int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
   if (is_whole && skipped == 0) {
     failed += judge_crc("all cases", runner.crc32(), all_crc32);
   }
-  put("result crc ");
-  put_hex(runner.crc32());
-  put(" of ");
+  put("result crc ", Hex{runner.crc32()}, " of ");
   put_count(runner.passed() + runner.failed());
-  put(" cases run\nresult crc ");
-  put_hex(runner.common_crc32());
-  put(" of the ");
+  put(" cases run\nresult crc ", Hex{runner.common_crc32()}, " of the ");
   put_count(runner.common());
   put(is_whole ? " cases that every board runs\n" : " cases among them that every board runs\n");
   put_count(skipped);
@@ -183,10 +166,7 @@ int judge_crc(const char* of_what, uint32_t got, uint32_t wanted) {
 // board runs; a board has `common_arena_bytes` for a case or more. Returns the exit status.
 int run_cases(const char* title, Span<const Group* const> groups, uint32_t all_crc32, uint32_t common_crc32,
               uint32_t common_arena_bytes = portable::kCommonArenaBytes) {
-  put(title);
-  put(" on ");
-  put(port::facts().name);
-  put("\n");
+  put(title, " on ", port::facts().name, "\n");
   Runner* runner = Runner::make(port::arena());
   if (runner == nullptr || runner->case_bytes() < common_arena_bytes) {
     put("this board lacks the memory that every board has for a case\n0 passed, 1 failed\n");

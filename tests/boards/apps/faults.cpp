@@ -4,6 +4,7 @@
 #include <stdint.h>
 
 #include "apps/apps.h"
+#include "apps/text.h"
 #include "port.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
@@ -13,14 +14,6 @@
 
 namespace thimble::apps {
 namespace {
-
-void say(const char* text) {
-  size_t length = 0;
-  while (text[length] != '\0') {
-    ++length;
-  }
-  port::write({reinterpret_cast<const uint8_t*>(text), length});
-}
 
 // Deeper and deeper. The compiler must believe that it ends and that every frame is needed.
 [[gnu::noinline]] uint32_t overflow_stack(volatile const uint8_t* limit, uint32_t depth) {
@@ -72,7 +65,7 @@ bool open_damaged_scenes() {
   const Bytes bytes = bake_small_scene(&arena);
   BakedScene scene;
   if (bytes.empty() || BakedScene::open(bytes, &scene) != Status::kOk || scene.validate() != Status::kOk) {
-    say("there is no sound scene to damage\n");
+    put("there is no sound scene to damage\n");
     return false;
   }
   const Ray ray = {{Q8::from_raw(-300), Q8::from_raw(700), Q8::from_raw(1000)}, {1000, 3, -2}};
@@ -107,16 +100,16 @@ void execute_nonsense() {
 // Says which buttons are down whenever that changes, until `q`: for bringing up a board.
 int tell_buttons() {
   static constexpr const char* kNames[] = {" up", " down", " left", " right", " select"};
-  say("buttons\n");
+  put("buttons\n");
   uint32_t told = 0;
   while (port::running(0) && port::read() != 'q') {
     const uint32_t down = port::buttons();
     if (down != told) {
-      say("down:");
+      put("down:");
       for (uint32_t i = 0; i < 5; ++i) {
-        say((down >> i & 1U) != 0 ? kNames[i] : "");
+        put((down >> i & 1U) != 0 ? kNames[i] : "");
       }
-      say("\n");
+      put("\n");
       told = down;
     }
   }
@@ -127,25 +120,25 @@ int run(int key) {
   switch (key) {
     case 's': {
       volatile uint8_t never = 1;
-      say("overflowing the stack\n");
+      put("overflowing the stack\n");
       overflow_stack(&never, 0);
       break;
     }
     case 'r':
-      say("writing past the RAM\n");
+      put("writing past the RAM\n");
       overrun_ram();
       break;
     case 'f':
-      say("writing flash\n");
+      put("writing flash\n");
       write_flash();
       break;
     case 'n':
-      say("executing nonsense\n");
+      put("executing nonsense\n");
       execute_nonsense();
       break;
     case 'd':
       if (open_damaged_scenes()) {
-        say("fault: the scene is damaged\n");
+        put("fault: the scene is damaged\n");
         return port::kFaultStatus;
       }
       break;
@@ -154,14 +147,14 @@ int run(int key) {
     default:
       return -1;
   }
-  say("nobody noticed\n");
+  put("nobody noticed\n");
   return 1;
 }
 
 }  // namespace
 
 int faults() {
-  say("faults: s stack, r RAM, f flash, n nonsense, d damaged scene; b buttons\n");
+  put("faults: s stack, r RAM, f flash, n nonsense, d damaged scene; b buttons\n");
   while (port::running(0)) {
     const int status = run(port::read());
     if (status >= 0) {
