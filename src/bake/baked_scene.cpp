@@ -13,7 +13,7 @@ constexpr uint32_t kSceneMagic = uint32_t{kBakedVersion} << 24 | 0x534D54;  // "
 constexpr uint32_t kSceneMagicMask = 0x00FFFFFF;                            // all but the version
 constexpr uint32_t kSceneSizeOffset = 4;
 constexpr uint32_t kSceneChecksumOffset = 8;
-constexpr uint32_t kSceneCountOffset = 12;  // the checksum covers bytes 0..7 and all from here on
+constexpr uint32_t kSceneCountOffset = 12;
 static_assert(kSceneCountOffset + 4 == kBakedHeaderBytes);
 
 // An entry of the list.
@@ -322,8 +322,7 @@ Status BakedScene::open(ConstBytes bytes, BakedScene* scene) {
     return text;
   }
   const ConstBytes all = scene.bytes_;
-  if (thimble::crc32(all.subspan(kSceneCountOffset), thimble::crc32(all.subspan(0, kSceneChecksumOffset))) !=
-      scene.crc32_) {
+  if (checksum_around(all.data, all.size, kSceneChecksumOffset) != scene.crc32_) {
     return fault(place, kSceneChecksumOffset, "checksum does not match");
   }
   *tree = {scene.tree_.bytes(), scene.tree_.size_bytes()};
@@ -404,11 +403,8 @@ Status BakedScene::make(const BakedParts& parts, Bytes to, BakedScene* scene) {
       base[offset] = 0;
     }
   }
-  const ConstBytes all{base, size};
-  bits::store32(
-      base + kSceneChecksumOffset,
-      thimble::crc32(all.subspan(kSceneCountOffset), thimble::crc32(all.subspan(0, kSceneChecksumOffset))));
-  return scene == nullptr ? Status::kOk : open(all, scene);
+  bits::store32(base + kSceneChecksumOffset, checksum_around(base, size, kSceneChecksumOffset));
+  return scene == nullptr ? Status::kOk : open({base, size}, scene);
 }
 
 }  // namespace thimble

@@ -2,6 +2,7 @@
 // found in a hash table with chains and kept once. Then they are written level by level, from the lowest up,
 // so that every link leads backwards.
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "shared_header.h"
 #include "thimble/base/memory.h"
 #include "thimble/tree/shared_tree.h"
@@ -357,10 +358,7 @@ void write_header(const CompactTree& tree, const NodeTable& table, const Layout&
     }
   }
   bits::store32(base + kRootOffset, root);
-  for (int axis = 0; axis < 3; ++axis) {
-    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(tree.bounds().low[axis]));
-    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(tree.bounds().high[axis]));
-  }
+  store_bounds(tree.bounds(), base);
   bits::store64(base + kVoxelCountOffset, tree.voxel_count());
   bits::store64(base + kSolidAddedOffset, tree.solid_added());
   bits::store32(base + kNodesEndOffset, static_cast<uint32_t>(layout.nodes_end));
@@ -435,9 +433,7 @@ Status SharedTree::make(const CompactTree& tree, Bytes out, Bytes work, SharedTr
     *to++ = 0;
   }
   write_header(tree, table, layout, leaves, static_cast<size_t>(size), base);
-  const uint32_t front = crc32({base, kChecksumOffset});
-  bits::store32(base + kChecksumOffset,
-                crc32({base + kChecksumStart, static_cast<size_t>(size) - kChecksumStart}, front));
+  bits::store32(base + kChecksumOffset, checksum_around(base, static_cast<size_t>(size), kChecksumOffset));
   return shared == nullptr ? Status::kOk : open({base, static_cast<size_t>(size)}, shared);
 }
 

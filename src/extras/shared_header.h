@@ -4,36 +4,22 @@
 
 #include <stdint.h>
 
+#include "../tree/compact_header.h"
 #include "thimble/tree/shared_tree.h"
 
 namespace thimble {
 
 namespace shared_header {
 
-inline constexpr uint32_t kMagic = 0x01474D54;      // "TMG", then the version, 1
-inline constexpr uint32_t kMagicMask = 0x00FFFFFF;  // all but the version
-inline constexpr uint32_t kLevelOffset = 4;
+using namespace tree_header;
+inline constexpr uint32_t kMagic = 0x01474D54;  // "TMG", then the version, 1
 inline constexpr uint32_t kLinkBytesOffset = 5;
-inline constexpr uint32_t kFlagsOffset = 6;
-inline constexpr uint32_t kMaterialOffset = 7;
-inline constexpr uint32_t kSizeOffset = 8;
-inline constexpr uint32_t kChecksumOffset = 12;
-inline constexpr uint32_t kChecksumStart = 16;  // the checksum covers bytes 0..11 and all from here on
-inline constexpr uint32_t kNodesOffset = 16;
 inline constexpr uint32_t kLeavesOffset = 20;
 inline constexpr uint32_t kRootOffset = 24;
-inline constexpr uint32_t kBoundsMinOffset = 28;
-inline constexpr uint32_t kBoundsMaxOffset = 34;
-inline constexpr uint32_t kVoxelCountOffset = 40;
-inline constexpr uint32_t kSolidAddedOffset = 48;
 inline constexpr uint32_t kNodesEndOffset = 56;
 inline constexpr uint32_t kCountBytesOffset = 60;
 inline constexpr uint32_t kLevelsOffset = 64;  // where the nodes of level 2, 3, ... begin
 static_assert(kLevelsOffset == kSharedHeaderBytes);
-
-inline constexpr unsigned kManyMaterialsFlag = 1;
-inline constexpr unsigned kMergedFlag = 2;
-inline constexpr unsigned kKnownFlags = kManyMaterialsFlag | kMergedFlag;
 
 }  // namespace shared_header
 

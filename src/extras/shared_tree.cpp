@@ -53,13 +53,8 @@ const char* header_fault(ConstBytes bytes, uint32_t* place) {
   if (empty != (bits::load32(base + kRootOffset) == SharedTree::kNowhere)) {
     return fault(place, kRootOffset, "a root without leaves, or leaves without a root");
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const uint32_t low = bits::load16(base + kBoundsMinOffset + 2 * axis);
-    const uint32_t high = bits::load16(base + kBoundsMaxOffset + 2 * axis);
-    const bool sound = empty ? low == 0 && high == 0 : low < high && high <= 1U << level;
-    if (!sound) {
-      return fault(place, kBoundsMinOffset, "bounds outside the world");
-    }
+  if (!has_sound_bounds(base, empty, level)) {
+    return fault(place, kBoundsMinOffset, "bounds outside the world");
   }
   return nullptr;
 }
@@ -87,10 +82,7 @@ Status SharedTree::open(ConstBytes bytes, SharedTree* tree) {
   result.nodes_end_ = bits::load32(base + kNodesEndOffset);
   // Any number will do for safety: it only says how the bytes of a node are read.
   result.level_3_ = result.level_ >= 3 ? bits::load32(base + kLevelsOffset + 4) : result.nodes_end_;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.bounds_.low[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMinOffset + 2 * axis));
-    result.bounds_.high[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMaxOffset + 2 * axis));
-  }
+  load_bounds(base, &result.bounds_);
   if ((base[kFlagsOffset] & kManyMaterialsFlag) != 0) {
     result.materials_ = base + ((size_t{result.nodes_end_} + 3) & ~size_t{3});
   }
@@ -235,8 +227,7 @@ const char* SharedTree::validate(ConstBytes bytes, Bytes work, uint32_t* place) 
   }
   const uint8_t* base = bytes.data;
   const uint32_t size = bits::load32(base + kSizeOffset);
-  const ConstBytes checked{base + kChecksumStart, size - kChecksumStart};
-  if (crc32(checked, crc32({base, kChecksumOffset})) != bits::load32(base + kChecksumOffset)) {
+  if (checksum_around(base, size, kChecksumOffset) != bits::load32(base + kChecksumOffset)) {
     return fault(place, kChecksumOffset, "checksum does not match");
   }
   SharedTree tree;

@@ -2,6 +2,7 @@
 #include "thimble/tree/brick_map.h"
 
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "../base/hot.h"
 #include "brick_parts.h"
 #include "compact_header.h"
@@ -18,7 +19,6 @@ constexpr uint32_t kMapLevelOffset = 4;
 constexpr uint32_t kBoxMinOffset = 5;
 constexpr uint32_t kMapSizeOffset = 8;
 constexpr uint32_t kMapChecksumOffset = 12;
-constexpr uint32_t kMapChecksumStart = 16;
 constexpr uint32_t kTreeChecksumOffset = 16;
 constexpr uint32_t kBoxSizeOffset = 20;
 constexpr uint32_t kBricksOffset = 24;
@@ -330,8 +330,7 @@ class MapBuilder {
     bits::store32(base + kTreeChecksumOffset, bits::load32(tree_.bytes() + compact_header::kChecksumOffset));
     bits::store32(base + kBricksOffset, bricks_);
     bits::store32(base + kMixedOffset, mixed_);
-    bits::store32(base + kMapChecksumOffset, crc32({base + kMapChecksumStart, size - kMapChecksumStart},
-                                                   crc32({base, kMapChecksumOffset})));
+    bits::store32(base + kMapChecksumOffset, checksum_around(base, size, kMapChecksumOffset));
     *written = size;
     return Status::kOk;
   }
@@ -400,8 +399,8 @@ const char* BrickMap::validate(ConstBytes bytes) {
     return text;
   }
   const uint8_t* base = bytes.data;
-  const ConstBytes checked{base + kMapChecksumStart, bits::load32(base + kMapSizeOffset) - kMapChecksumStart};
-  if (crc32(checked, crc32({base, kMapChecksumOffset})) != bits::load32(base + kMapChecksumOffset)) {
+  const uint32_t size = bits::load32(base + kMapSizeOffset);
+  if (checksum_around(base, size, kMapChecksumOffset) != bits::load32(base + kMapChecksumOffset)) {
     return "checksum does not match";
   }
   for (uint32_t cell = 0; cell < header.cells; ++cell) {

@@ -1,6 +1,7 @@
 // Writing compact trees. Octrees and parts are walked level by level, twice: once into a counter that finds
 // the shape, once into a writer. Sorted keys are read twice in all: all levels are written side by side.
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "compact_header.h"
 #include "thimble/base/memory.h"
 #include "thimble/tree/compact_tree.h"
@@ -568,14 +569,10 @@ Status write(Source source, Bytes out, size_t* size, int rank_shift) {
   bits::store32(base + kNodesOffset, shape.nodes);
   bits::store32(base + kSolidBlocksOffset, shape.solid_blocks);
   bits::store32(base + kVoxelBitsOffset, shape.voxel_bits);
-  for (int axis = 0; axis < 3; ++axis) {
-    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(counter.bounds.low[axis]));
-    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(counter.bounds.high[axis]));
-  }
+  store_bounds(counter.bounds, base);
   bits::store64(base + kVoxelCountOffset, counter.volume);
   bits::store64(base + kSolidAddedOffset, source.solid_added());
-  const uint32_t front = crc32({base, kChecksumOffset});
-  bits::store32(base + kChecksumOffset, crc32({base + kChecksumStart, bytes - kChecksumStart}, front));
+  bits::store32(base + kChecksumOffset, checksum_around(base, bytes, kChecksumOffset));
   return Status::kOk;
 }
 

@@ -11,29 +11,61 @@
 
 namespace thimble {
 
-namespace compact_header {
+// What the header of a compact tree and that of a shared one (extras) have alike.
+namespace tree_header {
 
-inline constexpr uint32_t kMagic = 0x01424D54;      // "TMB", then the version, 1
 inline constexpr uint32_t kMagicMask = 0x00FFFFFF;  // all but the version
 inline constexpr uint32_t kLevelOffset = 4;
-inline constexpr uint32_t kRankShiftOffset = 5;
 inline constexpr uint32_t kFlagsOffset = 6;
 inline constexpr uint32_t kMaterialOffset = 7;
 inline constexpr uint32_t kSizeOffset = 8;
 inline constexpr uint32_t kChecksumOffset = 12;
-inline constexpr uint32_t kChecksumStart = 16;  // the checksum covers bytes 0..11 and all from here on
 inline constexpr uint32_t kNodesOffset = 16;
-inline constexpr uint32_t kSolidBlocksOffset = 20;
-inline constexpr uint32_t kVoxelBitsOffset = 24;
 inline constexpr uint32_t kBoundsMinOffset = 28;
 inline constexpr uint32_t kBoundsMaxOffset = 34;
 inline constexpr uint32_t kVoxelCountOffset = 40;
 inline constexpr uint32_t kSolidAddedOffset = 48;
-static_assert(kSolidAddedOffset + 8 == kCompactHeaderBytes);
 
 inline constexpr unsigned kManyMaterialsFlag = 1;
 inline constexpr unsigned kMergedFlag = 2;
 inline constexpr unsigned kKnownFlags = kManyMaterialsFlag | kMergedFlag;
+
+inline void load_bounds(const uint8_t* base, VoxelBox* bounds) {
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds->low[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMinOffset + 2 * axis));
+    bounds->high[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMaxOffset + 2 * axis));
+  }
+}
+
+inline void store_bounds(const VoxelBox& bounds, uint8_t* base) {
+  for (int axis = 0; axis < 3; ++axis) {
+    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(bounds.low[axis]));
+    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(bounds.high[axis]));
+  }
+}
+
+// Whether they are those of an empty tree, or lie in a world of that level.
+inline bool has_sound_bounds(const uint8_t* base, bool is_empty, int level) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const uint32_t low = bits::load16(base + kBoundsMinOffset + 2 * axis);
+    const uint32_t high = bits::load16(base + kBoundsMaxOffset + 2 * axis);
+    if (!(is_empty ? low == 0 && high == 0 : low < high && high <= 1U << level)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace tree_header
+
+namespace compact_header {
+
+using namespace tree_header;
+inline constexpr uint32_t kMagic = 0x01424D54;  // "TMB", then the version, 1
+inline constexpr uint32_t kRankShiftOffset = 5;
+inline constexpr uint32_t kSolidBlocksOffset = 20;
+inline constexpr uint32_t kVoxelBitsOffset = 24;
+static_assert(kSolidAddedOffset + 8 == kCompactHeaderBytes);
 
 }  // namespace compact_header
 

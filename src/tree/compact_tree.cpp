@@ -46,13 +46,8 @@ const char* read_compact_header(ConstBytes bytes, CompactShape* shape, uint32_t*
   if (size > bytes.size) {
     return fault(place, kSizeOffset, "truncated");
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const uint32_t low = bits::load16(base + kBoundsMinOffset + 2 * axis);
-    const uint32_t high = bits::load16(base + kBoundsMaxOffset + 2 * axis);
-    const bool sound = shape->nodes == 0 ? low == 0 && high == 0 : low < high && high <= 1U << shape->level;
-    if (!sound) {
-      return fault(place, static_cast<uint32_t>(kBoundsMinOffset), "bounds outside the world");
-    }
+  if (!has_sound_bounds(base, shape->nodes == 0, shape->level)) {
+    return fault(place, static_cast<uint32_t>(kBoundsMinOffset), "bounds outside the world");
   }
   return nullptr;
 }
@@ -90,10 +85,7 @@ Status CompactTree::open(ConstBytes bytes, CompactTree* tree) {
   result.node_count_ = shape.nodes;
   result.solid_blocks_ = shape.solid_blocks;
   result.voxel_bits_ = shape.voxel_bits;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.bounds_.low[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMinOffset + 2 * axis));
-    result.bounds_.high[axis] = static_cast<int32_t>(bits::load16(base + kBoundsMaxOffset + 2 * axis));
-  }
+  load_bounds(base, &result.bounds_);
   const CompactSections sections = sections_of(shape);
   result.masks_ = base + sections.masks;
   result.ranks_ = base + sections.ranks;
@@ -175,8 +167,7 @@ const char* CompactTree::validate(ConstBytes bytes, uint32_t* place) {
   }
   const uint8_t* base = bytes.data;
   const uint32_t size = bits::load32(base + kSizeOffset);
-  const ConstBytes checked{base + kChecksumStart, size - kChecksumStart};
-  if (crc32(checked, crc32({base, kChecksumOffset})) != bits::load32(base + kChecksumOffset)) {
+  if (checksum_around(base, size, kChecksumOffset) != bits::load32(base + kChecksumOffset)) {
     return fault(place, kChecksumOffset, "checksum does not match");
   }
   CompactTree tree;

@@ -3,6 +3,7 @@
 #include "deep_map.h"
 
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "brick_parts.h"
 #include "compact_header.h"
 #include "thimble/base/memory.h"
@@ -14,7 +15,6 @@ constexpr uint32_t kDeepMagic = 0x024D4254;  // "TBM", then the version, 2
 constexpr uint32_t kDeepLevelOffset = 4;
 constexpr uint32_t kDeepSizeOffset = 8;
 constexpr uint32_t kDeepChecksumOffset = 12;
-constexpr uint32_t kDeepChecksumStart = 16;
 constexpr uint32_t kDeepTreeOffset = 16;
 constexpr uint32_t kDeepBoxLowOffset = 20;  // three halfwords, and three more of its size
 constexpr uint32_t kDeepBoxSizeOffset = 26;
@@ -406,8 +406,7 @@ class DeepBuilder {
     bits::store32(base_ + kDeepPagesOffset, layout_.pages);
     bits::store32(base_ + kDeepBricksOffset, layout_.bricks);
     bits::store32(base_ + kDeepMixedOffset, layout_.mixed);
-    bits::store32(base_ + kDeepChecksumOffset, crc32({base_ + kDeepChecksumStart, size - kDeepChecksumStart},
-                                                     crc32({base_, kDeepChecksumOffset})));
+    bits::store32(base_ + kDeepChecksumOffset, checksum_around(base_, size, kDeepChecksumOffset));
   }
 
   const CompactTree& tree_;
@@ -457,9 +456,8 @@ const char* DeepMap::validate(ConstBytes bytes) {
     return text;
   }
   const uint8_t* base = bytes.data;
-  const ConstBytes checked{base + kDeepChecksumStart,
-                           bits::load32(base + kDeepSizeOffset) - kDeepChecksumStart};
-  if (crc32(checked, crc32({base, kDeepChecksumOffset})) != bits::load32(base + kDeepChecksumOffset)) {
+  const uint32_t size = bits::load32(base + kDeepSizeOffset);
+  if (checksum_around(base, size, kDeepChecksumOffset) != bits::load32(base + kDeepChecksumOffset)) {
     return "checksum does not match";
   }
   return check_deep_numbers(base, header.layout);

@@ -4,6 +4,7 @@
 #include "thimble/tree/edited_world.h"
 
 #include "../base/bits.h"
+#include "../base/fault.h"
 #include "brick_parts.h"
 #include "compact_header.h"
 #include "thimble/base/memory.h"
@@ -614,12 +615,8 @@ Status EditedWorld::pack(Bytes out, size_t* size) const {
   bits::store32(base + kVoxelBitsOffset, shape.voxel_bits);
   VoxelBox bounds;
   bits::store64(base + kVoxelCountOffset, solid_volume(tree_, &bounds));
-  for (int axis = 0; axis < 3; ++axis) {
-    bits::store16(base + kBoundsMinOffset + 2 * axis, static_cast<uint32_t>(bounds.low[axis]));
-    bits::store16(base + kBoundsMaxOffset + 2 * axis, static_cast<uint32_t>(bounds.high[axis]));
-  }
-  bits::store32(base + kChecksumOffset,
-                crc32({base + kChecksumStart, bytes - kChecksumStart}, crc32({base, kChecksumOffset})));
+  store_bounds(bounds, base);
+  bits::store32(base + kChecksumOffset, checksum_around(base, bytes, kChecksumOffset));
   return Status::kOk;
 }
 
