@@ -295,31 +295,6 @@ Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y) {
   return normal;
 }
 
-Vec3i water_hit_normal(const WaterSurface& surface, const WaterHit& hit, const Vec3i& direction, Q8 x, Q8 y) {
-  if (hit.axis < 0) {
-    return {0, 0, kNormalLength};
-  }
-  Vec3i face;
-  face[hit.axis] = hit.side * kNormalLength;
-  if (hit.axis == 2 && hit.side < 0) {
-    return face;
-  }
-  if (hit.axis < 2) {
-    const int32_t next_x = hit.column_x + (hit.axis == 0 ? hit.side : 0);
-    const int32_t next_y = hit.column_y + (hit.axis == 1 ? hit.side : 0);
-    if (next_x < 0 || next_y < 0 || next_x >= surface.width || next_y >= surface.depth ||
-        surface.height_q16(next_x, next_y) < 0) {
-      return face;
-    }
-  }
-  const Vec3i normal = water_normal(surface, x, y);
-  // 2^15 * 2^20, three times.
-  const int64_t along = wide_product(normal.x, direction.x) + wide_product(normal.y, direction.y) +
-                        wide_product(normal.z, direction.z);
-  const int32_t through = direction[hit.axis] * hit.side;
-  return along != 0 && (along < 0) == (through < 0) ? normal : face;
-}
-
 bool water_enter(const WaterSurface& surface, const Ray& ray, WaterHit* hit) {
   hit->visits = 0;
   WaterWalk walk(surface, ray.origin, ray.direction);

@@ -274,9 +274,7 @@ MirroredRay in_all_of(int level, const Ray& ray) {
   return MirroredRay(ray, side, {{0, 0, 0}, {side, side, side}});
 }
 
-// kOnly32: with nothing of the other width behind it. Inlined, as its callers, so that they have no frame of their own on
-// a small stack.
-template <bool kOnly32>
+// Inlined, so that its callers have no frame of their own below them on a small stack.
 [[gnu::always_inline]] inline Status search_from(const CompactTree& tree, const Ray& ray,
                                                  const RayPoint& from, Search search, Width width,
                                                  bool* in_world, MediumExit* exit) {
@@ -286,18 +284,12 @@ template <bool kOnly32>
     return status;
   }
   bool narrow = false;
-  if (!choose_width(kOnly32 ? Width::k32 : width, &narrow,
-                    [&] { return accepts_32_from(ray, level, search); })) {
+  if (!choose_width(width, &narrow, [&] { return accepts_32_from(ray, level, search); })) {
     return Status::kOutOfRange;
   }
   const MirroredRay mirrored = in_all_of(level, ray);
-  if constexpr (!kOnly32) {
-    if (!narrow) {
-      *in_world = walk_search<int64_t, uint64_t>(tree, mirrored, search, exit);
-      return Status::kOk;
-    }
-  }
-  *in_world = walk_search<int32_t, uint32_t>(tree, mirrored, search, exit);
+  *in_world = narrow ? walk_search<int32_t, uint32_t>(tree, mirrored, search, exit)
+                     : walk_search<int64_t, uint64_t>(tree, mirrored, search, exit);
   return Status::kOk;
 }
 
@@ -315,56 +307,6 @@ void only_from(const RayPoint& from, Hit* hit) {
     *hit = Hit{};
     hit->visits = visits;
   }
-}
-
-template <bool kOnly32>
-[[gnu::always_inline]] inline Status leave(const CompactTree& tree, const Ray& ray, uint8_t material,
-                                           MediumExit* exit, const RayPoint& from,
-                                           const TraceOptions& options) {
-  MediumExit found;
-  bool in_world = true;
-  const Status status = search_from<kOnly32>(tree, ray, from, {true, material, options.max_visits, 0, 1},
-                                             options.width, &in_world, &found);
-  if (status == Status::kOk) {
-    *exit = found;
-    if (!in_world) {
-      exit->hit.kind = HitKind::kHit;
-      exit->hit.voxel = starting_voxel(ray);
-      exit->left_world = true;
-    }
-  }
-  return status;
-}
-
-template <bool kOnly32>
-[[gnu::always_inline]] inline Status hit_from(const CompactTree& tree, const Ray& ray, const RayPoint& from,
-                                              Hit* hit, const TraceOptions& options) {
-  MediumExit found;
-  bool in_world = true;
-  Status status = search_from<kOnly32>(tree, ray, from, {false, 0, options.max_visits, 0, 1}, options.width,
-                                       &in_world, &found);
-  if (status == Status::kOk && !in_world) {
-    if constexpr (kOnly32) {
-      status = closest_hit_32(tree, ray, &found.hit, options.max_visits);
-    } else {
-      status = closest_hit(tree, ray, &found.hit, options);
-    }
-    only_from(from, &found.hit);
-  }
-  if (status == Status::kOk) {
-    *hit = found.hit;
-  }
-  return status;
-}
-
-Status finish_before(Status status, const Hit& hit, const RayPoint& before, HitKind* kind, uint32_t* visits) {
-  if (status == Status::kOk) {
-    *kind = hit.kind == HitKind::kHit && !earlier(hit, before) ? HitKind::kMiss : hit.kind;
-    if (visits != nullptr) {
-      *visits = hit.visits;
-    }
-  }
-  return status;
 }
 
 }  // namespace
@@ -445,35 +387,49 @@ bool material_at(const CompactTree& tree, const Vec3i& voxel, uint8_t* material)
 
 Status leave_medium(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
                     const RayPoint& from, const TraceOptions& options) {
-  return leave<false>(tree, ray, material, exit, from, options);
-}
-Status leave_medium_32(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
-                       const RayPoint& from, uint32_t max_visits) {
-  return leave<true>(tree, ray, material, exit, from, {max_visits, Width::k32});
+  MediumExit found;
+  bool in_world = true;
+  const Status status = search_from(tree, ray, from, {true, material, options.max_visits, 0, 1},
+                                    options.width, &in_world, &found);
+  if (status == Status::kOk) {
+    *exit = found;
+    if (!in_world) {
+      exit->hit.kind = HitKind::kHit;
+      exit->hit.voxel = starting_voxel(ray);
+      exit->left_world = true;
+    }
+  }
+  return status;
 }
 
 Status closest_hit_from(const CompactTree& tree, const Ray& ray, const RayPoint& from, Hit* hit,
                         const TraceOptions& options) {
-  return hit_from<false>(tree, ray, from, hit, options);
-}
-Status closest_hit_from_32(const CompactTree& tree, const Ray& ray, const RayPoint& from, Hit* hit,
-                           uint32_t max_visits) {
-  return hit_from<true>(tree, ray, from, hit, {max_visits, Width::k32});
+  MediumExit found;
+  bool in_world = true;
+  Status status =
+      search_from(tree, ray, from, {false, 0, options.max_visits, 0, 1}, options.width, &in_world, &found);
+  if (status == Status::kOk && !in_world) {
+    status = closest_hit(tree, ray, &found.hit, options);
+    only_from(from, &found.hit);
+  }
+  if (status == Status::kOk) {
+    *hit = found.hit;
+  }
+  return status;
 }
 
 Status any_hit_before(const CompactTree& tree, const Ray& ray, const RayPoint& before, HitKind* kind,
                       uint32_t* visits, const TraceOptions& options) {
   Hit hit;
   const Status status = closest_hit(tree, ray, &hit, options);
-  return finish_before(status, hit, before, kind, visits);
+  if (status == Status::kOk) {
+    *kind = hit.kind == HitKind::kHit && !earlier(hit, before) ? HitKind::kMiss : hit.kind;
+    if (visits != nullptr) {
+      *visits = hit.visits;
+    }
+  }
+  return status;
 }
-Status any_hit_before_32(const CompactTree& tree, const Ray& ray, const RayPoint& before, HitKind* kind,
-                         uint32_t* visits, uint32_t max_visits) {
-  Hit hit;
-  const Status status = closest_hit_32(tree, ray, &hit, max_visits);
-  return finish_before(status, hit, before, kind, visits);
-}
-
 bool ray_towards(const Vec3Q8& start, const Vec3Q8& point, int direction_bits, Ray* ray, RayPoint* place) {
   Vec3i way;
   uint32_t largest = 0;

@@ -89,18 +89,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("light limits: a ray that is in the water from its start on -> the flat surface's normal") {
-  std::mt19937_64 random(20260842);
-  const Columns columns(4, 4, random, 1);
-  WaterHit hit;
-  hit.axis = -1;
-  const Vec3i normal =
-      water_hit_normal(columns.surface(), hit, {3, -5, 7}, Q8::from_raw(300), Q8::from_raw(500));
-  CHECK(normal.x == 0);
-  CHECK(normal.y == 0);
-  CHECK(normal == water_normal(WaterSurface{}, Q8::from_raw(0), Q8::from_raw(0)));
-}
-
 // A light shines where any channel of any light does.
 TEST_CASE("light limits: lights of any channels -> direct light and shadows where one of them shines") {
   for (int bits = 0; bits < 64; ++bits) {

@@ -490,45 +490,6 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "water surface: the normal of a hit -> never seen from behind, of the face at borders and the floor") {
-  Cases cases(31);
-  int bent = 0;
-  for (int number = 0; number < 400; ++number) {
-    const Columns columns = cases.columns();
-    const WaterSurface surface = columns.surface();
-    for (int i = 0; i < 50; ++i) {
-      const Ray ray = cases.ray(columns);
-      WaterHit hit;
-      for (int leaving = 0; leaving < 2; ++leaving) {
-        const bool met = leaving != 0 ? water_leave(surface, ray, &hit) : water_enter(surface, ray, &hit);
-        if (!met || hit.axis < 0) {
-          continue;
-        }
-        const Q8 x = Q8::from_raw(256 * (columns.corner.x + hit.column_x) + 100);
-        const Q8 y = Q8::from_raw(256 * (columns.corner.y + hit.column_y) + 30);
-        const Vec3i normal = water_hit_normal(surface, hit, ray.direction, x, y);
-        std::int64_t along = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-          along += std::int64_t{normal[axis]} * ray.direction[axis];
-          REQUIRE(std::abs(normal[axis]) <= 1 << 15);
-        }
-        REQUIRE((leaving != 0 ? along > 0 : along < 0));
-        Vec3i face;
-        face[hit.axis] = hit.side * (1 << 14);
-        bent += normal == face ? 0 : 1;
-        const std::int32_t to_x = hit.column_x + (hit.axis == 0 ? hit.side : 0);
-        const std::int32_t to_y = hit.column_y + (hit.axis == 1 ? hit.side : 0);
-        if (to_x < 0 || to_y < 0 || to_x >= columns.width || to_y >= columns.depth ||
-            (hit.axis == 2 && hit.side < 0)) {
-          REQUIRE(normal == face);
-        }
-      }
-    }
-  }
-  CHECK(bent > 1000);
-}
-
-TEST_CASE(
     "water surface: waves that move -> the view's bounds hold all heights, rays are exact in every step") {
   Columns columns;
   columns.corner = {3, 2, 1};

@@ -165,7 +165,6 @@ TEST_CASE("misuse: water of any numbers -> refused or done, its volume kept, its
       WaterHit hit;
       if (water_enter(surface, ray, &hit) || water_leave(surface, ray, &hit)) {
         CHECK(hit.visits <= static_cast<std::uint32_t>(config.width + config.depth + 4));
-        (void)water_hit_normal(surface, hit, ray.direction, ray.origin.x, ray.origin.y);
       }
       (void)water_holds(surface, ray.origin, ray.direction);
       (void)water_normal(surface, ray.origin.x, ray.origin.y);

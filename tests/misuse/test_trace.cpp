@@ -55,10 +55,6 @@ void go_on_in(OddValues& odd, const CompactTree& tree) {
   (void)closest_hit_from(tree, ray, from, &hit, options);
   (void)any_hit_before(tree, ray, {odd.between_32(0, INT32_MAX), odd.between_32(1, INT32_MAX)}, &kind,
                        nullptr, options);
-  (void)leave_medium_32(tree, ray, odd.any<std::uint8_t>(), &exit, odd.one_in(2) ? from : RayPoint{},
-                        options.max_visits);
-  (void)closest_hit_from_32(tree, ray, odd.one_in(2) ? from : RayPoint{}, &hit, options.max_visits);
-  (void)any_hit_before_32(tree, ray, {odd.between_32(0, INT32_MAX), odd.between_32(1, INT32_MAX)}, &kind);
   (void)closest_hit_32(tree, odd_ray(odd, level), &hit, options.max_visits);
   (void)accepts_32(ray, level);
   (void)material_at(tree, odd.any_vector(), nullptr);

@@ -55,8 +55,6 @@ TEST_CASE("from a point: numerator and each component alone -> 31 bits together 
         const Status wanted = numerator == 32767 ? Status::kOk : Status::kOutOfRange;
         CHECK(closest_hit_from(tree, ray, from, &hit, narrow) == wanted);
         CHECK(leave_medium(tree, ray, 7, &exit, from, narrow) == wanted);
-        CHECK(closest_hit_from_32(tree, ray, from, &hit) == wanted);
-        CHECK(leave_medium_32(tree, ray, 7, &exit, from) == wanted);
       }
     }
   }
@@ -80,17 +78,17 @@ TEST_CASE(
       REQUIRE(closest_hit(tree, ray, &first) == Status::kOk);
       REQUIRE(first.kind == HitKind::kHit);
       CHECK(first.t_numerator / first.t_denominator == (axis != 0 ? 2 : mirrored ? 4 : 6));
-      for (const int narrow : {0, 1}) {
+      for (const Width width : {Width::k64, Width::k32}) {
+        TraceOptions options;
+        options.width = width;
         const auto hit_from = [&](const RayPoint& from) {
           Hit hit;
-          CHECK((narrow != 0 ? closest_hit_from_32(tree, ray, from, &hit)
-                             : closest_hit_from(tree, ray, from, &hit)) == Status::kOk);
+          CHECK(closest_hit_from(tree, ray, from, &hit, options) == Status::kOk);
           return hit;
         };
         const auto exit_from = [&](const RayPoint& from, std::uint8_t material) {
           MediumExit exit;
-          CHECK((narrow != 0 ? leave_medium_32(tree, ray, material, &exit, from)
-                             : leave_medium(tree, ray, material, &exit, from)) == Status::kOk);
+          CHECK(leave_medium(tree, ray, material, &exit, from, options) == Status::kOk);
           return exit;
         };
         // t = 1, a voxel before the world.

@@ -240,19 +240,15 @@ class Judge {
   void check_narrow(const Ray& ray, int material, const RayPoint& from, const MediumExit& wide,
                     const std::string& place) {
     MediumExit exit;
-    const Status status = leave_medium_32(tree_, ray, static_cast<std::uint8_t>(material), &exit, from);
     TraceOptions options;
     options.width = Width::k32;
-    MediumExit same;
-    if (leave_medium(tree_, ray, static_cast<std::uint8_t>(material), &same, from, options) != status) {
-      tally_.fail("32 bits in two ways: " + place);
-    }
+    const Status status = leave_medium(tree_, ray, static_cast<std::uint8_t>(material), &exit, from, options);
     if (status == Status::kOutOfRange && !accepts_32(ray, cells_.level())) {
       return;
     }
     Hit narrow;
     Hit hit;
-    REQUIRE(closest_hit_from_32(tree_, ray, from, &narrow) == Status::kOk);
+    REQUIRE(closest_hit_from(tree_, ray, from, &narrow, options) == Status::kOk);
     REQUIRE(closest_hit_from(tree_, ray, from, &hit) == Status::kOk);
     if (narrow.kind != hit.kind || narrow.voxel != hit.voxel || narrow.axis != hit.axis ||
         narrow.t_numerator != hit.t_numerator || narrow.visits != hit.visits) {
@@ -659,7 +655,8 @@ TEST_CASE("leave_medium: rays beyond the limits, step limits, an empty tree -> a
   const MediumExit before = exit;
   CHECK(leave_medium(tree, {ray.origin, {0, 0, 0}}, 1, &exit) == Status::kBadArgument);
   CHECK(leave_medium(tree, {ray.origin, {kMaxDirection + 1, 0, 0}}, 1, &exit) == Status::kOutOfRange);
-  CHECK(leave_medium_32(tree, {ray.origin, {kMaxDirection, 0, 1}}, 1, &exit) == Status::kOutOfRange);
+  CHECK(leave_medium(tree, {ray.origin, {kMaxDirection, 0, 1}}, 1, &exit, {}, {UINT32_MAX, Width::k32}) ==
+        Status::kOutOfRange);
   CHECK(closest_hit_from(tree, {ray.origin, {0, 0, 0}}, {}, &hit) == Status::kBadArgument);
   HitKind kind = HitKind::kMiss;
   CHECK(any_hit_before(tree, {ray.origin, {0, 0, 0}}, {1, 1}, &kind) == Status::kBadArgument);

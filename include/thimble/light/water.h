@@ -122,12 +122,6 @@ bool water_holds(const WaterSurface& surface, const Vec3Q8& point, const Vec3i& 
 /// start (`check_ray`), or anywhere nearer; beyond the water the nearest column's slope holds.
 Vec3i water_normal(const WaterSurface& surface, Q8 x, Q8 y);
 
-/// Normal for light at a hit, out of the water, of length 2^14 .. 2^16: of the surface, also at the upright
-/// face between two columns that hold water (it is part of a slope); of the face itself at the border, at
-/// blocked columns and at the floor, and wherever the surface's normal would be seen from behind. `direction`
-/// is the ray's, `x` and `y` the point's, world coordinates.
-Vec3i water_hit_normal(const WaterSurface& surface, const WaterHit& hit, const Vec3i& direction, Q8 x, Q8 y);
-
 /// Columns a side.
 inline constexpr int32_t kMaxWaterSide = 4096;
 /// Heights, in 1/256 voxel above the floor of the water: 4096 voxels.

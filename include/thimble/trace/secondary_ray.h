@@ -111,15 +111,6 @@ Status closest_hit_from(const CompactTree& tree, const Ray& ray, const RayPoint&
 Status any_hit_before(const CompactTree& tree, const Ray& ray, const RayPoint& before, HitKind* kind,
                       uint32_t* visits = nullptr, const TraceOptions& options = {});
 
-/// The same with Width::k32 and nothing of the 64-bit path behind them, as closest_hit_32 (ray.h); a point
-/// of the ray is one of its planes' or its start.
-Status leave_medium_32(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
-                       const RayPoint& from = {}, uint32_t max_visits = UINT32_MAX);
-Status closest_hit_from_32(const CompactTree& tree, const Ray& ray, const RayPoint& from, Hit* hit,
-                           uint32_t max_visits = UINT32_MAX);
-Status any_hit_before_32(const CompactTree& tree, const Ray& ray, const RayPoint& before, HitKind* kind,
-                         uint32_t* visits = nullptr, uint32_t max_visits = UINT32_MAX);
-
 /// The ray from `start` towards a point: its direction has at most `direction_bits` (2 .. 20) bits a
 /// component, rounded to nearest (a turn below 2^-(direction_bits - 1) rad), and `place` gets the t at which
 /// it is at the point, to that rounding. False when both are equal. Start and point lie where a ray may start
