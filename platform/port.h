@@ -1,4 +1,3 @@
-/// @file port.h
 /// The contract between an application and the place where it runs.
 ///
 /// An application (platform/apps) is one source for every board and for the host simulator. It calls the
@@ -14,8 +13,7 @@
 /// and flushes them, looks at `running()` once a frame, and returns an exit status.
 ///
 /// None of these functions is called from an interrupt, and none is reentrant; a second core calls those that say so.
-#ifndef THIMBLE_PLATFORM_PORT_H
-#define THIMBLE_PLATFORM_PORT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -178,5 +176,3 @@ uint32_t stack_high_water();
 inline constexpr int kFaultStatus = 97;
 
 }  // namespace thimble::port
-
-#endif

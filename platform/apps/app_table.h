@@ -1,7 +1,5 @@
-/// @file app_table.h
 /// The applications that a host can run, by name.
-#ifndef THIMBLE_PLATFORM_APPS_APP_TABLE_H
-#define THIMBLE_PLATFORM_APPS_APP_TABLE_H
+#pragma once
 
 #include "thimble/base/memory.h"
 
@@ -23,5 +21,3 @@ struct Application {
 Span<const Application> applications();
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,11 +1,9 @@
-/// @file apps.h
 /// The applications: each is one source, platform/apps/NAME.cpp, for every board and for the host simulator; those that test
 /// a board stand in tests/boards/apps.
 ///
 /// They return an exit status: 0 when all went well. In a firmware image the build picks one
 /// (`make firmware BOARD=... APP=NAME`) and the linker leaves the others out.
-#ifndef THIMBLE_PLATFORM_APPS_APPS_H
-#define THIMBLE_PLATFORM_APPS_APPS_H
+#pragma once
 
 namespace thimble::apps {
 
@@ -39,5 +37,3 @@ int dig();
 int faults();
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,7 +1,5 @@
-/// @file ball_color.h
 /// What a ball of the particle world looks like, on boards and on desktops alike.
-#ifndef THIMBLE_PLATFORM_APPS_BALL_COLOR_H
-#define THIMBLE_PLATFORM_APPS_BALL_COLOR_H
+#pragma once
 
 #include <stdint.h>
 
@@ -36,5 +34,3 @@ constexpr Rgb8 ball_gray(uint32_t id, bool asleep) {
 }
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,12 +1,10 @@
-/// @file band_crew.h
 /// The bands of one frame by several cores: each takes the next band that nobody has, draws it into memory of its own
 /// and sends it. One band more than there are cores is on its way to the display, so nobody waits to draw: when a core
 /// begins to send its band, what was sent before has arrived, and that memory is its next.
 ///
 /// The pixels are those of one core, which draws bands in any order. Where the bytes are wanted in order (their
 /// CRC), a band waits until those above it were sent.
-#ifndef THIMBLE_PLATFORM_APPS_BAND_CREW_H
-#define THIMBLE_PLATFORM_APPS_BAND_CREW_H
+#pragma once
 
 #include <stdint.h>
 
@@ -74,5 +72,3 @@ void draw_share(CrewFrame* frame, int core, const Draw& draw, const Send& send) 
 }
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,8 +1,6 @@
-/// @file band_turns.h
 /// An application's bands, by turns: one is drawn while the other is on its way to the display, where the port sends so
 /// (port::band_buffers()). Elsewhere there is one band, and nothing of turns is in the image.
-#ifndef THIMBLE_PLATFORM_APPS_BAND_TURNS_H
-#define THIMBLE_PLATFORM_APPS_BAND_TURNS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -57,5 +55,3 @@ struct Bands {
 };
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,4 +1,3 @@
-/// @file dda_baseline.h
 /// What Thimble is measured against on a chip: the textbook's voxel tracer, as good as it can fairly be made.
 ///
 /// A grid of bits in flash, one a voxel; rays clipped to the model's box; a digital differential analyser in
@@ -9,8 +8,7 @@
 ///
 /// It rounds: near edges a few pixels of a picture differ from the exact one. It knows no materials, which
 /// spares it work that Thimble does.
-#ifndef THIMBLE_PLATFORM_APPS_DDA_BASELINE_H
-#define THIMBLE_PLATFORM_APPS_DDA_BASELINE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -45,5 +43,3 @@ uint32_t draw_dda(const BitWorld& world, const Camera& camera, const uint8_t (&f
                   uint8_t background, int32_t first_row, int32_t rows, uint8_t* pixels);
 
 }  // namespace thimble::apps
-
-#endif

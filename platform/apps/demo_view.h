@@ -1,4 +1,3 @@
-/// @file demo_view.h
 /// The view of the demonstration: one home for the applications, the simulator, the benchmark and the golden
 /// frames.
 ///
@@ -12,8 +11,7 @@
 /// The buttons steer it: left and right turn, up and down tilt, and with select held up and down come nearer
 /// and go away. However it is steered, the eye does not end in something solid: it is lifted, then moved away
 /// from the target, until it is free.
-#ifndef THIMBLE_PLATFORM_APPS_DEMO_VIEW_H
-#define THIMBLE_PLATFORM_APPS_DEMO_VIEW_H
+#pragma once
 
 #include <stdint.h>
 
@@ -238,5 +236,3 @@ inline Shading demo_shading(Span<const Rgb8> palette) {
 }
 
 }  // namespace thimble::apps
-
-#endif

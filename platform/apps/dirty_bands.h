@@ -1,4 +1,3 @@
-/// @file dirty_bands.h
 /// Which bands of the picture must be drawn again, so that an unchanged one costs nothing.
 ///
 /// A pixel is a function of the scene and the camera alone, so a band is as it was unless something that one
@@ -13,8 +12,7 @@
 ///     nothing                no band is drawn
 ///
 /// One byte a band, the application's.
-#ifndef THIMBLE_PLATFORM_APPS_DIRTY_BANDS_H
-#define THIMBLE_PLATFORM_APPS_DIRTY_BANDS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -103,5 +101,3 @@ class DirtyBands {
 };
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,8 +1,6 @@
-/// @file falling_ball.h
 /// Balls that fall through the air of a scene, in integers, without being part of its tree, which is in flash
 /// (thimble/light/render.h says how they are drawn).
-#ifndef THIMBLE_PLATFORM_APPS_FALLING_BALL_H
-#define THIMBLE_PLATFORM_APPS_FALLING_BALL_H
+#pragma once
 
 #include <stdint.h>
 
@@ -47,5 +45,3 @@ constexpr Ball drawn_ball(const FallingBall& ball, const BallSize& size) {
 }
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,4 +1,3 @@
-/// @file held_frame.h
 /// What it takes to hold a rate of frames: while the camera moves a frame gets no more work than there is
 /// time for, and when it stands still it becomes exact.
 ///
@@ -7,8 +6,7 @@
 ///   - rays through a tree: an any-time frame (thimble/picture/anytime.h) of so many node visits;
 ///   - with a brick map, a thirteenth of the instructions a pixel: the thinned camera's picture, every 2nd to
 ///     8th pixel both ways by the map, each as a square; the exact picture when the camera stands still.
-#ifndef THIMBLE_PLATFORM_APPS_HELD_FRAME_H
-#define THIMBLE_PLATFORM_APPS_HELD_FRAME_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -199,5 +197,3 @@ template <size_t kBytes, size_t kAlignment>
 }
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,8 +1,6 @@
-/// @file moving_water.h
 /// The water of a lit scene made to move: its columns in the caller's bytes, where they are blocked, what
 /// touches them.
-#ifndef THIMBLE_PLATFORM_APPS_MOVING_WATER_H
-#define THIMBLE_PLATFORM_APPS_MOVING_WATER_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -116,5 +114,3 @@ inline WaterSurface surface_of(const MovingWater& water, bool ever) {
 }
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,7 +1,5 @@
-/// @file particles_world.h
 /// Which particle world a board shows: the application's and that of the tests that know what it must say.
-#ifndef THIMBLE_PLATFORM_APPS_PARTICLES_WORLD_H
-#define THIMBLE_PLATFORM_APPS_PARTICLES_WORLD_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -50,5 +48,3 @@ inline Status begin_particles(Bytes bytes, const ParticleConfig& config, Particl
 }
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,7 +1,5 @@
-/// @file place.h
 /// An application's state in the arena, so that it weighs on neither .bss nor the stack.
-#ifndef THIMBLE_PLATFORM_APPS_PLACE_H
-#define THIMBLE_PLATFORM_APPS_PLACE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -23,5 +21,3 @@ T* place(Arena* arena) {
 }
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,4 +1,3 @@
-/// @file scene_light.h
 /// Light in the pictures of a baked scene: the effects that it was baked for, and no others.
 ///
 /// In a firmware image the set is a constant (`THIMBLE_IMAGE_EFFECTS`, which platform/firmware.cmake reads
@@ -6,8 +5,7 @@
 /// On a desktop the scene comes with the command line, so the set is looked up there, and the library's own
 /// renderers draw it. Both draw the same picture. Where the effects allow it and there is a brick map, frames are fast
 /// enough to move in (map_render.h).
-#ifndef THIMBLE_PLATFORM_APPS_SCENE_LIGHT_H
-#define THIMBLE_PLATFORM_APPS_SCENE_LIGHT_H
+#pragma once
 
 #include "apps/shown_scene.h"
 #include "thimble/bake/baked_scene.h"
@@ -167,5 +165,3 @@ inline Status draw_lit_scene(const ShownScene& shown, const Camera& camera, cons
 #endif
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,7 +1,5 @@
-/// @file shown_scene.h
 /// The baked scene of the port, opened and checked, with the fastest way to draw it.
-#ifndef THIMBLE_PLATFORM_APPS_SHOWN_SCENE_H
-#define THIMBLE_PLATFORM_APPS_SHOWN_SCENE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -79,5 +77,3 @@ inline Status draw_scene(const ShownScene& shown, const Camera& camera, const Sh
 }
 
 }  // namespace thimble::apps
-
-#endif

@@ -1,8 +1,6 @@
-/// @file spheres.h
 /// A scene that a chip builds by itself, one voxel at a time: solid spheres, each one voxel more of itself at
 /// every step, as the paper built its world.
-#ifndef THIMBLE_PLATFORM_APPS_SPHERES_H
-#define THIMBLE_PLATFORM_APPS_SPHERES_H
+#pragma once
 
 #include <stdint.h>
 
@@ -96,5 +94,3 @@ class SphereBuilder {
 };
 
 }  // namespace thimble::apps
-
-#endif

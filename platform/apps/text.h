@@ -1,7 +1,5 @@
-/// @file text.h
 /// Words and numbers over the port's UART, without printf: about a kilobyte of flash, 24 bytes of stack.
-#ifndef THIMBLE_PLATFORM_APPS_TEXT_H
-#define THIMBLE_PLATFORM_APPS_TEXT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -92,5 +90,3 @@ inline int refuse(const char* why) {
 }
 
 }  // namespace thimble::apps
-
-#endif

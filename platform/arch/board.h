@@ -1,12 +1,10 @@
-/// @file board.h
 /// What a board's folder supplies (platform/boards/NAME/*.cpp), and what the rest of the port makes of it.
 ///
 /// platform/arch/common turns these functions and the numbers of board.cmake into the contract that
 /// applications see (port.h). A board without a display or without buttons leaves `flush` or `buttons` out:
 /// the library of the port holds empty ones. The same holds for the clock: a Cortex-M board gets SysTick
 /// unless it brings its own.
-#ifndef THIMBLE_PLATFORM_ARCH_BOARD_H
-#define THIMBLE_PLATFORM_ARCH_BOARD_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -41,5 +39,3 @@ void start_clock();
 inline constexpr uint32_t kPatience = 1000000;
 
 }  // namespace thimble::board
-
-#endif

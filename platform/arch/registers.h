@@ -1,7 +1,5 @@
-/// @file registers.h
 /// Registers of a chip, by address.
-#ifndef THIMBLE_PLATFORM_ARCH_REGISTERS_H
-#define THIMBLE_PLATFORM_ARCH_REGISTERS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -39,5 +37,3 @@ inline bool wait_for_clear(uintptr_t address, uint32_t bits) {
 }
 
 }  // namespace thimble
-
-#endif

@@ -1,7 +1,5 @@
-/// @file board_table.h
 /// What every board is, for programs on the host: the one table, made from platform/boards/*/board.cmake.
-#ifndef THIMBLE_PLATFORM_BOARDS_BOARD_TABLE_H
-#define THIMBLE_PLATFORM_BOARDS_BOARD_TABLE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -51,5 +49,3 @@ const BoardFacts* find_board(const char* name);
 BoardFacts board_for(const BoardFacts& board, const char* app);
 
 }  // namespace thimble::platform
-
-#endif

@@ -1,4 +1,3 @@
-/// @file effect_flash.h
 /// What each effect takes of the flash of a firmware image, measured by linking: lm3s6965evb (Cortex-M3),
 /// with the compiler flags of every image, code and constants. Written by
 /// `sh tests/boards/effects.sh --write`, and held to the byte by `make test-boards`, with Debian 12's
@@ -11,8 +10,7 @@
 /// or less, since effects share parts: all of them take kAllEffectsFlashBytes. An effect that SET does not
 /// name takes nothing; with Effect::kNone the image is the other one, byte for byte (the same test compares
 /// them).
-#ifndef THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
-#define THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
+#pragma once
 
 #include <stdint.h>
 
@@ -54,5 +52,3 @@ inline constexpr EffectFlash kEffectFlash[] = {
 inline constexpr uint32_t kAllEffectsFlashBytes = 39816;
 
 }  // namespace thimble
-
-#endif

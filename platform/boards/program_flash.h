@@ -1,10 +1,8 @@
-/// @file program_flash.h
 /// What the demonstration takes of a board's flash beside the scene, so that a scene which will not fit is refused before
 /// anything is compiled: as linked by Debian 12's gcc 12.2, in KiB, rounded up; of
 /// lm3s6965evb, microbit, stm32vldiscovery and gba. The others' light is estimated from theirs, what they take without from
 /// tests/budgets/firmware.csv. tests/boards/scenes.sh holds it.
-#ifndef THIMBLE_PLATFORM_BOARDS_PROGRAM_FLASH_H
-#define THIMBLE_PLATFORM_BOARDS_PROGRAM_FLASH_H
+#pragma once
 
 #include <stdint.h>
 
@@ -38,5 +36,3 @@ inline constexpr uint32_t kMapWaterBytes = 13 << 10;
 // clang-format on
 
 }  // namespace thimble
-
-#endif

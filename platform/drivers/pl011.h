@@ -1,7 +1,5 @@
-/// @file pl011.h
 /// Arm's PL011 UART (PrimeCell UART Technical Reference Manual): Stellaris, Raspberry Pi.
-#ifndef THIMBLE_PLATFORM_DRIVERS_PL011_H
-#define THIMBLE_PLATFORM_DRIVERS_PL011_H
+#pragma once
 
 #include <stdint.h>
 
@@ -13,5 +11,3 @@ void put(uintptr_t base, uint8_t byte);
 int get(uintptr_t base);
 
 }  // namespace thimble::pl011
-
-#endif

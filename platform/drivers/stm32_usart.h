@@ -1,7 +1,5 @@
-/// @file stm32_usart.h
 /// The USART of STM32F1, F2 and F4 (reference manuals RM0041 and RM0090).
-#ifndef THIMBLE_PLATFORM_DRIVERS_STM32_USART_H
-#define THIMBLE_PLATFORM_DRIVERS_STM32_USART_H
+#pragma once
 
 #include <stdint.h>
 
@@ -13,5 +11,3 @@ void put(uintptr_t base, uint8_t byte);
 int get(uintptr_t base);
 
 }  // namespace thimble::stm32_usart
-
-#endif

@@ -1,8 +1,6 @@
-/// @file display.h
 /// What the examples want of a display, in C and in C++: two functions that your firmware supplies.
 /// display_host.cpp has them for a desktop.
-#ifndef THIMBLE_EXAMPLES_DISPLAY_H
-#define THIMBLE_EXAMPLES_DISPLAY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,6 +20,4 @@ bool display_wait(uint32_t number);
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif

@@ -1,7 +1,5 @@
-/// @file device.h
 /// A Vulkan device for compute: the loader is opened at run time, so a program starts where there is none.
-#ifndef THIMBLE_PLATFORM_GPU_DEVICE_H
-#define THIMBLE_PLATFORM_GPU_DEVICE_H
+#pragma once
 
 #include <volk.h>
 
@@ -88,5 +86,3 @@ class Device {
 };
 
 }  // namespace thimble::gpu
-
-#endif

@@ -1,7 +1,5 @@
-/// @file kernels.h
 /// The kernels as SPIR-V, compiled into the program.
-#ifndef THIMBLE_PLATFORM_GPU_KERNELS_H
-#define THIMBLE_PLATFORM_GPU_KERNELS_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -17,5 +15,3 @@ struct Kernel {
 Kernel kernel_of(bool pairs);
 
 }  // namespace thimble::gpu
-
-#endif

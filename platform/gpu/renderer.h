@@ -1,11 +1,9 @@
-/// @file renderer.h
 /// The core's picture by a GPU: every pixel is a thread that traces its ray exactly, in integers of 32 bits, so it is
 /// the same picture, byte for byte, and the same hits. Vulkan 1.1; it needs no 64-bit integers and no floats of the
 /// device.
 ///
 /// What it draws: depth, normal, colour and mono of both cameras, one ray a pixel, and lists of rays. Not light.
-#ifndef THIMBLE_PLATFORM_GPU_RENDERER_H
-#define THIMBLE_PLATFORM_GPU_RENDERER_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -76,5 +74,3 @@ class Renderer {
 };
 
 }  // namespace thimble::gpu
-
-#endif

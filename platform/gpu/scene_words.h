@@ -1,8 +1,6 @@
-/// @file scene_words.h
 /// What the kernels read (kernel/parameters.inc), made from the core's tree, camera and shading. It needs no GPU: the
 /// tests run the kernels on these words as C++.
-#ifndef THIMBLE_PLATFORM_GPU_SCENE_WORDS_H
-#define THIMBLE_PLATFORM_GPU_SCENE_WORDS_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -47,5 +45,3 @@ Vec3i largest_direction(Span<const Ray> rays);
 bool needs_pairs(int level, const Vec3i& largest_direction);
 
 }  // namespace thimble::gpu
-
-#endif

@@ -1,7 +1,5 @@
-/// @file byte_queue.h
 /// Bytes from one thread to one other, without locks.
-#ifndef THIMBLE_PLATFORM_HOST_BYTE_QUEUE_H
-#define THIMBLE_PLATFORM_HOST_BYTE_QUEUE_H
+#pragma once
 
 #include <array>
 #include <atomic>
@@ -44,5 +42,3 @@ class ByteQueue {
 };
 
 }  // namespace thimble::host
-
-#endif

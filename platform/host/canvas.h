@@ -1,7 +1,5 @@
-/// @file canvas.h
 /// What a screen draws on: a block of pixels, pictures placed on it, text in a small fixed font.
-#ifndef THIMBLE_PLATFORM_HOST_CANVAS_H
-#define THIMBLE_PLATFORM_HOST_CANVAS_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -103,5 +101,3 @@ class CanvasScreen : public Screen {
 };
 
 }  // namespace thimble::host
-
-#endif

@@ -1,4 +1,3 @@
-/// @file drawn_frame.h
 /// A frame that was drawn in the core's place, whole and beside the board's memory, and handed out in the
 /// bands that the application asks for.
 ///
@@ -8,8 +7,7 @@
 /// A frame that is requested from deeper on the stack than any before, the first one among them, is drawn by
 /// the core too, so that the application's stack is what it is when the core draws everything; of what is
 /// flushed the two are compared.
-#ifndef THIMBLE_PLATFORM_HOST_DRAWN_FRAME_H
-#define THIMBLE_PLATFORM_HOST_DRAWN_FRAME_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -68,5 +66,3 @@ class DrawnFrame {
 };
 
 }  // namespace thimble::host
-
-#endif

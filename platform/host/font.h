@@ -1,7 +1,5 @@
-/// @file font.h
 /// A fixed font of 5 x 8 dots for ASCII, so that a window needs no font of its system.
-#ifndef THIMBLE_PLATFORM_HOST_FONT_H
-#define THIMBLE_PLATFORM_HOST_FONT_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -18,5 +16,3 @@ using Glyph = std::array<std::uint8_t, kGlyphRows>;
 const Glyph& glyph_of(char character);
 
 }  // namespace thimble::host
-
-#endif

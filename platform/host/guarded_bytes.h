@@ -1,7 +1,5 @@
-/// @file guarded_bytes.h
 /// Bytes whose neighbours cannot be touched: exactly so many, ended by a page that faults.
-#ifndef THIMBLE_PLATFORM_HOST_GUARDED_BYTES_H
-#define THIMBLE_PLATFORM_HOST_GUARDED_BYTES_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -37,5 +35,3 @@ class GuardedBytes {
 };
 
 }  // namespace thimble::host
-
-#endif

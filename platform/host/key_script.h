@@ -1,4 +1,3 @@
-/// @file key_script.h
 /// Buttons and typed bytes at given frames, as text, so that a run can be repeated.
 ///
 ///     # a comment
@@ -9,8 +8,7 @@
 ///
 /// Frames count from 0; a line takes effect before its frame is drawn. Lines of one frame are taken in their
 /// order. Buttons: up, down, left, right, select. In typed text \n, \r, \t, \\ and \xHH are bytes.
-#ifndef THIMBLE_PLATFORM_HOST_KEY_SCRIPT_H
-#define THIMBLE_PLATFORM_HOST_KEY_SCRIPT_H
+#pragma once
 
 #include <cstdint>
 #include <stdexcept>
@@ -48,5 +46,3 @@ class KeyScript {
 };
 
 }  // namespace thimble::host
-
-#endif

@@ -1,9 +1,7 @@
-/// @file look.h
 /// How a display's pixels look: what turns an exact picture into one that resembles the glass on the desk.
 ///
 /// Only what a person sees goes through a look; pictures that are saved or compared never do.
-#ifndef THIMBLE_PLATFORM_HOST_LOOK_H
-#define THIMBLE_PLATFORM_HOST_LOOK_H
+#pragma once
 
 #include <cstdint>
 
@@ -50,5 +48,3 @@ constexpr std::int32_t gap_px(const Look& look, std::int32_t scale) {
 }
 
 }  // namespace thimble::host
-
-#endif

@@ -1,7 +1,5 @@
-/// @file packed_picture.h
 /// A picture in a display's own pixel format, as the display holds it, and what its pixels are in 8 bits.
-#ifndef THIMBLE_PLATFORM_HOST_PACKED_PICTURE_H
-#define THIMBLE_PLATFORM_HOST_PACKED_PICTURE_H
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -24,5 +22,3 @@ std::vector<std::uint8_t> expand_rgb(const PackedPicture& picture);
 std::vector<std::uint8_t> expand_gray(const PackedPicture& picture);
 
 }  // namespace thimble::host
-
-#endif

@@ -1,4 +1,3 @@
-/// @file screen.h
 /// Where a program on a desktop shows pictures and hears keys and mouse: one interface for an X11 window, a
 /// terminal, and nothing at all. A terminal whose locale is not UTF-8 gets ASCII alone, and half as many lines.
 ///
@@ -15,8 +14,7 @@
 ///
 /// Several lines of text can stand below the picture (`set_status`) and on it (`set_overlay`): ASCII, lines
 /// divided by '\n'; what does not fit is cut off.
-#ifndef THIMBLE_PLATFORM_HOST_SCREEN_H
-#define THIMBLE_PLATFORM_HOST_SCREEN_H
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -144,5 +142,3 @@ enum class ScreenKind : std::uint8_t { kAuto, kWindow, kTerminal, kNone };
 std::unique_ptr<Screen> open_screen(ScreenKind kind, const ScreenOptions& options);
 
 }  // namespace thimble::host
-
-#endif

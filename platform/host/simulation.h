@@ -1,4 +1,3 @@
-/// @file simulation.h
 /// A board on the host: one application, run with the RAM, flash and display of that board.
 ///
 /// What is as on the board: the arena has exactly the bytes that the RAM leaves beside the stack, and a byte
@@ -19,8 +18,7 @@
 ///     while (simulation.wait(10) != host::Moment::kEnded) {
 ///       if (simulation.asks()) { show(simulation.picture()); simulation.answer(true); }
 ///     }
-#ifndef THIMBLE_PLATFORM_HOST_SIMULATION_H
-#define THIMBLE_PLATFORM_HOST_SIMULATION_H
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -129,5 +127,3 @@ class Simulation {
 };
 
 }  // namespace thimble::host
-
-#endif

@@ -1,7 +1,5 @@
-/// @file simulation_state.h
 /// What a simulation's two threads share: the application's, which runs through port.cpp, and the host's.
-#ifndef THIMBLE_PLATFORM_HOST_SIMULATION_STATE_H
-#define THIMBLE_PLATFORM_HOST_SIMULATION_STATE_H
+#pragma once
 
 #include <pthread.h>
 #include <semaphore.h>
@@ -99,5 +97,3 @@ extern thread_local Simulation::State* running_here;
 std::uint32_t used_stack(const std::uint8_t* begin, const std::uint8_t* end);
 
 }  // namespace thimble::host
-
-#endif

@@ -1,11 +1,9 @@
-/// @file strict_display.h
 /// A display that is stricter than any hardware: what a board would show somehow is an error here.
 ///
 /// Every row of a frame comes once, in any order of bands, in the display's format, without gaps, and no
 /// frame is left half sent. A row that stays as it was is said to (a band without bytes), which the first
 /// frame cannot.
-#ifndef THIMBLE_PLATFORM_HOST_STRICT_DISPLAY_H
-#define THIMBLE_PLATFORM_HOST_STRICT_DISPLAY_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -44,5 +42,3 @@ class StrictDisplay {
 };
 
 }  // namespace thimble::host
-
-#endif

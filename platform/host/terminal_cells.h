@@ -1,7 +1,5 @@
-/// @file terminal_cells.h
 /// A terminal's cells as they are and as they should be, and the bytes that lead from one to the other.
-#ifndef THIMBLE_PLATFORM_HOST_TERMINAL_CELLS_H
-#define THIMBLE_PLATFORM_HOST_TERMINAL_CELLS_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -58,5 +56,3 @@ class TerminalCells {
 };
 
 }  // namespace thimble::host
-
-#endif

@@ -1,11 +1,9 @@
-/// @file terminal_input.h
 /// What a terminal sends for keys and mouse, taken apart.
 ///
 /// It knows the sequences of xterm and what follows it: arrows and editing keys in both forms (CSI and SS3),
 /// with and without modifiers, the mouse in SGR form (mode 1006), UTF-8. A sequence that it does not know is
 /// passed over. It does no input of its own.
-#ifndef THIMBLE_PLATFORM_HOST_TERMINAL_INPUT_H
-#define THIMBLE_PLATFORM_HOST_TERMINAL_INPUT_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -38,5 +36,3 @@ class TerminalInput {
 };
 
 }  // namespace thimble::host
-
-#endif

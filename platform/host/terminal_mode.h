@@ -1,4 +1,3 @@
-/// @file terminal_mode.h
 /// The terminal's state while a program has the whole of it, and the way back from there, whatever happens.
 ///
 /// While one of these exists the terminal is in raw mode, shows its alternate screen without a cursor, and
@@ -8,8 +7,7 @@
 /// the course that it would have taken without this. A signal that was ignored stays ignored.
 ///
 /// There is one at a time.
-#ifndef THIMBLE_PLATFORM_HOST_TERMINAL_MODE_H
-#define THIMBLE_PLATFORM_HOST_TERMINAL_MODE_H
+#pragma once
 
 namespace thimble::host {
 
@@ -39,5 +37,3 @@ class TerminalMode {
 void restore_terminal();
 
 }  // namespace thimble::host
-
-#endif

@@ -1,7 +1,5 @@
-/// @file uri_list.h
 /// What a file manager hands over when files are dragged onto a window: text/uri-list (RFC 2483), a URI a line.
-#ifndef THIMBLE_PLATFORM_HOST_URI_LIST_H
-#define THIMBLE_PLATFORM_HOST_URI_LIST_H
+#pragma once
 
 #include <optional>
 #include <string>
@@ -15,5 +13,3 @@ namespace thimble::host {
 std::optional<std::string> first_file_of(std::string_view uri_list);
 
 }  // namespace thimble::host
-
-#endif

@@ -1,8 +1,6 @@
-/// @file window_drops.h
 /// Files that are dragged onto a window from another program: the receiver's part of XDND, version 5, the
 /// protocol of file managers (freedesktop.org). Nothing is written: the window's program gets a path.
-#ifndef THIMBLE_PLATFORM_HOST_WINDOW_DROPS_H
-#define THIMBLE_PLATFORM_HOST_WINDOW_DROPS_H
+#pragma once
 
 #include <X11/Xlib.h>
 
@@ -43,5 +41,3 @@ class WindowDrops {
 };
 
 }  // namespace thimble::host
-
-#endif

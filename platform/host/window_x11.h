@@ -1,10 +1,8 @@
-/// @file window_x11.h
 /// A screen in a window of the X Window System, by libX11 alone.
 ///
 /// The picture is magnified by a whole number, as far as the window has room; in a window smaller than the
 /// picture it is made smaller. It stays sharp: no pixel is mixed with its neighbour when it is magnified.
-#ifndef THIMBLE_PLATFORM_HOST_WINDOW_X11_H
-#define THIMBLE_PLATFORM_HOST_WINDOW_X11_H
+#pragma once
 
 #include <memory>
 
@@ -20,5 +18,3 @@ const char* window_kind();
 std::unique_ptr<Screen> open_window(const ScreenOptions& options);
 
 }  // namespace thimble::host
-
-#endif

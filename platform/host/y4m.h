@@ -1,11 +1,9 @@
-/// @file y4m.h
 /// Moving pictures as YUV4MPEG2, which ffmpeg, mpv and others play: a line of text, then frames of raw
 /// planes.
 ///
 /// Greys are stored as they are (Cmono). Colours become Y'CbCr by Rec. 601 in its limited range, one sample a
 /// pixel (C444), which rounds them by up to about 2 of 255.
-#ifndef THIMBLE_PLATFORM_HOST_Y4M_H
-#define THIMBLE_PLATFORM_HOST_Y4M_H
+#pragma once
 
 #include <string>
 
@@ -22,5 +20,3 @@ std::string y4m_gray_frame(const std::vector<std::uint8_t>& levels);
 std::string y4m_color_frame(const Picture& picture);
 
 }  // namespace thimble::host
-
-#endif

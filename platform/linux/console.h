@@ -1,7 +1,5 @@
-/// @file console.h
 /// The text console, put aside while pixels are drawn over it, and given back whatever happens.
-#ifndef THIMBLE_PLATFORM_LINUX_CONSOLE_H
-#define THIMBLE_PLATFORM_LINUX_CONSOLE_H
+#pragma once
 
 namespace thimble::linux_port {
 
@@ -16,5 +14,3 @@ void restore_console();
 bool asked_to_end();
 
 }  // namespace thimble::linux_port
-
-#endif

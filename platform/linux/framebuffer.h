@@ -1,7 +1,5 @@
-/// @file framebuffer.h
 /// A Linux framebuffer (/dev/fb0), or a plain file that stands in for one.
-#ifndef THIMBLE_PLATFORM_LINUX_FRAMEBUFFER_H
-#define THIMBLE_PLATFORM_LINUX_FRAMEBUFFER_H
+#pragma once
 
 #include <string>
 
@@ -37,5 +35,3 @@ class Framebuffer {
 };
 
 }  // namespace thimble::linux_port
-
-#endif

@@ -1,7 +1,5 @@
-/// @file keys.h
 /// Keys from the kernel's input devices (evdev, /dev/input/event*), and letters from standard input.
-#ifndef THIMBLE_PLATFORM_LINUX_KEYS_H
-#define THIMBLE_PLATFORM_LINUX_KEYS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -41,5 +39,3 @@ class Keys {
 };
 
 }  // namespace thimble::linux_port
-
-#endif

@@ -1,8 +1,6 @@
-/// @file pixels.h
 /// From the pixels of a band to those of a Linux framebuffer: any depth, any order of the channels, any
 /// stride.
-#ifndef THIMBLE_PLATFORM_LINUX_PIXELS_H
-#define THIMBLE_PLATFORM_LINUX_PIXELS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -59,5 +57,3 @@ void put_band(const Band& band, int32_t width_px, const Layout& layout, const Pl
               Bytes screen);
 
 }  // namespace thimble::linux_port
-
-#endif

@@ -1,7 +1,5 @@
-/// @file session.h
 /// One run of an application on a Linux framebuffer: what port.h's functions need, set up by main().
-#ifndef THIMBLE_PLATFORM_LINUX_SESSION_H
-#define THIMBLE_PLATFORM_LINUX_SESSION_H
+#pragma once
 
 #include <stdint.h>
 
@@ -26,5 +24,3 @@ struct Session {
 int run(const Session& session, int (*application)(), const char** fault);
 
 }  // namespace thimble::linux_port
-
-#endif

@@ -1,4 +1,3 @@
-/// @file layout.h
 /// The memory of a module while an application runs in it, as on a board:
 ///
 ///     stack | constants and variables | scene ("flash") | guard | arena, to the last byte of the memory
@@ -6,8 +5,7 @@
 /// The arena has exactly the bytes that the board's RAM leaves beside its stack. A byte behind it is none of
 /// the memory: whoever touches it is stopped by the browser. The guard in front of it is looked at after each
 /// frame. The stack is larger than the board's, since frames of WebAssembly are not the chip's.
-#ifndef THIMBLE_PLATFORM_WEB_LAYOUT_H
-#define THIMBLE_PLATFORM_WEB_LAYOUT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -30,5 +28,3 @@ extern Layout layout;
 uint32_t used_stack();
 
 }  // namespace thimble::web
-
-#endif

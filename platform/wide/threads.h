@@ -1,8 +1,6 @@
-/// @file threads.h
 /// The threads that draw. Keep them from frame to frame: a thread that has to be woken for each frame starts a tenth of
 /// a millisecond late, and one that drew the frame before starts at once.
-#ifndef THIMBLE_PLATFORM_WIDE_THREADS_H
-#define THIMBLE_PLATFORM_WIDE_THREADS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -105,5 +103,3 @@ class Threads {
 #endif
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,7 +1,6 @@
 // Counting bits, spreading them, and reading little-endian words: the few machine-near operations of the
 // core, in one place. Internal to src/.
-#ifndef THIMBLE_SRC_BASE_BITS_H
-#define THIMBLE_SRC_BASE_BITS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -98,5 +97,3 @@ constexpr uint32_t little(uint32_t word) {
 }
 
 }  // namespace thimble::bits
-
-#endif

@@ -1,6 +1,5 @@
 // One of two types, known when compiling: compilers for small chips come without <type_traits>. Internal to src/.
-#ifndef THIMBLE_SRC_BASE_CHOOSE_H
-#define THIMBLE_SRC_BASE_CHOOSE_H
+#pragma once
 
 namespace thimble {
 
@@ -16,5 +15,3 @@ template <bool kFirst, class First, class Second>
 using Choose = typename Chosen<kFirst, First, Second>::Type;
 
 }  // namespace thimble
-
-#endif

@@ -1,7 +1,5 @@
-/// @file fault.h
 /// What looks at bytes: their checksum, and how to say what is wrong with them.
-#ifndef THIMBLE_SRC_BASE_FAULT_H
-#define THIMBLE_SRC_BASE_FAULT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -24,5 +22,3 @@ inline const char* fault(uint32_t* place, uint32_t where, const char* text) {
 }
 
 }  // namespace thimble
-
-#endif

@@ -1,7 +1,5 @@
-/// @file integers.h
 /// Signs, sizes and limits of 32-bit numbers.
-#ifndef THIMBLE_SRC_BASE_INTEGERS_H
-#define THIMBLE_SRC_BASE_INTEGERS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -31,5 +29,3 @@ constexpr int32_t clamped(int32_t value, int32_t low, int32_t high) {
 }
 
 }  // namespace thimble
-
-#endif

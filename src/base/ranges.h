@@ -1,4 +1,3 @@
-/// @file ranges.h
 /// How large the numbers of the tracing path may become, and a build that measures how large they do. Internal to
 /// src/ and to tests/ranges.
 ///
@@ -9,8 +8,7 @@
 ///
 /// That is nothing to the compiler but in the build that measures (THIMBLE_RANGES): there the least and the greatest
 /// number of each row are kept, and held to the promise: `make ranges`.
-#ifndef THIMBLE_SRC_BASE_RANGES_H
-#define THIMBLE_SRC_BASE_RANGES_H
+#pragma once
 
 #include <stdint.h>
 
@@ -111,7 +109,5 @@ constexpr Range order_range() {
 #else
 
 #define THIMBLE_NOTE(range, ...) static_cast<void>(0)
-
-#endif
 
 #endif

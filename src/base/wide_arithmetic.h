@@ -1,4 +1,3 @@
-/// @file wide_arithmetic.h
 /// The 64-bit products of the tracing path, and the quotients, roots and products of set-up code.
 ///
 /// Products of two 32-bit numbers have a name each, so that one place decides how a chip computes them; as
@@ -8,8 +7,7 @@
 ///
 /// Every loop runs at most 64 times. Results are exact or round to nearest as stated, on magnitudes: callers
 /// keep signs apart, which makes mirrored input give mirrored output.
-#ifndef THIMBLE_SRC_BASE_WIDE_ARITHMETIC_H
-#define THIMBLE_SRC_BASE_WIDE_ARITHMETIC_H
+#pragma once
 
 #include <stdint.h>
 
@@ -109,5 +107,3 @@ constexpr uint64_t multiply_shifted(uint64_t a, uint32_t b, int shift) {
 }
 
 }  // namespace thimble
-
-#endif

@@ -1,7 +1,6 @@
 // What a handle of the C face holds: a mark that tells it from bytes that hold nothing, and an object of the
 // core. Internal to src/c.
-#ifndef THIMBLE_SRC_C_HANDLE_H
-#define THIMBLE_SRC_C_HANDLE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -101,5 +100,3 @@ constexpr thimble_box_t to_c(const VoxelBox& from) {
 }
 
 }  // namespace thimble::c_face
-
-#endif

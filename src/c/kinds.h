@@ -1,6 +1,5 @@
 // The marks of the handles' kinds. Internal to src/c.
-#ifndef THIMBLE_SRC_C_KINDS_H
-#define THIMBLE_SRC_C_KINDS_H
+#pragma once
 
 #include "handle.h"
 
@@ -37,5 +36,3 @@ inline constexpr uint32_t kMark<ParticleWorld> = 0x54525054;  // TPRT
 
 }  // namespace c_face
 }  // namespace thimble
-
-#endif

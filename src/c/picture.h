@@ -1,6 +1,5 @@
 // Rays, hits, shading and bands between C and the core. Internal to src/c.
-#ifndef THIMBLE_SRC_C_PICTURE_H
-#define THIMBLE_SRC_C_PICTURE_H
+#pragma once
 
 #include "kinds.h"
 #include "thimble/picture/camera.h"
@@ -89,5 +88,3 @@ int32_t trace_ray(const Structure* structure, const Ray& ray, uint32_t max_visit
 }
 
 }  // namespace thimble::c_face
-
-#endif

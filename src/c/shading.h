@@ -1,6 +1,5 @@
 // Where a shading begins. Internal to src/c.
-#ifndef THIMBLE_SRC_C_SHADING_H
-#define THIMBLE_SRC_C_SHADING_H
+#pragma once
 
 #include "thimble/base/memory.h"
 #include "thimble/picture/shading.h"
@@ -12,5 +11,3 @@ namespace thimble::c_face {
 void tell_default_shading(ShadeMode mode, Span<const Rgb8> palette, thimble_shading_t* to);
 
 }  // namespace thimble::c_face
-
-#endif

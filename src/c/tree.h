@@ -1,6 +1,5 @@
 // What a tree says of itself. Internal to src/c.
-#ifndef THIMBLE_SRC_C_TREE_H
-#define THIMBLE_SRC_C_TREE_H
+#pragma once
 
 #include "kinds.h"
 #include "thimble/tree/compact_tree.h"
@@ -10,5 +9,3 @@ namespace thimble::c_face {
 void tell_tree(const CompactTree& tree, thimble_tree_info_t* to);
 
 }  // namespace thimble::c_face
-
-#endif

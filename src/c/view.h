@@ -1,6 +1,5 @@
 // Views between C and the core. Internal to src/c.
-#ifndef THIMBLE_SRC_C_VIEW_H
-#define THIMBLE_SRC_C_VIEW_H
+#pragma once
 
 #include "kinds.h"
 #include "thimble/bake/baked_scene.h"
@@ -17,5 +16,3 @@ int32_t set_camera(const SceneCamera& view, int32_t width_px, int32_t height_px,
                    thimble_camera_t* to);
 
 }  // namespace thimble::c_face
-
-#endif

@@ -1,6 +1,5 @@
 // Byte offsets of a shared tree's header (src/FORMAT.md), for its writer and its reader. Internal to src/.
-#ifndef THIMBLE_SRC_EXTRAS_SHARED_HEADER_H
-#define THIMBLE_SRC_EXTRAS_SHARED_HEADER_H
+#pragma once
 
 #include <stdint.h>
 
@@ -29,5 +28,3 @@ constexpr unsigned bytes_for(uint32_t most) {
 }
 
 }  // namespace thimble
-
-#endif

@@ -1,6 +1,5 @@
 // Shares and mixtures of colours; how bright lights are, what metals mirror, what occlusion takes. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_ARITHMETIC_H
-#define THIMBLE_SRC_LIGHT_ARITHMETIC_H
+#pragma once
 
 #include <stdint.h>
 
@@ -176,5 +175,3 @@ constexpr int occlusion_rays(const Occlusion& occlusion) {
 }
 
 }  // namespace thimble::lit
-
-#endif

@@ -1,7 +1,6 @@
 // Picks the renderer for a set of effects that is known only now: one for each choice of those that trace rays of their
 // own. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_DISPATCH_H
-#define THIMBLE_SRC_LIGHT_DISPATCH_H
+#pragma once
 
 #include "thimble/light/detail/pixel.h"
 
@@ -50,5 +49,3 @@ Status choose_renderer(const AnyFrame& frame, const Band& band, LitCounts* count
 }
 
 }  // namespace thimble::lit
-
-#endif

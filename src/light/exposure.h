@@ -1,6 +1,5 @@
 // From a colour of any brightness to one that a display has. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_EXPOSURE_H
-#define THIMBLE_SRC_LIGHT_EXPOSURE_H
+#pragma once
 
 #include "thimble/light/detail/pixel.h"
 
@@ -29,5 +28,3 @@ inline Rgb8 in_8_bits(const uint32_t (&channel)[3]) {
 }
 
 }  // namespace thimble::lit
-
-#endif

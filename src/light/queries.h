@@ -1,7 +1,6 @@
 // The queries of the parts of a lit picture, for each kind of frame: Frame traces the tree at once, BallFrame looks at balls
 // beside it (render.h), AskedFrame defers the query to its driver (asked.h). Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_QUERIES_H
-#define THIMBLE_SRC_LIGHT_QUERIES_H
+#pragma once
 
 #include "arithmetic.h"
 #include "thimble/light/detail/pixel.h"
@@ -153,5 +152,3 @@ inline Vec3i surface_normal(AskedFrame& frame, const Body& body, const Vec3Q8& a
 }
 
 }  // namespace thimble::lit
-
-#endif

@@ -1,7 +1,6 @@
 // Transmission by clear solids: what a ray meets in them, and whether light arrives, for both kinds of frame. Internal to
 // src/.
-#ifndef THIMBLE_SRC_LIGHT_TRANSMISSION_H
-#define THIMBLE_SRC_LIGHT_TRANSMISSION_H
+#pragma once
 
 #include "arithmetic.h"
 #include "queries.h"
@@ -100,5 +99,3 @@ enum class Passage : uint8_t { kBlocked, kArrives, kOn };
 }
 
 }  // namespace thimble::lit
-
-#endif

@@ -1,7 +1,6 @@
 // What every renderer does with a band: asks whether it can be drawn, and goes through its pixels. Internal
 // to src/.
-#ifndef THIMBLE_SRC_PICTURE_BAND_H
-#define THIMBLE_SRC_PICTURE_BAND_H
+#pragma once
 
 #include <stddef.h>
 
@@ -68,5 +67,3 @@ static Status draw_rows(const Camera& camera, const VoxelBox& bounds, const Band
 }
 
 }  // namespace thimble
-
-#endif

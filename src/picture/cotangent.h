@@ -1,11 +1,9 @@
-/// @file cotangent.h
 /// The cotangent of half a field of view, in integers.
 ///
 /// cot x = cos x / (x * (sin x / x)). Both series are even, converge fast for x up to 60 degrees, and stay
 /// between 1/2 and 1, so that fixed point loses nothing; the pole at 0 is in the division by x alone, where x
 /// is an exact integer. Taylor's series up to x^12: the first term left out is below 2^-43.
-#ifndef THIMBLE_SRC_PICTURE_COTANGENT_H
-#define THIMBLE_SRC_PICTURE_COTANGENT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -41,5 +39,3 @@ constexpr uint64_t half_angle_cotangent_q39(Q16 fov_degrees) {
 }
 
 }  // namespace thimble
-
-#endif

@@ -1,6 +1,5 @@
 // What the formats behind kRgb888 make of a colour. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_PANELS_H
-#define THIMBLE_SRC_PICTURE_PANELS_H
+#pragma once
 
 #include "thimble/picture/pixel.h"
 
@@ -97,5 +96,3 @@ constexpr Rgb8 flat(Rgb8 color, PixelFormat format) {
 }
 
 }  // namespace thimble::panels
-
-#endif

@@ -1,7 +1,6 @@
 // What many rays of one camera have in common, and whether certainly all of them miss a box. Internal to
 // src/.
-#ifndef THIMBLE_SRC_PICTURE_RAY_RANGE_H
-#define THIMBLE_SRC_PICTURE_RAY_RANGE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -111,5 +110,3 @@ inline bool all_miss(const RayRange& rays, const VoxelBox& box) {
 }
 
 }  // namespace thimble
-
-#endif

@@ -1,6 +1,5 @@
 // What the parts of the particle world share. Internal to src/.
-#ifndef THIMBLE_SRC_PLANE_PARTICLES_PARTS_H
-#define THIMBLE_SRC_PLANE_PARTICLES_PARTS_H
+#pragma once
 
 // gcc packs neighbouring scalars, coordinates above all, into vector registers and takes them apart again:
 // here that made a step a tenth slower. Before everything else, so that it holds for what is inlined too.
@@ -271,5 +270,3 @@ inline uint32_t ParticleWorld::next_awake(uint32_t from) const {
 }
 
 }  // namespace thimble
-
-#endif

@@ -15,8 +15,7 @@
 // positive length in a box when, for every pair of axes, it crosses the lower plane of each before the upper
 // plane of the other: a question about two axes at a time. Hence three such numbers, one a pair, tell for all
 // eight octants of a node at once which of them the ray passes through. No product, no division, no time.
-#ifndef THIMBLE_SRC_TRACE_CROSSINGS_H
-#define THIMBLE_SRC_TRACE_CROSSINGS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -368,5 +367,3 @@ class Crossings {
 };
 
 }  // namespace thimble
-
-#endif

@@ -1,8 +1,7 @@
 // The traversal: from each node to those of its children that the ray passes through, in the order in which
 // it does. One loop for all trees, widths and rules of where to stop. Internal to src/; functions are static,
 // so that each file that traces gets its own.
-#ifndef THIMBLE_SRC_TRACE_DESCENT_H
-#define THIMBLE_SRC_TRACE_DESCENT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -237,5 +236,3 @@ static Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request
 }
 
 }  // namespace thimble
-
-#endif

@@ -1,6 +1,5 @@
 // Tracing many rays: what rays of one direction have in common is worked out once. Internal to src/.
-#ifndef THIMBLE_SRC_TRACE_PATH_CACHE_H
-#define THIMBLE_SRC_TRACE_PATH_CACHE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -76,5 +75,3 @@ Status closest_hit_32(const CompactTree& tree, const Ray& ray, Hit* hit, uint32_
                       DirectionPath<uint32_t>* cache);
 
 }  // namespace thimble
-
-#endif

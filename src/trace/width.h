@@ -1,6 +1,5 @@
 // The one choice between 32 and 64 bits. Internal to src/.
-#ifndef THIMBLE_SRC_TRACE_WIDTH_H
-#define THIMBLE_SRC_TRACE_WIDTH_H
+#pragma once
 
 #include "thimble/base/status.h"
 #include "thimble/trace/ray.h"
@@ -23,5 +22,3 @@ template <class Accepted>
 }
 
 }  // namespace thimble
-
-#endif

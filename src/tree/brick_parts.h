@@ -1,6 +1,5 @@
 // What a brick map and a world that is edited share. Internal to src/.
-#ifndef THIMBLE_SRC_TREE_BRICK_PARTS_H
-#define THIMBLE_SRC_TREE_BRICK_PARTS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -108,5 +107,3 @@ template <class IsSolid>
 }
 
 }  // namespace thimble::brick_parts
-
-#endif

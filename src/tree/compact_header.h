@@ -1,7 +1,6 @@
 // Byte offsets of a compact tree's header and sections (src/FORMAT.md), and what its writers and readers
 // share. Internal to src/.
-#ifndef THIMBLE_SRC_TREE_COMPACT_HEADER_H
-#define THIMBLE_SRC_TREE_COMPACT_HEADER_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -158,5 +157,3 @@ constexpr void grow_box(VoxelBox* box, const Vec3i& corner, int level, unsigned 
 }
 
 }  // namespace thimble
-
-#endif

@@ -1,7 +1,6 @@
 // Brick maps of worlds of level 9 and 10: a directory of two levels. Internal to src/; src/FORMAT.md gives the bytes,
 // README.md the reasons.
-#ifndef THIMBLE_SRC_TREE_DEEP_MAP_H
-#define THIMBLE_SRC_TREE_DEEP_MAP_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -52,5 +51,3 @@ struct DeepMap {
 };
 
 }  // namespace thimble
-
-#endif

@@ -1,7 +1,5 @@
-/// @file octree_parts.h
 /// What the two halves of the mutable octree, editing and coarsening, share. Not installed.
-#ifndef THIMBLE_SRC_TREE_OCTREE_PARTS_H
-#define THIMBLE_SRC_TREE_OCTREE_PARTS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +21,3 @@ constexpr uint32_t count_bits(uint32_t mask) {
 }
 
 }  // namespace thimble
-
-#endif

@@ -47,7 +47,6 @@ names='0x001 kDirectLight
 0x4000 kRipples'
 {
   cat <<'TEXT'
-/// @file effect_flash.h
 /// What each effect takes of the flash of a firmware image, measured by linking: lm3s6965evb (Cortex-M3),
 /// with the compiler flags of every image, code and constants. Written by
 /// `sh tests/boards/effects.sh --write`, and held to the byte by `make test-boards`, with Debian 12's
@@ -60,8 +59,7 @@ names='0x001 kDirectLight
 /// or less, since effects share parts: all of them take kAllEffectsFlashBytes. An effect that SET does not
 /// name takes nothing; with Effect::kNone the image is the other one, byte for byte (the same test compares
 /// them).
-#ifndef THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
-#define THIMBLE_PLATFORM_BOARDS_EFFECT_FLASH_H
+#pragma once
 
 #include <stdint.h>
 
@@ -100,7 +98,7 @@ TEXT
 /// All of them together, the base included: what the most general image takes beyond one without light.
 TEXT
   echo "inline constexpr uint32_t kAllEffectsFlashBytes = $(($(size_of 0x7fff) - $(size_of plain)));"
-  printf '\n}  // namespace thimble\n\n#endif\n'
+  printf '\n}  // namespace thimble\n'
 } >"$work/effect_flash.h"
 if [ "${1:-}" = --write ]; then
   cp "$work/effect_flash.h" "$header"

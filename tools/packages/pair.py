@@ -52,7 +52,7 @@ class _Text:
         data = tree.each_include(tree.read(name), drop)
         for target in wanted:
             self.add(target)
-        self.parts.append(f"// ---- {name}\n".encode() + data.strip() + b"\n")
+        self.parts.append(f"// ---- {name}\n".encode() + data.replace(b"#pragma once\n", b"").strip() + b"\n")
 
 
 def _own_functions(text):

@@ -1,7 +1,5 @@
-/// @file fence.h
 /// What a board adds to the memory that an ARM1176 may touch.
-#ifndef THIMBLE_PLATFORM_ARCH_ARM11_FENCE_H
-#define THIMBLE_PLATFORM_ARCH_ARM11_FENCE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -14,5 +12,3 @@ enum class Window : uint8_t { kDevice, kMemory };
 void open_window(Window kind, uint32_t address, uint32_t bytes);
 
 }  // namespace thimble::arm11
-
-#endif

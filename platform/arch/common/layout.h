@@ -1,7 +1,5 @@
-/// @file layout.h
 /// Where the linker script (firmware.ld.in) put things. Only the addresses of these symbols mean anything.
-#ifndef THIMBLE_PLATFORM_ARCH_COMMON_LAYOUT_H
-#define THIMBLE_PLATFORM_ARCH_COMMON_LAYOUT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -17,5 +15,3 @@ extern uint32_t thimble_bss_end[];
 extern uint8_t thimble_arena_start[];  ///< the rest of the RAM
 extern uint8_t thimble_arena_end[];    ///< also the end of the RAM
 }
-
-#endif

@@ -1,7 +1,5 @@
-/// @file run.h
 /// From reset to the application and out again, common to all kinds of core.
-#ifndef THIMBLE_PLATFORM_ARCH_COMMON_RUN_H
-#define THIMBLE_PLATFORM_ARCH_COMMON_RUN_H
+#pragma once
 
 #include <stdint.h>
 
@@ -37,5 +35,3 @@ struct Fault {
 [[noreturn]] void report_fault(const Fault& fault);
 
 }  // namespace thimble
-
-#endif

@@ -1,7 +1,5 @@
-/// @file say.h
 /// Words over the UART, for messages of the port itself. Uses little stack and no variables.
-#ifndef THIMBLE_PLATFORM_ARCH_COMMON_SAY_H
-#define THIMBLE_PLATFORM_ARCH_COMMON_SAY_H
+#pragma once
 
 #include <stdint.h>
 
@@ -13,5 +11,3 @@ void say_decimal(uint32_t value);
 void say_hex(uint32_t value);
 
 }  // namespace thimble
-
-#endif

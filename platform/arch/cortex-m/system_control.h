@@ -1,8 +1,6 @@
-/// @file system_control.h
 /// Registers that every Cortex-M has at the same place (Armv7-M Architecture Reference Manual, B3.2 to B3.5).
 /// Armv6-M has some of them; the others read as 0 there.
-#ifndef THIMBLE_PLATFORM_ARCH_CORTEX_M_SYSTEM_CONTROL_H
-#define THIMBLE_PLATFORM_ARCH_CORTEX_M_SYSTEM_CONTROL_H
+#pragma once
 
 #include <stdint.h>
 
@@ -41,5 +39,3 @@ inline constexpr uintptr_t kMpuRbar = 0xE000ED9C;        ///< its base address
 inline constexpr uintptr_t kMpuRasr = 0xE000EDA0;        ///< its attributes and size
 
 }  // namespace thimble::cortex_m
-
-#endif

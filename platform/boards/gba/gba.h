@@ -1,8 +1,6 @@
-/// @file gba.h
 /// Registers of the Game Boy Advance that this board uses, 16 bits each (GBATEK, GBA I/O Map; its chapters are
 /// named beside them).
-#ifndef THIMBLE_PLATFORM_BOARDS_GBA_H
-#define THIMBLE_PLATFORM_BOARDS_GBA_H
+#pragma once
 
 #include <stdint.h>
 
@@ -60,5 +58,3 @@ inline constexpr uintptr_t kWaits = 0x04000204;
 inline constexpr uint16_t kWaits3And1 = 5U << 2 | 1U << 14;
 
 }  // namespace thimble::gba
-
-#endif

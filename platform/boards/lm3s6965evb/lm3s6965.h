@@ -1,7 +1,5 @@
-/// @file lm3s6965.h
 /// Registers of the LM3S6965 that this board uses (Stellaris LM3S6965 data sheet).
-#ifndef THIMBLE_PLATFORM_BOARDS_LM3S6965_H
-#define THIMBLE_PLATFORM_BOARDS_LM3S6965_H
+#pragma once
 
 #include <stdint.h>
 
@@ -61,5 +59,3 @@ inline constexpr uintptr_t kSsiCpsr = 0x40008010;  ///< clock divider, even
 void start_display();
 
 }  // namespace thimble::lm3s6965
-
-#endif

@@ -1,8 +1,6 @@
-/// @file rp2040.h
 /// Registers of the RP2040 that its boards use (RP2040 Datasheet; the sections are named beside them), and
 /// the pins that the carriers with a display share (Waveshare's wiki, Pico-LCD-1.3 and Pico-LCD-2).
-#ifndef THIMBLE_PLATFORM_CHIPS_RP2040_H
-#define THIMBLE_PLATFORM_CHIPS_RP2040_H
+#pragma once
 
 #include <stdint.h>
 
@@ -134,5 +132,3 @@ Span<const Key> keys();
 void start_display();
 
 }  // namespace thimble::rp2040
-
-#endif

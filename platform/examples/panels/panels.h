@@ -1,8 +1,6 @@
-/// @file panels.h
 /// What the example wants of the board: bytes to panel 0, an SSD1306, and panel 1, an ST7789. Over SPI: chip select and
 /// D/C low for commands, D/C high for data, out with the bytes. src/drivers/README.md has one in ten lines.
-#ifndef THIMBLE_EXAMPLES_PANELS_H
-#define THIMBLE_EXAMPLES_PANELS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -12,5 +10,3 @@ extern "C" bool panel_data(int panel, const uint8_t* bytes, size_t count);
 extern "C" void panel_wait(uint32_t milliseconds);
 /// The pictures are complete.
 extern "C" void panel_done();
-
-#endif

@@ -1,7 +1,6 @@
 // Makes the kernels' text C++: the types and functions of GLSL that it uses. Every read of a buffer is checked: outside
 // it is 0, as robust buffer access allows, and counted.
-#ifndef THIMBLE_PLATFORM_GPU_KERNEL_CPP_H
-#define THIMBLE_PLATFORM_GPU_KERNEL_CPP_H
+#pragma once
 
 #include <bit>
 #include <cstdint>
@@ -60,5 +59,3 @@ struct Buffers {
 };
 
 }  // namespace thimble::gpu::kernel
-
-#endif

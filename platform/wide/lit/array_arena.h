@@ -1,7 +1,5 @@
-/// @file array_arena.h
 /// Arrays from bytes that the caller gave.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_ARRAY_ARENA_H
-#define THIMBLE_PLATFORM_WIDE_LIT_ARRAY_ARENA_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -58,5 +56,3 @@ class ArrayArena {
 };
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,8 +1,6 @@
-/// @file face_lights.h
 /// Finds the light on many faces at once: ambient light, occlusion, suns and lamps, with shadows, also through what
 /// is clear and under water. It is what lit::face_color finds for one face; slopes are not handled here.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_FACE_LIGHTS_H
-#define THIMBLE_PLATFORM_WIDE_LIT_FACE_LIGHTS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -123,5 +121,3 @@ class FaceLights {
 };
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,7 +1,5 @@
-/// @file kernels.h
 /// The loops of lit pictures. They are compiled for several instruction sets, as those of wide/raster/kernels.h.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_KERNELS_H
-#define THIMBLE_PLATFORM_WIDE_LIT_KERNELS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -46,5 +44,3 @@ inline constexpr size_t kTurnLanes = 16;
 void turn_words(uint16_t (*words)[kTurnLanes]);
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,11 +1,9 @@
-/// @file lit_renderer.h
 /// Draws the core's lit picture faster: it traces rays in streams, many at a time (rays/ray_map.h), where the core
 /// traces one after another.
 ///
 /// Every pixel is the core's, for every instruction set and number of threads: the core's own code works out what a ray
 /// shows, from answers that it is given (light/host/asked.h), and each answer is the core's.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_LIT_RENDERER_H
-#define THIMBLE_PLATFORM_WIDE_LIT_LIT_RENDERER_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -55,5 +53,3 @@ Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& cam
                          const LitOptions& options = {});
 
 }  // namespace thimble::wide
-
-#endif

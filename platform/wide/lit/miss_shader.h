@@ -1,7 +1,5 @@
-/// @file miss_shader.h
 /// What rays show that leave the world: the sky, found in lanes, or the background.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_MISS_SHADER_H
-#define THIMBLE_PLATFORM_WIDE_LIT_MISS_SHADER_H
+#pragma once
 
 #include <stdint.h>
 
@@ -74,5 +72,3 @@ void MissShader::each_color(uint32_t count, const Give& give) const {
 }
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,11 +1,9 @@
-/// @file opaque_stream.h
 /// One thread's share of a lit picture in which each ray of a pixel ends where it first meets something:
 /// nothing is clear, nothing mirrors, and there is no water, slope, fog, depth cue, edge or ripple.
 ///
 /// Most pictures are like this. No pixel asks twice, so only its place is kept: the pixels of a share go through one
 /// short loop after another, and their rays through the map in between.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_OPAQUE_STREAM_H
-#define THIMBLE_PLATFORM_WIDE_LIT_OPAQUE_STREAM_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -78,5 +76,3 @@ class OpaqueStream {
 };
 
 }  // namespace thimble::wide
-
-#endif

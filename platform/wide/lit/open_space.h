@@ -1,8 +1,6 @@
-/// @file open_space.h
 /// Where rays of occlusion can meet nothing, so that none needs to be sent: before wide floors and walls, and on the
 /// side where a surface falls away.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_OPEN_SPACE_H
-#define THIMBLE_PLATFORM_WIDE_LIT_OPEN_SPACE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -38,5 +36,3 @@ class OpenSpace {
 };
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,7 +1,5 @@
-/// @file pixel_queue.h
 /// The pixels that threads draw together: each thread takes the next ones as long as there are any.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_PIXEL_QUEUE_H
-#define THIMBLE_PLATFORM_WIDE_LIT_PIXEL_QUEUE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -168,5 +166,3 @@ class PixelReader {
 };
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,7 +1,5 @@
-/// @file row_spans.h
 /// Which part of each row of a picture can show a box: all others are known to miss without their rays.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_ROW_SPANS_H
-#define THIMBLE_PLATFORM_WIDE_LIT_ROW_SPANS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -37,5 +35,3 @@ class RowSpans {
 };
 
 }  // namespace thimble::wide
-
-#endif

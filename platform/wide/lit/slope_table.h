@@ -1,4 +1,3 @@
-/// @file slope_table.h
 /// Finds slopes of surfaces for one thread: the core's lit::surface_normal, number by number. What the points of a face
 /// share is kept from one point to the next.
 ///
@@ -6,8 +5,7 @@
 /// it is a shell, and the window with the surface's edges cut off, for the way in which it was followed last. Each
 /// face has one place in the table, which it shares with other faces; the place holds the face that was looked up
 /// last.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_SLOPE_TABLE_H
-#define THIMBLE_PLATFORM_WIDE_LIT_SLOPE_TABLE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -68,5 +66,3 @@ class SlopeTable {
 };
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,7 +1,5 @@
-/// @file stream.h
 /// Draws one thread's share of a lit picture: keeps pixels under way, and the rays that they wait for.
-#ifndef THIMBLE_PLATFORM_WIDE_LIT_STREAM_H
-#define THIMBLE_PLATFORM_WIDE_LIT_STREAM_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -125,5 +123,3 @@ class Stream {
 };
 
 }  // namespace thimble::wide
-
-#endif

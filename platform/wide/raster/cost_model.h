@@ -1,7 +1,5 @@
-/// @file cost_model.h
 /// Guesses from a few cells of the tree which order of drawing its boxes takes less time.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_COST_MODEL_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_COST_MODEL_H
+#pragma once
 
 #include "wide/raster/frame.h"
 #include "wide/raster/voxel_lists.h"
@@ -38,5 +36,3 @@ CostEstimate estimate_cost(const VoxelLists& lists, const WideFrame& frame, bool
 bool boxes_pay(const CostEstimate& boxes, const CostEstimate& surface, bool perspective);
 
 }  // namespace thimble::wide
-
-#endif

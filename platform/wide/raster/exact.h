@@ -1,7 +1,5 @@
-/// @file exact.h
 /// Decides in integers, by the core's rule, whether a ray hits an entry; and says how entries are packed.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_EXACT_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_EXACT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -53,5 +51,3 @@ Meeting meet_exactly(const WideFrame& frame, int32_t x, int32_t y, uint32_t entr
                      uint32_t* key, uint32_t* down);
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,4 +1,3 @@
-/// @file frame.h
 /// The numbers with which a frame's boxes are projected and tested.
 ///
 /// A camera's rays are rounded affine functions of the pixel (thimble/picture/camera.h). Their inverse,
@@ -24,8 +23,7 @@
 /// Floating point adds to U.c, V.c and W.c an error of at most `kRounding` times the sum of the magnitudes that went
 /// in; `reach` is widened by that. So floats decide only which pixels are looked at: a superset. The ray's own
 /// integers decide whether it hits a box (kernels/judge-inl.h, exact.h).
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_FRAME_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_FRAME_H
+#pragma once
 
 #include <stdint.h>
 
@@ -107,5 +105,3 @@ struct WideFrame {
 bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame);
 
 }  // namespace thimble::wide
-
-#endif

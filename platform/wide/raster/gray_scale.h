@@ -1,7 +1,5 @@
-/// @file gray_scale.h
 /// The numbers with which the kernels find greys (ShadeMode::kDepth) or faces, from where rays enter their boxes.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_GRAY_SCALE_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_GRAY_SCALE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -63,5 +61,3 @@ uint8_t code_exactly(const Camera& camera, const Shading& shading, GrayScale::Co
                      uint32_t entry, const uint32_t (&cube)[3]);
 
 }  // namespace thimble::wide
-
-#endif

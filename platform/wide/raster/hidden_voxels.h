@@ -1,4 +1,3 @@
-/// @file hidden_voxels.h
 /// Finds the hits on what lists of surfaces leave out: voxels with six solid neighbours. Rays can hit these all the
 /// same.
 ///
@@ -18,8 +17,7 @@
 /// For the same reasons a picture may leave out a voxel whose three neighbours on the sides that face the eye are
 /// solid: a ray that hits that voxel first comes through an edge or a corner, and T, which has a neighbour towards
 /// the eye that is not solid, is not left out.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_HIDDEN_VOXELS_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_HIDDEN_VOXELS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -69,5 +67,3 @@ SolidStarts find_solid_starts(const CompactTree& tree, const WideFrame& frame);
 void draw_plane_starts(const WideFrame& frame, const Depths& depths, int32_t y0, int32_t y1, Batch* batch);
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,4 +1,3 @@
-/// @file kernels.h
 /// The loops that run over boxes and pixels. They are compiled for several instruction sets, of which the
 /// program chooses one when it runs (Highway). Their sources stand in kernels/.
 ///
@@ -6,8 +5,7 @@
 /// that it might cover. A small rectangle becomes candidates: pairs of a box and a pixel, in a queue that is tested
 /// when it is full. A large rectangle is tested row by row at once. Last, a hit is written into the picture where it
 /// is nearer than what the picture holds.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_KERNELS_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_KERNELS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -260,5 +258,3 @@ int instruction_set_count();
 void use_instruction_set(int number);
 
 }  // namespace thimble::wide
-
-#endif

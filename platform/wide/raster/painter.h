@@ -1,7 +1,5 @@
-/// @file painter.h
 /// Paints the pixels of a tile by their nearest boxes, as the core would shade them.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_PAINTER_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_PAINTER_H
+#pragma once
 
 #include "thimble/picture/render.h"
 #include "wide/raster/kernels.h"
@@ -53,5 +51,3 @@ class TilePainter {
 };
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,7 +1,5 @@
-/// @file parallel_frame.h
 /// Draws a frame with several threads.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_PARALLEL_FRAME_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_PARALLEL_FRAME_H
+#pragma once
 
 #include "wide/raster/cost_model.h"
 #include "wide/raster/painter.h"
@@ -55,5 +53,3 @@ class ParallelFrame {
 };
 
 }  // namespace thimble::wide
-
-#endif

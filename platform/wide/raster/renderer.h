@@ -1,4 +1,3 @@
-/// @file renderer.h
 /// Draws the core's picture faster: it finds the pixels that each voxel covers, where the core finds the voxel that
 /// each ray hits.
 ///
@@ -10,8 +9,7 @@
 /// The core does not know of this renderer. It needs the voxel lists (voxel_lists.h), 8 1/8 bytes a pixel, as much
 /// again for each of two to four threads beyond the first, and 32 KiB a thread. Where the caller has less to give, or
 /// the camera is beyond what floats resolve, the core's own renderer is to draw the frame.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_RENDERER_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_RENDERER_H
+#pragma once
 
 #include "thimble/picture/render.h"
 #include "wide/raster/kernels.h"
@@ -58,5 +56,3 @@ Status render(const VoxelLists& lists, const Camera& camera, const Shading& shad
               Bytes workspace, RenderCounts* counts, const Options& options = {}, Stats* stats = nullptr);
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,4 +1,3 @@
-/// @file surface.h
 /// Counts, then writes, the list of a tree's surface: the voxels that have a neighbour which is not solid, in Morton
 /// order; and says what lists are made of.
 ///
@@ -6,8 +5,7 @@
 /// neighbours say which of its voxels are hidden; neighbours are looked up only where the word itself leaves that open.
 /// Solid blocks are cut only where one of their faces is not known to be covered, so the work grows with the surface,
 /// not with the volume.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_SURFACE_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_SURFACE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -58,5 +56,3 @@ void write_surface(const CompactTree& tree, const uint32_t* level_begin, const S
                    int block_level, const ListTo& to);
 
 }  // namespace thimble::wide
-
-#endif

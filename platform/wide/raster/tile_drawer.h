@@ -1,8 +1,6 @@
-/// @file tile_drawer.h
 /// Draws the boxes of one tile of the picture: walks the tree, skips blocks that cannot be seen, and hands
 /// runs of boxes to the kernels.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_TILE_DRAWER_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_TILE_DRAWER_H
+#pragma once
 
 #include <atomic>
 
@@ -110,5 +108,3 @@ class TileDrawer {
 };
 
 }  // namespace thimble::wide
-
-#endif

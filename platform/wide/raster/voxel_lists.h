@@ -1,4 +1,3 @@
-/// @file voxel_lists.h
 /// The boxes of a compact tree as flat lists in Morton order, which an object-order renderer reads.
 ///
 /// An entry is one solid box, packed into 32 bits:
@@ -19,8 +18,7 @@
 /// A node covers a run of entries. The lists keep the nodes of `block_level` and above with their runs, so that whole
 /// blocks can be skipped, or drawn front to back. A list of boxes has the tree's nodes; a list of a surface has nodes
 /// of its own, also within solid blocks, and only such as have entries.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_VOXEL_LISTS_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_VOXEL_LISTS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -123,5 +121,3 @@ class VoxelLists {
 };
 
 }  // namespace thimble::wide
-
-#endif

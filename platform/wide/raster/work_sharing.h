@@ -1,11 +1,9 @@
-/// @file work_sharing.h
 /// Decides which of several threads draws what: tiles while there are any, then parts of what other threads still
 /// have to draw.
 ///
 /// Nobody waits for a thread that has not started: each thread takes the next tile or a part, or leaves. A thread
 /// waits only while another one is drawing, and a thread that draws waits for nobody.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_WORK_SHARING_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_WORK_SHARING_H
+#pragma once
 
 #include <stdint.h>
 
@@ -80,5 +78,3 @@ class WorkSharing {
 };
 
 }  // namespace thimble::wide
-
-#endif

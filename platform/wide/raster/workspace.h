@@ -1,7 +1,5 @@
-/// @file workspace.h
 /// Lays out the workspace of one frame, pictures, patches and batches, and says which parts of a picture are covered.
-#ifndef THIMBLE_PLATFORM_WIDE_RASTER_WORKSPACE_H
-#define THIMBLE_PLATFORM_WIDE_RASTER_WORKSPACE_H
+#pragma once
 
 #include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
@@ -74,5 +72,3 @@ class Workspace {
 };
 
 }  // namespace thimble::wide
-
-#endif

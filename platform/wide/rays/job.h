@@ -1,7 +1,5 @@
-/// @file job.h
 /// What one call of ray_map.h asks of the vectors, and what these ask of plain code for a single ray.
-#ifndef THIMBLE_PLATFORM_WIDE_RAYS_JOB_H
-#define THIMBLE_PLATFORM_WIDE_RAYS_JOB_H
+#pragma once
 
 #include "wide/rays/ray_map.h"
 
@@ -46,5 +44,3 @@ void put_hit(Job* job, size_t ray, const Vec3i& cell, uint32_t visits);
 void put_no_exit(Job* job, size_t ray, uint32_t visits);
 
 }  // namespace thimble::wide
-
-#endif

@@ -1,7 +1,5 @@
-/// @file leaf_tag.h
 /// Says in a word where the tree keeps the materials of a leaf's voxels, so that nobody walks down the tree for them.
-#ifndef THIMBLE_PLATFORM_WIDE_RAYS_LEAF_TAG_H
-#define THIMBLE_PLATFORM_WIDE_RAYS_LEAF_TAG_H
+#pragma once
 
 #include <stdint.h>
 
@@ -62,5 +60,3 @@ struct LeafOrder {
 inline constexpr LeafOrder kLeafOrder;
 
 }  // namespace thimble::wide
-
-#endif

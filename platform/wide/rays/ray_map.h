@@ -1,4 +1,3 @@
-/// @file ray_map.h
 /// Traces many rays at a time through one compact tree: shadows, occlusion, mirrors, rays from files.
 ///
 /// Vectors of rays walk through a map of the tree, which is made once (README.md beside this file). Every answer is the
@@ -7,8 +6,7 @@
 ///
 /// Everything here is const and reentrant: any number of threads may trace through one map, each a share of
 /// the rays. Nothing is allocated; a call takes less than 64 KiB of stack.
-#ifndef THIMBLE_PLATFORM_WIDE_RAYS_RAY_MAP_H
-#define THIMBLE_PLATFORM_WIDE_RAYS_RAY_MAP_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -132,5 +130,3 @@ Status first_change(const RayMap& map, Span<const Ray> rays, Span<const RayPoint
                     Span<const uint16_t> in, Span<MediumExit> exits);
 
 }  // namespace thimble::wide
-
-#endif

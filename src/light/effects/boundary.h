@@ -1,7 +1,6 @@
 // What the boundaries of glass, water and ripples share: how light is split at a bent surface, and where the rays that
 // leave it begin. Internal to the effects.
-#ifndef THIMBLE_SRC_LIGHT_EFFECTS_BOUNDARY_H
-#define THIMBLE_SRC_LIGHT_EFFECTS_BOUNDARY_H
+#pragma once
 
 #include "../arithmetic.h"
 #include "thimble/light/detail/pixel.h"
@@ -72,5 +71,3 @@ inline void send_share(Frame& frame, const PendingRay& from, LitRayKind kind, in
 }
 
 }  // namespace thimble::lit
-
-#endif

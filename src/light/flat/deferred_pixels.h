@@ -1,7 +1,6 @@
 // How far a band is drawn, and the deferred pixels of a tile: ties for the tree, notes for secondary rays in water. Internal
 // to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_DEFERRED_PIXELS_H
-#define THIMBLE_SRC_LIGHT_FLAT_DEFERRED_PIXELS_H
+#pragma once
 
 #include "../../base/choose.h"
 #include "../../picture/bricks/sight.h"
@@ -63,5 +62,3 @@ using ProgressOf = Choose<kIsWet<kSet>, WetProgress, FlatProgress>;
 
 }  // namespace
 }  // namespace thimble::lit
-
-#endif

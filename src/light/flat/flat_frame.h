@@ -1,8 +1,7 @@
 // Draws lit frames by bricks: a pixel's light is that of its face and of the distant lights that reach it. Rays of the
 // camera and to the lights go through the map; colours are looked up. Where a set has occlusion or lamps, each point
 // gathers its light by rays of its own (point_lighting.h). ../README.md derives what is used. For flat.cpp alone.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_FLAT_FRAME_H
-#define THIMBLE_SRC_LIGHT_FLAT_FLAT_FRAME_H
+#pragma once
 
 #include "../../picture/panels.h"
 #include "../arithmetic.h"
@@ -762,5 +761,3 @@ Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, 
 }
 
 }  // namespace thimble::lit
-
-#endif

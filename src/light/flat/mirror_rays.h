@@ -1,7 +1,6 @@
 // Secondary rays of metals through the map: from a point on one to what it mirrors, and from there to the next where that
 // is a metal, too. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_MIRROR_RAYS_H
-#define THIMBLE_SRC_LIGHT_FLAT_MIRROR_RAYS_H
+#pragma once
 
 #include "point_lighting.h"
 
@@ -117,5 +116,3 @@ class MirrorRays<kSet, Sink, true> {
 
 }  // namespace
 }  // namespace thimble::lit
-
-#endif

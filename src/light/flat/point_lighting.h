@@ -1,6 +1,5 @@
 // The light of a point by secondary rays through the map: occlusion, and lamps with their shadows. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_POINT_LIGHTING_H
-#define THIMBLE_SRC_LIGHT_FLAT_POINT_LIGHTING_H
+#pragma once
 
 #include "../../picture/bricks/near.h"
 #include "../arithmetic.h"
@@ -234,5 +233,3 @@ class PointLighting<kSet, kSecondary, true> : protected SunDirections<kIsWet<kSe
 
 }  // namespace
 }  // namespace thimble::lit
-
-#endif

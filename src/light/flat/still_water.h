@@ -1,8 +1,7 @@
 // Water that does not move, for rays in a world that has a brick map: a box. In such worlds coordinates have 16 bits, rays
 // from a hit have directions of 15, and those of the camera are within `draws_fast`; so a distance times a direction stays
 // below 2^31, and nothing here has more than 32 bits. What is met, and where, is what water.h says. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_STILL_WATER_H
-#define THIMBLE_SRC_LIGHT_FLAT_STILL_WATER_H
+#pragma once
 
 #include "../../base/integers.h"
 #include "thimble/light/water.h"
@@ -130,5 +129,3 @@ class StillWater {
 
 }  // namespace
 }  // namespace thimble::lit
-
-#endif

@@ -1,6 +1,5 @@
 // Colours as they are stored, and the dither. Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_STORED_COLORS_H
-#define THIMBLE_SRC_LIGHT_FLAT_STORED_COLORS_H
+#pragma once
 
 #include "../../picture/panels.h"
 #include "../exposure.h"
@@ -48,5 +47,3 @@ struct FlatInk {
 
 }  // namespace
 }  // namespace thimble::lit
-
-#endif

@@ -1,7 +1,6 @@
 // Secondary rays in water and through it: the loop of the tree's own pixels (pixel.h), traced through the map.
 // Internal to src/.
-#ifndef THIMBLE_SRC_LIGHT_FLAT_WATER_RAYS_H
-#define THIMBLE_SRC_LIGHT_FLAT_WATER_RAYS_H
+#pragma once
 
 #include "deferred_pixels.h"
 #include "mirror_rays.h"
@@ -263,5 +262,3 @@ class WaterRays<kSet, Sink, true, true> {
 
 }  // namespace
 }  // namespace thimble::lit
-
-#endif

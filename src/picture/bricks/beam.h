@@ -1,7 +1,6 @@
 // Treats all rays of a tile at once: which way they go, and the first slab of voxels in which one of them may meet
 // something. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
-#define THIMBLE_SRC_PICTURE_BRICKS_BEAM_H
+#pragma once
 
 #include "../../base/ranges.h"
 #include "../../base/wide_arithmetic.h"
@@ -314,5 +313,3 @@ int32_t first_slab_along(Course& course, const Fan& fan, int32_t slab) {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

@@ -11,8 +11,7 @@
 // When rest_a is positive the ray crosses a plane of a before that plane of c; when it is 0 it crosses both together.
 // When both rests are positive, comparing rest_a * d_b with rest_b * d_a says which plane comes first, since rest / d
 // is the time that is left.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_BRICK_RAY_H
-#define THIMBLE_SRC_PICTURE_BRICKS_BRICK_RAY_H
+#pragma once
 
 #include "../../base/ranges.h"
 #include "inks.h"
@@ -630,5 +629,3 @@ int32_t trace_by_signs(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

@@ -1,7 +1,6 @@
 // What the rays of one frame share, and what those share whose directions have the same signs and fastest axis.
 // Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_COURSE_H
-#define THIMBLE_SRC_PICTURE_BRICKS_COURSE_H
+#pragma once
 
 #include "layout.h"
 #include "thimble/picture/camera.h"
@@ -156,5 +155,3 @@ template <bool kDeep = false>
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

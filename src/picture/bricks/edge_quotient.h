@@ -1,6 +1,5 @@
 // Divides several numbers by one, roughly: where an edge crosses the rows of a tile. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_EDGE_QUOTIENT_H
-#define THIMBLE_SRC_PICTURE_BRICKS_EDGE_QUOTIENT_H
+#pragma once
 
 #include "../../base/bits.h"
 #include "../../base/wide_arithmetic.h"
@@ -64,5 +63,3 @@ class EdgeQuotient<false> {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

@@ -1,7 +1,6 @@
 // Finds the faces of a brick by which rays can enter, turned so that all rays go up on its axes a, b and c.
 // Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_EXPOSED_H
-#define THIMBLE_SRC_PICTURE_BRICKS_EXPOSED_H
+#pragma once
 
 #include "course.h"
 
@@ -110,5 +109,3 @@ template <bool kDeep>
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

@@ -5,8 +5,7 @@
 // of a and two of b. If the windows of all slabs are empty, the face is lit all over. If the window of a slab that
 // all rays cross from plane to plane is all solid, the face is dark all over. Else a point is dark where its ray
 // meets one of the solid voxels in the windows; three products tell for each voxel.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_FACE_LIGHT_H
-#define THIMBLE_SRC_PICTURE_BRICKS_FACE_LIGHT_H
+#pragma once
 
 #include "../../base/bits.h"
 #include "beam.h"
@@ -227,5 +226,3 @@ bool is_blocked(const ShadowCourse& course, const Blockers& blockers, const Face
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

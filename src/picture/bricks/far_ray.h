@@ -2,8 +2,7 @@
 //
 // The search for a tile's first slab ends where its beam is too wide. In thinned pictures (camera.thinned) that is far
 // from anything, and rays would go from voxel to voxel through empty bricks.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_FAR_RAY_H
-#define THIMBLE_SRC_PICTURE_BRICKS_FAR_RAY_H
+#pragma once
 
 #include "../../base/wide_arithmetic.h"
 #include "course.h"
@@ -109,5 +108,3 @@ struct FarPlace {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

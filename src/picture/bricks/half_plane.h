@@ -4,8 +4,7 @@
 // of i before plane J of j where f = s_j d_i - s_i d_j is positive. Directions are an affine function of the
 // pixel, rounded, so f is within (s_i + s_j) / 2 of an affine function F: the pixels where F is above that
 // bound are certain, those within it on either side are open, and their own rays decide.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_HALF_PLANE_H
-#define THIMBLE_SRC_PICTURE_BRICKS_HALF_PLANE_H
+#pragma once
 
 #include "../../base/bits.h"
 #include "../../base/choose.h"
@@ -239,5 +238,3 @@ template <bool kDeep>
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

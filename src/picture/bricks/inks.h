@@ -1,6 +1,5 @@
 // Inks are colours as a frame's format stores them; those that were looked up lately are kept. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_INKS_H
-#define THIMBLE_SRC_PICTURE_BRICKS_INKS_H
+#pragma once
 
 #include "../panels.h"
 #include "course.h"
@@ -142,5 +141,3 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

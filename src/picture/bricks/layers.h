@@ -1,6 +1,5 @@
 // Takes a ray through empty bricks a layer at a time. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_LAYERS_H
-#define THIMBLE_SRC_PICTURE_BRICKS_LAYERS_H
+#pragma once
 
 #include "layout.h"
 
@@ -125,5 +124,3 @@ template <class OneCourse>
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

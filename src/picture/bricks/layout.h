@@ -1,6 +1,5 @@
 // How voxels lie in the bricks of a map, and how a ray counts its way from brick to brick. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_LAYOUT_H
-#define THIMBLE_SRC_PICTURE_BRICKS_LAYOUT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -123,5 +122,3 @@ constexpr bool kFastRam = false;
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

@@ -1,7 +1,6 @@
 // Rays from a point on a face into any direction: those that end at a given distance, at a lamp or where occlusion ends,
 // and those that show what a mirror shows. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_NEAR_H
-#define THIMBLE_SRC_PICTURE_BRICKS_NEAR_H
+#pragma once
 
 #include "sight.h"
 
@@ -261,5 +260,3 @@ class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

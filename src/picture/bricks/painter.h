@@ -1,6 +1,5 @@
 // Paints a band: finds the ink of each ray and stores it. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_PAINTER_H
-#define THIMBLE_SRC_PICTURE_BRICKS_PAINTER_H
+#pragma once
 
 #include "brick_ray.h"
 #include "far_ray.h"
@@ -278,5 +277,3 @@ class BrickPainter : public TilePainter<OneCourse, BrickPainter<OneCourse>> {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

@@ -1,6 +1,5 @@
 // Where across a face a ray lands. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_PLACE_ACROSS_H
-#define THIMBLE_SRC_PICTURE_BRICKS_PLACE_ACROSS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -39,5 +38,3 @@ template <bool kByDivider>
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

@@ -1,6 +1,5 @@
 // Rays from a point on a face towards a distant light. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_SHADOW_H
-#define THIMBLE_SRC_PICTURE_BRICKS_SHADOW_H
+#pragma once
 
 #include "brick_ray.h"
 
@@ -137,5 +136,3 @@ bool is_shadowed(const ShadowCourse& course, const FacePoint& point) {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

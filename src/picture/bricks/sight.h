@@ -3,8 +3,7 @@
 //
 // BrickRay walks with signs that it looks up, so that there are three copies of it and not 24. What a ray hits through
 // an edge is left to the tree, which knows which face counts and of which voxel.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_SIGHT_H
-#define THIMBLE_SRC_PICTURE_BRICKS_SIGHT_H
+#pragma once
 
 #include "place_across.h"
 #include "shadow.h"
@@ -265,5 +264,3 @@ class SightPainter : public TilePainter<SightCourse, SightPainter<Sink>> {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

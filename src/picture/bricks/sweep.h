@@ -1,7 +1,6 @@
 // Draws a tile face by face, nearest faces first: for pictures in which a face covers several pixels. Internal to src/;
 // src/picture/BRICKS.md derives it.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
-#define THIMBLE_SRC_PICTURE_BRICKS_SWEEP_H
+#pragma once
 
 #include "../../base/bits.h"
 #include "beam.h"
@@ -790,5 +789,3 @@ bool touches_solid(const BrickFrame& frame) {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

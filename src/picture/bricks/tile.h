@@ -1,6 +1,5 @@
 // The tiles and quads that a band is drawn by. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_TILE_H
-#define THIMBLE_SRC_PICTURE_BRICKS_TILE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -35,5 +34,3 @@ unsigned signs_of(const Vec3i& d) {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

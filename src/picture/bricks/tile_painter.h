@@ -1,7 +1,6 @@
 // Draws a band tile by tile: sweeps a tile where that pays, else follows its beam to the first slab that is not empty, and
 // from there has the rays of the tile's quads traced. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_TILE_PAINTER_H
-#define THIMBLE_SRC_PICTURE_BRICKS_TILE_PAINTER_H
+#pragma once
 
 #include "beam.h"
 #include "sweep.h"
@@ -195,5 +194,3 @@ class TilePainter {
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

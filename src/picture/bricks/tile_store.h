@@ -1,6 +1,5 @@
 // Stores one ink in the pixels of a tile that a mask selects. Internal to src/.
-#ifndef THIMBLE_SRC_PICTURE_BRICKS_TILE_STORE_H
-#define THIMBLE_SRC_PICTURE_BRICKS_TILE_STORE_H
+#pragma once
 
 #include "half_plane.h"
 #include "inks.h"
@@ -154,5 +153,3 @@ template <class Pixel>
 
 }  // namespace
 }  // namespace thimble::bricks
-
-#endif

@@ -1,4 +1,3 @@
-/// @file blocks-inl.h
 /// Finds which children of a block may be seen.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_BLOCKS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_BLOCKS_INL_H_

@@ -1,4 +1,3 @@
-/// @file colors-inl.h
 /// Turns the codes of a finished picture into pixels of whole bytes.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_COLORS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_COLORS_INL_H_

@@ -1,4 +1,3 @@
-/// @file covered-inl.h
 /// Reads the finished picture: which pixels are covered, and what they hold. Merges two pictures.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_COVERED_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_COVERED_INL_H_

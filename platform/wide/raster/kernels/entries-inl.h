@@ -1,4 +1,3 @@
-/// @file entries-inl.h
 /// Finds exactly, in doubles, where rays enter the boxes that they hit.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_ENTRIES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_ENTRIES_INL_H_

@@ -1,4 +1,3 @@
-/// @file finish-inl.h
 /// Finds the greys and faces of covered pixels.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_FINISH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_FINISH_INL_H_

@@ -1,4 +1,3 @@
-/// @file grays-inl.h
 /// Finds the greys of boxes that are hit: in floats where their error bound proves the grey, else exactly, in doubles.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_GRAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_GRAYS_INL_H_

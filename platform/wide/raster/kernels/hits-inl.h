@@ -1,4 +1,3 @@
-/// @file hits-inl.h
 /// Writes hits into the picture where they are nearer than what it holds.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_HITS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_HITS_INL_H_

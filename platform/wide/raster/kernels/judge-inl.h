@@ -1,4 +1,3 @@
-/// @file judge-inl.h
 /// Decides whether rays meet boxes, in floats where their error bound proves the answer.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_JUDGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_JUDGE_INL_H_

@@ -1,4 +1,3 @@
-/// @file lanes-inl.h
 /// Vectors of numbers, and functions on them that all kernels use.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_LANES_INL_H_

@@ -1,4 +1,3 @@
-/// @file large-inl.h
 /// Draws boxes that cover many pixels, row by row.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_LARGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_LARGE_INL_H_

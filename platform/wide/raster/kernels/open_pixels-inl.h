@@ -1,4 +1,3 @@
-/// @file open_pixels-inl.h
 /// Tables that tell which pixels are open: not covered by anything drawn so far.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_OPEN_PIXELS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_OPEN_PIXELS_INL_H_

@@ -1,4 +1,3 @@
-/// @file pairs-inl.h
 /// Tests pairs of a box and a pixel: does the ray hit the box?
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_PAIRS_INL_H_

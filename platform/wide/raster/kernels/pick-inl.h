@@ -1,4 +1,3 @@
-/// @file pick-inl.h
 /// Picks the voxels that have open pixels, from blocks of small voxels that lie behind all that is drawn.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_PICK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_PICK_INL_H_

@@ -1,4 +1,3 @@
-/// @file project-inl.h
 /// Projects boxes to the rectangles of pixels that they might cover.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_PROJECT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_PROJECT_INL_H_

@@ -1,4 +1,3 @@
-/// @file queue-inl.h
 /// The queues: boxes wait to be paired with their pixels, and pairs wait for their test.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_QUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_QUEUE_INL_H_

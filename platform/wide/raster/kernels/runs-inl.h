@@ -1,4 +1,3 @@
-/// @file runs-inl.h
 /// Draws runs of boxes: in no order, from front to back, or only culled.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_RUNS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_RUNS_INL_H_

@@ -1,4 +1,3 @@
-/// @file scatter-inl.h
 /// Draws blocks of single voxels in no order.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_SCATTER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_SCATTER_INL_H_

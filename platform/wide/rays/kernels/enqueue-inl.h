@@ -1,4 +1,3 @@
-/// @file enqueue-inl.h
 /// Turns rays as they are given into columns of the queue: mirrored, clipped to the occupied box, biased.
 #if defined(THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RAYS_ENQUEUE_INL_H_

@@ -1,4 +1,3 @@
-/// @file ray_lanes-inl.h
 /// The state of rays under way, one in each lane, and the queue from which lanes are filled.
 #if defined(THIMBLE_WIDE_RAYS_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RAYS_LANES_INL_H_

@@ -1,4 +1,3 @@
-/// @file walk-inl.h
 /// Walks rays through the map from empty box to empty box.
 #if defined(THIMBLE_WIDE_RAYS_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RAYS_WALK_INL_H_
