@@ -199,6 +199,21 @@ bool BitField::first(const CellBox& box, Vec2i* at) const {
   return false;
 }
 
+bool BitField::first_from_right(const CellBox& box, Vec2i* at) const {
+  const CellBox inside = clipped(box, width_, height_);
+  const Columns columns(inside);
+  for (int32_t y = inside.low.y; y < inside.high.y; ++y) {
+    for (int32_t column = columns.last(); column >= columns.first(); --column) {
+      const uint32_t found = cells_32(column, y) & columns.mask(column);
+      if (found != 0) {
+        *at = {32 * column + bits::highest_bit(found), y};
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 void BitField::set(const DiscStamp& disc, Vec2i corner) {
   for_each_row(disc, corner, width_, height_, [this](const CellBox& span) {
     set(span);

@@ -40,6 +40,7 @@ void use(OddValues& odd, BitField& field) {
       break;
     case 2:
       CHECK(field.first(box, &at) == field.any(box));
+      (void)field.first_from_right(box, &at);
       break;
     default:
       // Only the squares of discs that meet the field take time; a disc of 16,384 rows beside it takes them

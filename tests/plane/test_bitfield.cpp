@@ -301,6 +301,7 @@ TEST_CASE("a field without cells: everything is called -> nothing is there, noth
     CHECK(!field.test({0, 0}));
     CHECK(!field.any(CellBox{{-9, -9}, {9, 9}}));
     CHECK(!field.first(CellBox{{-9, -9}, {9, 9}}, &found));
+    CHECK(!field.first_from_right(CellBox{{-9, -9}, {9, 9}}, &found));
     CHECK(!field.any(disc, {-2, -2}));
     CHECK(field.count() == 0);
     CHECK(field.count(disc, {-2, -2}) == 0);
@@ -356,6 +357,12 @@ TEST_CASE(
       CHECK(both.field.count(asked) == count);
       CHECK(both.field.any(asked) == (count != 0));
       CHECK(first_of(both.field, asked) == both.first(asked_cells));
+      Cells from_right = asked_cells;
+      std::stable_sort(from_right.begin(), from_right.end(),
+                       [](const Vec2i& a, const Vec2i& b) { return a.y != b.y ? a.y < b.y : a.x > b.x; });
+      Vec2i found = BitField::kNowhere;
+      CHECK(both.field.first_from_right(asked, &found) == (count != 0));
+      CHECK(found == both.first(from_right));
 
       std::uint32_t window = 0;
       const Vec2i corner{static_cast<int>(pick(random, -70, width + 40)), edge(height)};

@@ -46,10 +46,13 @@ void boxes(Check& check, int /*index*/) {
     const CellBox asked = random_box(&random);
     uint32_t count = 0;
     Vec2i first{-1, -1};
+    Vec2i last{-1, -1};
     for (int32_t y = asked.low.y; y < asked.high.y; ++y) {
       for (int32_t x = asked.low.x; x < asked.high.x; ++x) {
         if (field.test({x, y})) {
           first = count == 0 ? Vec2i{x, y} : first;
+          // From the right: the first row that has any, its last cell.
+          last = count == 0 || y == last.y ? Vec2i{x, y} : last;
           ++count;
         }
       }
@@ -59,6 +62,9 @@ void boxes(Check& check, int /*index*/) {
     Vec2i at{-1, -1};
     THIMBLE_EQUAL(field.first(asked, &at), count != 0);
     THIMBLE_CHECK(count == 0 || at == first);
+    at = {-1, -1};
+    THIMBLE_EQUAL(field.first_from_right(asked, &at), count != 0);
+    THIMBLE_CHECK(count == 0 || at == last);
     check.note(field.window(asked.low.x, asked.low.y));
   }
   note_field(check, field);

@@ -290,6 +290,8 @@ class BitField {
   /// The first set cell of the box in reading order (least y, then least x). False, and `at` untouched, when
   /// there is none.
   bool first(const CellBox& box, Vec2i* at) const;
+  /// The same with the order of each row turned around: least y, then greatest x.
+  bool first_from_right(const CellBox& box, Vec2i* at) const;
 
   // --- Discs, clipped at the edges; `corner` may be anything. Cost: the words of each row, which are one or
   // two for diameters up to 32.
