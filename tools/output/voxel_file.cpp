@@ -340,19 +340,11 @@ std::optional<VoxelFormat> voxel_format(std::string_view path) {
 void write_voxels(OutputFile* file, VoxelFormat format, const CompactTree& tree, const Palette& palette,
                   bool has_colors, const Progress& progress) {
   Writer to(file);
-  switch (format) {
-    case VoxelFormat::kVox:
-      write_vox(&to, tree, palette, progress);
-      break;
-    case VoxelFormat::kNpy:
-      write_npy(&to, tree, palette, has_colors, progress);
-      break;
-    case VoxelFormat::kPly:
-      write_ply(&to, tree, palette, has_colors, progress);
-      break;
-    case VoxelFormat::kCsv:
-      write_csv(&to, tree, palette, has_colors, progress);
-      break;
+  if (format == VoxelFormat::kVox) {
+    write_vox(&to, tree, palette, progress);
+  } else {
+    constexpr std::array kWriters{write_npy, write_ply, write_csv};  // in the order of `VoxelFormat`
+    kWriters[static_cast<std::size_t>(format) - 1](&to, tree, palette, has_colors, progress);
   }
   to.end();
 }

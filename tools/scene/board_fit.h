@@ -4,6 +4,7 @@
 #define THIMBLE_TOOLS_SCENE_BOARD_FIT_H
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 
@@ -80,37 +81,11 @@ inline std::uint64_t drawing_ram_bytes(const platform::BoardFacts& board, Effect
 
 /// "gray4", as board.cmake has it.
 inline const char* format_name(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kMono1:
-      return "mono1";
-    case PixelFormat::kGray4:
-      return "gray4";
-    case PixelFormat::kGray8:
-      return "gray8";
-    case PixelFormat::kRgb565:
-      return "rgb565";
-    case PixelFormat::kRgb888:
-      return "rgb888";
-    case PixelFormat::kRgb565Be:
-      return "rgb565_be";
-    case PixelFormat::kBgr565:
-      return "bgr565";
-    case PixelFormat::kRgb444:
-      return "rgb444";
-    case PixelFormat::kMono1Pages:
-      return "mono1_pages";
-    case PixelFormat::kGray4Low:
-      return "gray4_low";
-    case PixelFormat::kGray2:
-      return "gray2";
-    case PixelFormat::kPaper3:
-      return "paper3";
-    case PixelFormat::kPaper7:
-      return "paper7";
-    case PixelFormat::kRgb332:
-      return "rgb332";
-  }
-  return "unknown";
+  constexpr std::array kNames{"mono1",     "gray4",  "gray8",  "rgb565",      "rgb888",
+                              "rgb565_be", "bgr565", "rgb444", "mono1_pages", "gray4_low",
+                              "gray2",     "paper3", "paper7", "rgb332"};  // in their order
+  static_assert(kNames.size() == static_cast<std::size_t>(PixelFormat::kRgb332) + 1);
+  return kNames[static_cast<std::size_t>(format)];
 }
 
 }  // namespace thimble::tools

@@ -21,8 +21,6 @@
 
 namespace thimble::tools {
 
-// Builds what is traced, from a stream of voxels, in the memory of an arena and nowhere else.
-
 // A scene's voxels as rays are traced through them, in one of three structures.
 
 /// Only the member that `kind` names counts. Its bytes are an arena's.
@@ -32,32 +30,12 @@ struct Structure {
   Octree pool;
   CompactTree compact;
 
-  int level() const;
-  /// A box that holds everything solid.
-  VoxelBox bounds() const;
-  /// Solid volume in voxels.
-  std::uint64_t voxels() const;
-  /// 0 for a dense grid.
-  std::uint64_t nodes() const;
-  std::uint64_t bytes() const;
-
-  Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;
-  Status render_band(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
-                     const TraceOptions& options) const;
-
- private:
   /// Calls `visit` with the one that is traced.
   template <class Visit>
   auto with_traced(const Visit& visit) const {
-    switch (kind) {
-      case StructureKind::kDense:
-        return visit(dense);
-      case StructureKind::kPool:
-        return visit(pool);
-      case StructureKind::kCompact:
-        break;
-    }
-    return visit(compact);
+    return kind == StructureKind::kDense  ? visit(dense)
+           : kind == StructureKind::kPool ? visit(pool)
+                                          : visit(compact);
   }
 };
 
@@ -114,8 +92,6 @@ class StructureBuilder {
   std::uint64_t least_bytes_ = 0;
 };
 
-class SceneSource;
-
 struct BuildOptions {
   StructureKind structure = StructureKind::kCompact;
   std::optional<std::uint64_t> memory_bytes;          ///< --memory: everything between reader and display
@@ -142,16 +118,22 @@ class BuiltScene {
   const Structure& traced() const { return traced_; }
   /// Those that it was built with.
   int threads() const { return options_.threads; }
-  int level() const { return traced_.level(); }
+  int level() const {
+    return traced_.with_traced([](const auto& traced) { return traced.level(); });
+  }
   /// A box that holds everything solid.
-  VoxelBox bounds() const { return traced_.bounds(); }
+  VoxelBox bounds() const {
+    return traced_.with_traced([](const auto& traced) -> VoxelBox { return traced.bounds(); });
+  }
   /// Solid volume in voxels.
-  std::uint64_t voxels() const { return traced_.voxels(); }
+  std::uint64_t voxels() const;
   /// Voxels that coarsening added: the solid volume less the source's different voxels.
   std::uint64_t solid_added() const { return solid_added_; }
   /// Nodes of the structure that is traced; 0 for a dense grid.
-  std::uint64_t nodes() const { return traced_.nodes(); }
-  std::uint64_t tree_bytes() const { return traced_.bytes(); }
+  std::uint64_t nodes() const {
+    return structure() == StructureKind::kPool ? traced_.pool.nodes_used() : compact().node_count();
+  }
+  std::uint64_t tree_bytes() const;
   /// --memory, or what was used at most where none was given.
   std::uint64_t budget_bytes() const { return options_.memory_bytes.value_or(high_water_bytes()); }
   /// The most of the arena that was in use.
@@ -167,11 +149,14 @@ class BuiltScene {
   const CompactTree& compact() const { return traced_.compact; }
 
   Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const {
-    return traced_.closest_hit(ray, hit, options);
+    return traced_.with_traced(
+        [&](const auto& traced) { return thimble::closest_hit(traced, ray, hit, options); });
   }
   Status render_band(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
                      const TraceOptions& options) const {
-    return traced_.render_band(camera, shading, band, counts, options);
+    return traced_.with_traced([&](const auto& traced) {
+      return thimble::render_band(traced, camera, shading, band, counts, options);
+    });
   }
 
  private:

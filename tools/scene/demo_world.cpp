@@ -58,18 +58,6 @@ std::int32_t noise(std::uint64_t seed, std::int32_t x, std::int32_t y, std::int3
   return (low * (256 - up) + high * up) / 32768 - 255;
 }
 
-/// The largest whole number whose square is not above `value`.
-std::int32_t root(std::int64_t value) {
-  std::int64_t result = 0;
-  for (std::int64_t bit = std::int64_t{1} << 16; bit != 0; bit >>= 1) {
-    const std::int64_t tried = result | bit;
-    if (tried * tried <= value) {
-      result = tried;
-    }
-  }
-  return static_cast<std::int32_t>(result);
-}
-
 struct ProfilePoint {
   std::int32_t distance, height;  ///< in units
 };
@@ -106,13 +94,17 @@ std::int32_t snapped(std::int32_t place, std::int32_t units) {
   return place - place % side + side / 2;
 }
 
+std::int32_t distance_of(std::int32_t dx, std::int32_t dy) {
+  return static_cast<std::int32_t>(
+      integer_sqrt(static_cast<std::uint64_t>(std::int64_t{dx} * dx + std::int64_t{dy} * dy)));
+}
+
 std::int32_t valley(std::uint64_t seed, std::int32_t x, std::int32_t y) {
   const std::int32_t dx = x - kMiddle;
   const std::int32_t dy = y - kMiddle;
-  const std::int32_t distance = root(std::int64_t{dx} * dx + std::int64_t{dy} * dy);
   const std::int32_t coarse = noise(seed, x, y, 12 * kUnit);
   const std::int32_t fine = noise(seed + 1, x, y, 5 * kUnit);
-  std::int32_t height = profile(kValley, distance + coarse * 2 + fine / 2);
+  std::int32_t height = profile(kValley, distance_of(dx, dy) + coarse * 2 + fine / 2);
   if (height > kTerraceTop) {
     height += (height - kTerraceTop) / 256 * (coarse * 3 + fine) / 8;
   }
@@ -130,9 +122,7 @@ std::int32_t ground_height(std::uint64_t seed, std::int32_t x, std::int32_t y) {
   if (height > kTerraceTop) {
     height -= height % (4 * kUnit);
   } else {
-    const std::int32_t dx = x - kMiddle;
-    const std::int32_t dy = y - kMiddle;
-    const std::int32_t distance = root(std::int64_t{dx} * dx + std::int64_t{dy} * dy);
+    const std::int32_t distance = distance_of(x - kMiddle, y - kMiddle);
     height = std::min(valley(seed, x, y), kTerraceTop);
     height = std::max(height, profile(kCrag, distance + noise(seed + 1, x, y, 5 * kUnit) / 2));
     height -= height % (2 * kUnit) - kUnit;
@@ -449,12 +439,6 @@ class DemoWorld {
   std::size_t count_ = 0;
 };
 
-Material diffuse(Rgb color) {
-  Material material;
-  material.color = color;
-  return material;
-}
-
 }  // namespace
 
 void generate_demo_world(std::uint64_t seed, int depth, const VoxelSink& sink) {
@@ -477,18 +461,18 @@ void generate_demo_world(std::uint64_t seed, int depth, const VoxelSink& sink) {
 Palette demo_world_palette() {
   Palette palette;
   palette.fill(default_material());
-  palette[kWater] = diffuse({38, 84, 128});
-  palette[kSand] = diffuse({214, 190, 138});
-  palette[kGrass] = diffuse({104, 150, 62});
-  palette[kMeadow] = diffuse({136, 176, 76});
-  palette[kRock] = diffuse({128, 122, 118});
-  palette[kCliff] = diffuse({150, 138, 124});
-  palette[kSnow] = diffuse({244, 246, 250});
-  palette[kWall] = diffuse({236, 222, 192});
-  palette[kRoof] = diffuse({192, 68, 46});
-  palette[kLeaves] = diffuse({44, 102, 54});
-  palette[kWood] = diffuse({74, 52, 40});
-  palette[kRoad] = diffuse({186, 160, 120});
+  palette[kWater] = colored({38, 84, 128});
+  palette[kSand] = colored({214, 190, 138});
+  palette[kGrass] = colored({104, 150, 62});
+  palette[kMeadow] = colored({136, 176, 76});
+  palette[kRock] = colored({128, 122, 118});
+  palette[kCliff] = colored({150, 138, 124});
+  palette[kSnow] = colored({244, 246, 250});
+  palette[kWall] = colored({236, 222, 192});
+  palette[kRoof] = colored({192, 68, 46});
+  palette[kLeaves] = colored({44, 102, 54});
+  palette[kWood] = colored({74, 52, 40});
+  palette[kRoad] = colored({186, 160, 120});
   return palette;
 }
 
@@ -504,12 +488,7 @@ SceneCamera demo_world_camera(int depth) {
 void demo_world_light(LitDescription* lit) {
   // Over the viewer's left shoulder: the castle is bright, and the mountains' shadows lie on the lake. Bright
   // shadows, since half of a valley lies in them and a display has 16 greys.
-  Light sun;
-  sun.place = {8, -6, 17};
-  sun.color_q8[0] = 316;
-  sun.color_q8[1] = 304;
-  sun.color_q8[2] = 282;
-  lit->lights.push_back(sun);
+  lit->lights.push_back({false, {8, -6, 17}, {316, 304, 282}});
   lit->rest.ambient_q8[0] = 114;
   lit->rest.ambient_q8[1] = 122;
   lit->rest.ambient_q8[2] = 132;

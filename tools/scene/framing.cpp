@@ -521,23 +521,11 @@ PictureAxes::PictureAxes(const SceneCamera& camera) {
 
 ViewAngles angles_of(NamedView view) {
   constexpr double kIsometric = 35.264389682754654;  // the angle of a cube's diagonal and its faces
-  switch (view) {
-    case NamedView::kPaper:
-    case NamedView::kBest:
-    case NamedView::kIso:
-      return {-45, kIsometric};
-    case NamedView::kFront:
-      return {0, 0};
-    case NamedView::kBack:
-      return {180, 0};
-    case NamedView::kLeft:
-      return {-90, 0};
-    case NamedView::kRight:
-      return {90, 0};
-    case NamedView::kTop:
-      return {0, 90};
-  }
-  return {};
+  constexpr ViewAngles kSide{-45, kIsometric};
+  constexpr std::array<ViewAngles, 8> kAngles{
+      // in the order of `NamedView`
+      {kSide, kSide, kSide, {0, 0}, {180, 0}, {-90, 0}, {90, 0}, {0, 90}}};
+  return kAngles[static_cast<std::size_t>(view)];
 }
 
 Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -35,39 +36,26 @@ constexpr std::array<Name, 6> kGenerators{{{"points", GeneratorKind::kPoints},
 /// A whole number: decimal digits, or as in 1e6 and 2.5e6. Nothing for anything else, or too much for 64
 /// bits.
 std::optional<std::uint64_t> parse_number(const std::string& text) {
+  const auto whole = [](std::string_view digits) {
+    std::uint64_t value = 0;
+    const char* const end = digits.data() + digits.size();
+    const auto [next, error] = std::from_chars(digits.data(), end, value);
+    return error == std::errc{} && next == end ? std::optional(value) : std::nullopt;
+  };
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());
   const std::size_t point = std::min(text.find('.'), e);
-  const bool has_exponent = e < text.size();
+  if (e == text.size() || point == 0) {
+    return whole(text);
+  }
   std::string digits =
       text.substr(0, point) + text.substr(std::min(point + 1, e), e - std::min(point + 1, e));
-  if (point == 0 || (point < e && !has_exponent) ||
-      (has_exponent && (e + 1 == text.size() || e + 3 < text.size()))) {
-    return std::nullopt;
-  }
-  std::size_t exponent = 0;
-  for (std::size_t i = e + 1; i < text.size(); ++i) {
-    if (text[i] < '0' || text[i] > '9') {
-      return std::nullopt;
-    }
-    exponent = exponent * 10 + static_cast<std::size_t>(text[i] - '0');
-  }
+  const auto exponent = e + 3 < text.size() ? std::nullopt : whole(std::string_view(text).substr(e + 1));
   const std::size_t fraction = digits.size() - point;
-  if (exponent < fraction) {
+  if (!exponent || *exponent < fraction) {
     return std::nullopt;
   }
-  digits.append(exponent - fraction, '0');
-  std::uint64_t value = 0;
-  for (const char c : digits) {
-    if (c < '0' || c > '9') {
-      return std::nullopt;
-    }
-    const auto digit = static_cast<std::uint64_t>(c - '0');
-    if (value > (std::numeric_limits<std::uint64_t>::max() - digit) / 10) {
-      return std::nullopt;
-    }
-    value = value * 10 + digit;
-  }
-  return value;
+  digits.append(*exponent - fraction, '0');
+  return whole(digits);
 }
 
 std::uint64_t parse_in_range(const std::string& name, const std::string& text, std::uint64_t low,
@@ -106,20 +94,6 @@ void parse_options(const std::string& options, GeneratorSpec& spec) {
     }
     from = to + 1;
   }
-}
-
-/// The largest whole number whose square is not above `value`.
-std::uint64_t integer_sqrt(std::uint64_t value) {
-  // IEEE sqrt is rounded exactly, and the two corrections make the result independent of it.
-  auto root = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(value)));
-  root = std::min<std::uint64_t>(root, 0xFFFFFFFFU);
-  while (root * root > value) {
-    --root;
-  }
-  while (root < 0xFFFFFFFFU && (root + 1) * (root + 1) <= value) {
-    ++root;
-  }
-  return root;
 }
 
 std::int64_t square(std::int64_t value) {
@@ -428,13 +402,20 @@ void generate_water(const GeneratorSpec& spec, const VoxelSink& sink) {
   }
 }
 
-Material colored(Rgb color) {
-  Material material;
-  material.color = color;
-  return material;
-}
-
 }  // namespace
+
+std::uint64_t integer_sqrt(std::uint64_t value) {
+  // IEEE sqrt is rounded exactly, and the two corrections make the result independent of it.
+  auto root = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(value)));
+  root = std::min<std::uint64_t>(root, 0xFFFFFFFFU);
+  while (root * root > value) {
+    --root;
+  }
+  while (root < 0xFFFFFFFFU && (root + 1) * (root + 1) <= value) {
+    ++root;
+  }
+  return root;
+}
 
 int default_depth(GeneratorKind kind) {
   return kind == GeneratorKind::kPoints || kind == GeneratorKind::kCluster ? 10 : 6;
@@ -486,23 +467,12 @@ std::vector<std::string> generator_examples() {
 }
 
 void generate(const GeneratorSpec& spec, const VoxelSink& sink) {
-  switch (spec.kind) {
-    case GeneratorKind::kPoints:
-      generate_points(spec, sink);
-      break;
-    case GeneratorKind::kCluster:
-      generate_cluster(spec, sink);
-      break;
-    case GeneratorKind::kSpheres:
-      generate_spheres(spec, sink);
-      break;
-    case GeneratorKind::kWater:
-      generate_water(spec, sink);
-      break;
-    case GeneratorKind::kDemo:
-      generate_demo_world(spec.seed, spec.depth, sink);
-      break;
-  }
+  constexpr auto kDemo = [](const GeneratorSpec& demo, const VoxelSink& to) {
+    generate_demo_world(demo.seed, demo.depth, to);
+  };
+  constexpr std::array<void (*)(const GeneratorSpec&, const VoxelSink&), 5> kByKind{
+      generate_points, generate_cluster, generate_spheres, generate_water, kDemo};
+  kByKind[static_cast<std::size_t>(spec.kind)](spec, sink);
 }
 
 std::optional<SceneCamera> generator_camera(const GeneratorSpec& spec) {
@@ -575,12 +545,7 @@ LitDescription generator_lighting(const GeneratorSpec& spec) {
     return lit;
   }
   // From the left and over the viewer's shoulder: the island's shadow falls across the water.
-  Light sun;
-  sun.place = {-12, -7, 11};
-  sun.color_q8[0] = 300;
-  sun.color_q8[1] = 282;
-  sun.color_q8[2] = 246;
-  lit.lights.push_back(sun);
+  lit.lights.push_back({false, {-12, -7, 11}, {300, 282, 246}});
   lit.rest.has_shadows = true;
   lit.rest.has_sky = true;
   lit.rest.ambient_q8[0] = 92;

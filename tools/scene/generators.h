@@ -65,6 +65,9 @@ Palette generator_palette(GeneratorKind kind);
 /// What light does in the scene: `water` has its surface, a sun and a sky; the others only surfaces.
 LitDescription generator_lighting(const GeneratorSpec& spec);
 
+/// The largest whole number whose square is not above `value`.
+std::uint64_t integer_sqrt(std::uint64_t value);
+
 // The scene of the demonstration: a valley among mountains, a castle on a crag in a lake, a bridge, an
 // aqueduct, a village, a stone circle, trees and a boat.
 //

@@ -130,10 +130,14 @@ int square(int value) {
 
 }  // namespace
 
-Material default_material() {
+Material colored(Rgb color) {
   Material material;
-  material.color = {236, 236, 232};
+  material.color = color;
   return material;
+}
+
+Material default_material() {
+  return colored({236, 236, 232});
 }
 
 PaletteMap::PaletteMap(const ColorHistogram& histogram, double power) : table_(2 * kColorBins) {

@@ -29,6 +29,8 @@ constexpr std::size_t color_bin(Rgb color) {
   return (std::size_t{color.r} >> 3) << 10 | (std::size_t{color.g} >> 3) << 5 | std::size_t{color.b} >> 3;
 }
 
+/// A plain one.
+Material colored(Rgb color);
 /// What palette index 0 looks like.
 Material default_material();
 

@@ -23,21 +23,11 @@ Real3 real_of(const Vec3i& vector) {
   return {static_cast<double>(vector.x), static_cast<double>(vector.y), static_cast<double>(vector.z)};
 }
 
+// The actions from kFront on, as sides.
 NamedView side_of(Action view) {
-  switch (view) {
-    case Action::kFront:
-      return NamedView::kFront;
-    case Action::kBack:
-      return NamedView::kBack;
-    case Action::kLeft:
-      return NamedView::kLeft;
-    case Action::kRight:
-      return NamedView::kRight;
-    case Action::kTop:
-      return NamedView::kTop;
-    default:
-      return NamedView::kIso;
-  }
+  constexpr std::array kSides{NamedView::kFront, NamedView::kBack, NamedView::kLeft,
+                              NamedView::kRight, NamedView::kTop,  NamedView::kIso};
+  return kSides[static_cast<std::size_t>(view) - static_cast<std::size_t>(Action::kFront)];
 }
 
 }  // namespace

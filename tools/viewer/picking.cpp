@@ -9,19 +9,9 @@ namespace thimble::tools::viewer {
 namespace {
 
 const char* kind_name(SurfaceKind kind) {
-  switch (kind) {
-    case SurfaceKind::kDiffuse:
-      break;
-    case SurfaceKind::kMetal:
-      return " metal";
-    case SurfaceKind::kGlass:
-      return " glass";
-    case SurfaceKind::kEmit:
-      return " that glows";
-    case SurfaceKind::kMedia:
-      return " cloud";
-  }
-  return "";
+  constexpr std::array kNames{"", " metal", " glass", " that glows",
+                              " cloud"};  // in the order of `SurfaceKind`
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 const char* face_name(const Face& face) {
