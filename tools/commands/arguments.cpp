@@ -104,6 +104,20 @@ std::optional<double> parse_real(std::string_view text) {
   return number;
 }
 
+bool parse_reals(std::string_view text, std::span<double> numbers) {
+  for (double& number : numbers) {
+    const bool is_last = &number == &numbers.back();
+    const std::size_t comma = text.find(',');
+    const auto parsed = parse_real(text.substr(0, comma));
+    if (!parsed || (comma == std::string_view::npos) != is_last) {
+      return false;
+    }
+    number = *parsed;
+    text.remove_prefix(is_last ? 0 : comma + 1);
+  }
+  return true;
+}
+
 std::optional<std::pair<std::int32_t, std::int32_t>> parse_pair(std::string_view text, char between,
                                                                 std::int32_t low, std::int32_t most) {
   const std::size_t middle = text.find(between);
@@ -246,6 +260,22 @@ Option add_path_option(CLI::App& app, const std::string& name, const std::string
         return text.empty() ? "is not a file's name" : "";
       },
       help);
+}
+
+Option add_output_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                         std::string* path, bool (*takes)(const std::string& path), const char* endings,
+                         const std::string& help) {
+  return add_text_option(
+      app, name, type_name,
+      [=](const std::string& text) {
+        *path = text;
+        return takes(text) ? std::string() : std::string("does not end in ") + endings;
+      },
+      help);
+}
+
+bool names_y4m(const std::string& path) {
+  return path.size() > 4 && path.ends_with(".y4m");
 }
 
 void make_need(CLI::App& app, const std::string& name, const std::string& needed) {

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -31,6 +32,8 @@ namespace thimble::tools {
 std::optional<std::int64_t> parse_whole(std::string_view text, std::int64_t low, std::int64_t high);
 /// `text` as a finite number.
 std::optional<double> parse_real(std::string_view text);
+/// "1,2.5,-3" as finite numbers, as many as there is room for.
+bool parse_reals(std::string_view text, std::span<double> numbers);
 /// "800x600" and the like: two whole numbers up to `most` with `between` between them, the second from 1 on.
 std::optional<std::pair<std::int32_t, std::int32_t>> parse_pair(std::string_view text, char between,
                                                                 std::int32_t low, std::int32_t most);
@@ -119,6 +122,15 @@ Option add_choice_option(CLI::App& app, const std::string& name,
 /// The path of a file.
 Option add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
                        std::string* path, const std::string& help);
+
+/// The same of one whose name `takes` accepts, which is what ends in `endings`.
+Option add_output_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                         std::string* path, bool (*takes)(const std::string& path), const char* endings,
+                         const std::string& help);
+
+/// Those of pictures, and whether a name is one of moving pictures.
+inline constexpr const char* kPictureEndings = ".png, .ppm, .pgm or .pbm";
+bool names_y4m(const std::string& path);
 
 /// `name` is refused without `needed`.
 void make_need(CLI::App& app, const std::string& name, const std::string& needed);

@@ -207,13 +207,10 @@ void add_join(CLI::App& app) {
       "what render --rows or --part wrote, in any order: of one scene, camera, size and options; where "
       "they overlap they must agree")
       .required();
-  add_text_option(
-      *sub, "-o,--output", "FILE",
-      [command](const std::string& text) {
-        command->output = text;
-        return image_kind(text) || is_film(text) ? ""
-                                                 : "does not end in .ppm, .pgm, .pbm, .png, .gif or .y4m";
-      },
+  add_output_option(
+      *sub, "-o,--output", "FILE", &command->output,
+      [](const std::string& text) { return image_kind(text) || is_film(text); },
+      ".ppm, .pgm, .pbm, .png, .gif or .y4m",
       "the picture (.ppm, .pgm, .pbm, .png; - is a PPM on standard output) or film (.gif, .y4m), byte for "
       "byte what "
       "one process would have written")

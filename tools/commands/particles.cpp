@@ -1,4 +1,5 @@
 // thimble particles: the paper's particle world in a window, in a terminal, or unseen.
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -194,14 +195,12 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       sub, "--gravity", "X,Y",
       [world](const std::string& text) -> std::string {
         constexpr double kMost = kMaxAccelerationQ16 / 65536.0;
-        const std::size_t comma = text.find(',');
-        const auto x = parse_real(text.substr(0, comma));
-        const auto y = comma == std::string::npos ? std::nullopt : parse_real(text.substr(comma + 1));
-        if (!x || !y || std::abs(*x) > kMost || std::abs(*y) > kMost) {
+        std::array<double, 2> pull{};
+        if (!parse_reals(text, pull) || std::abs(pull[0]) > kMost || std::abs(pull[1]) > kMost) {
           return "is not two numbers X,Y from " + shortest(-kMost) + " to " + shortest(kMost);
         }
         const auto q16 = [](double value) { return static_cast<std::int32_t>(std::lround(value * 65536)); };
-        world->gravity_q16 = {q16(*x), q16(*y)};
+        world->gravity_q16 = {q16(pull[0]), q16(pull[1])};
         return {};
       },
       "gravity in cells a step a step; y down the picture; with --bodies there is none unless given")
@@ -283,19 +282,12 @@ void add_file_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
           "the circle in the middle of that square");
   add_path_option(sub, "--field", "FILE.pbm", &command->field_path,
                   "write the collision field at the end as P4: 1 where a ball or a wall is");
-  add_text_option(
-      sub, "-o,--output", "FILE",
-      [command](const std::string& text) {
-        command->frame_path = text;
-        return image_kind(text) ? "" : "does not end in .png, .ppm, .pgm or .pbm";
-      },
+  add_output_option(
+      sub, "-o,--output", "FILE", &command->frame_path,
+      [](const std::string& text) { return image_kind(text).has_value(); }, kPictureEndings,
       "write the last picture; - is standard output, as PPM");
-  add_text_option(
-      sub, "--record", "FILE.y4m",
-      [command](const std::string& text) {
-        command->recording_path = text;
-        return text.size() > 4 && text.ends_with(".y4m") ? "" : "does not end in .y4m";
-      },
+  add_output_option(
+      sub, "--record", "FILE.y4m", &command->recording_path, names_y4m, ".y4m",
       "write moving pictures as YUV4MPEG2, which ffmpeg and mpv play: --fps pictures for --eps steps");
   add_flag(sub, "--figures", &command->play.figures_in_files,
            "also write the figures on these pictures: sizes, bounciness, colliders, Eps");

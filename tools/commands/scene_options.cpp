@@ -23,25 +23,6 @@
 
 namespace thimble::tools {
 
-namespace {
-
-/// Six numbers: the low and the high corner of a box.
-std::optional<std::array<double, 6>> parse_box(std::string_view text) {
-  std::array<double, 6> box{};
-  for (std::size_t i = 0; i < box.size(); ++i) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    const auto number = parse_real(text.substr(0, comma));
-    if (!number || (i < 5) != (comma < text.size()) || (i >= 3 && *number < box[i - 3])) {
-      return std::nullopt;
-    }
-    box[i] = *number;
-    text.remove_prefix(std::min(comma + 1, text.size()));
-  }
-  return box;
-}
-
-}  // namespace
-
 void SceneOptions::add_scene(CLI::App& app, bool required) {
   Option scene = add_argument(
       app, "scene", "SCENE", &arguments.scene,
@@ -79,9 +60,11 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
   add_text_option(
       app, "--clip", "BOX",
       [this](const std::string& text) {
-        arguments.clip = parse_box(text);
-        return arguments.clip ? ""
-                              : "is not X,Y,Z,X,Y,Z, a box's low and high corner in the file's coordinates";
+        std::array<double, 6> box{};
+        const bool is_box =
+            parse_reals(text, box) && box[0] <= box[3] && box[1] <= box[4] && box[2] <= box[5];
+        arguments.clip = is_box ? std::optional(box) : std::nullopt;
+        return is_box ? "" : "is not X,Y,Z,X,Y,Z, a box's low and high corner in the file's coordinates";
       },
       "point files: only the points of the box X,Y,Z,X,Y,Z, its low and high corner in the file's "
       "coordinates");

@@ -358,23 +358,16 @@ void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command)
       sub, "--frames", "N", 1, 1'000'000'000, &command->session.frames,
       "end after N frames (default: 1 where nobody watches, else when the window is closed or Esc is "
       "pressed)");
-  add_text_option(
-      sub, "--shot", "FILE",
-      [command](const std::string& text) {
-        command->shot_path = text;
-        return image_kind(text) && text != "-" ? "" : "does not end in .png, .ppm, .pgm or .pbm";
-      },
+  add_output_option(
+      sub, "--shot", "FILE", &command->shot_path,
+      [](const std::string& text) { return image_kind(text) && text != "-"; }, kPictureEndings,
       "write the last frame: the display's exact pixels, with 8 bits");
   add_path_option(
       sub, "--check", "REF", &command->check_path,
       "compare the last frame with a PNG, PPM or PGM; status 1 and how many pixels differ, and the "
       "first, unless they are equal");
-  add_text_option(
-      sub, "--record", "FILE.y4m",
-      [command](const std::string& text) {
-        command->record_path = text;
-        return text.size() > 4 && text.ends_with(".y4m") ? "" : "does not end in .y4m";
-      },
+  add_output_option(
+      sub, "--record", "FILE.y4m", &command->record_path, names_y4m, ".y4m",
       "write all frames as YUV4MPEG2, which ffmpeg and mpv play; greys exact (mono), colours as 4:4:4");
   add_path_option(
       sub, "--keys", "SCRIPT", &command->keys_path,

@@ -66,12 +66,9 @@ void add_uart_picture(CLI::App& app) {
   auto command = std::make_shared<Command>();
   CLI::App* sub = add_command(app, "uart-picture", "Takes a picture out of what a board sent over its UART.");
   add_argument(*sub, "scene", "LOG", &command->log, "the bytes that it sent").required();
-  add_text_option(
-      *sub, "-o,--output", "FILE",
-      [command](const std::string& text) {
-        command->output = text;
-        return image_kind(text) ? "" : "does not end in .png, .ppm, .pgm or .pbm";
-      },
+  add_output_option(
+      *sub, "-o,--output", "FILE", &command->output,
+      [](const std::string& text) { return image_kind(text).has_value(); }, kPictureEndings,
       "the picture, .png, .ppm, .pgm or .pbm by its ending")
       .required();
   hide_command(*sub);

@@ -15,28 +15,12 @@
 namespace thimble::tools {
 namespace {
 
-// "X,Y,Z" as three finite numbers.
-std::optional<Real3> parse_triple(std::string_view text) {
-  Real3 result{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t comma = text.find(',');
-    const auto number = parse_real(text.substr(0, comma));
-    if (!number || (comma == std::string_view::npos) != (i == 2)) {
-      return std::nullopt;
-    }
-    result[i] = *number;
-    text.remove_prefix(i == 2 ? text.size() : comma + 1);
-  }
-  return result;
-}
-
 void add_triple(CLI::App& app, const std::string& name, std::optional<Real3>* value,
                 const std::string& help) {
   add_text_option(
       app, name, "X,Y,Z",
       [value](const std::string& text) {
-        *value = parse_triple(text);
-        return *value ? "" : "is not three numbers X,Y,Z";
+        return parse_reals(text, value->emplace()) ? "" : "is not three numbers X,Y,Z";
       },
       help);
 }
