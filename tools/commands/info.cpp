@@ -12,29 +12,22 @@
 #include "readers/oct.h"
 #include "scene/board_fit.h"
 #include "scene/built_scene.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
 
-std::string three(double x, double y, double z) {
-  return shortest(x) + "," + shortest(y) + "," + shortest(z);
-}
-
 std::string describe(const SceneCamera& camera) {
-  const auto point = [](const Vec3Q8& at) {
-    const auto real = [](Q8 number) { return static_cast<double>(number.raw) / Q8::kOne; };
-    return three(real(at.x), real(at.y), real(at.z));
-  };
   std::string text =
       camera.is_perspective
           ? "perspective, fov " + shortest(static_cast<double>(camera.fov_degrees.raw) / Q16::kOne) +
                 " degrees"
           : "orthographic, span " + shortest(static_cast<double>(camera.span.raw) / Q14::kOne) + " voxels";
-  text += ", eye " + point(camera.eye) + ", target " + point(camera.target);
+  text += ", eye " + text_of(real_of(camera.eye)) + ", target " + text_of(real_of(camera.target));
   if (camera.up != Vec3i{}) {
     constexpr double kUnit = kMaxViewComponent;
-    text += ", up " + three(camera.up.x / kUnit, camera.up.y / kUnit, camera.up.z / kUnit);
+    text += ", up " + text_of({camera.up.x / kUnit, camera.up.y / kUnit, camera.up.z / kUnit});
   }
   if (camera.direction_bits != 0) {
     text += ", directions of " + std::to_string(camera.direction_bits) + " bits";

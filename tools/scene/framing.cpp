@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -41,15 +40,6 @@ Vec3i to_integers(const Real3& vector) {
 // The other way, components within -1 .. 1.
 Real3 to_reals(const Vec3i& vector) {
   return scaled(real_of(vector), 1.0 / kMaxViewComponent);
-}
-
-Real3 to_reals(const Vec3Q8& point) {
-  return {static_cast<double>(point.x.raw) / Q8::kOne, static_cast<double>(point.y.raw) / Q8::kOne,
-          static_cast<double>(point.z.raw) / Q8::kOne};
-}
-
-std::string text_of(const Real3& v) {
-  return shortest(v[0]) + "," + shortest(v[1]) + "," + shortest(v[2]);
 }
 
 // Where rays may start, on each axis.
@@ -110,19 +100,12 @@ Corners corners_of(const VoxelBox& box) {
   return corners;
 }
 
-// The picture's axes, of length 1.
-struct SightAxes {
-  Real3 right;
-  Real3 up;
-  Real3 forward;
-};
-
 // What is looked at, and which way.
 struct Sight {
   Real3 target;
   Vec3i forward;  // as the core is given them, so that both mean the same axes
   Vec3i up;
-  SightAxes axes;
+  PictureAxes axes;  // of length 1
 };
 
 Sight sight_of(const ViewWishes& wishes, const Reach& reach, const Corners& corners) {
@@ -208,7 +191,7 @@ Real3 eye_at(const Sight& sight, double wanted, const Reach& reach) {
   return eye;
 }
 
-bool sees_all(const Corners& corners, const Real3& eye, const SightAxes& axes, const Lens& lens) {
+bool sees_all(const Corners& corners, const Real3& eye, const PictureAxes& axes, const Lens& lens) {
   return std::none_of(corners.begin(), corners.end(), [&](const Real3& corner) {
     const Real3 offset = minus(corner, eye);
     const double reach_y = dot(offset, axes.forward) * lens.tan_y;
@@ -252,7 +235,7 @@ double moved_px(const ViewWishes& wishes, const Camera& camera, const Sight& sig
   const double pixel = voxels_of(span) / wishes.width_px;
   double moved = camera.error_bound_px_q16() / 65536.0;
   if (wishes.eye) {
-    const Real3 rounding = minus(*wishes.eye, to_reals(eye));
+    const Real3 rounding = minus(*wishes.eye, real_of(eye));
     moved += std::hypot(dot(rounding, sight.axes.right), dot(rounding, sight.axes.up)) / pixel;
   }
   if (wishes.span) {
@@ -323,7 +306,7 @@ void look_from(const ViewAngles& angles, ViewWishes* wishes) {
 // Corners as a camera sees them, about a point near them all.
 class SeenExtent {
  public:
-  SeenExtent(const std::vector<Vec3i>& corners, const Real3& middle, const SightAxes& axes) {
+  SeenExtent(const std::vector<Vec3i>& corners, const Real3& middle, const PictureAxes& axes) {
     for (const Vec3i& corner : corners) {
       const Real3 offset = minus(real_of(corner), middle);
       points_.push_back({dot(offset, axes.right), dot(offset, axes.up), dot(offset, axes.forward)});
@@ -375,7 +358,7 @@ Real3 middle_of(const VoxelBox& bounds) {
 }
 
 // From the middle of `bounds` by that much along the axes.
-Real3 placed(const VoxelBox& bounds, const SightAxes& axes, double right, double up, double forward) {
+Real3 placed(const VoxelBox& bounds, const PictureAxes& axes, double right, double up, double forward) {
   return plus(plus(middle_of(bounds), scaled(axes.right, right)),
               plus(scaled(axes.up, up), scaled(axes.forward, forward)));
 }
@@ -398,7 +381,7 @@ Real3 kept_q8(const Real3& point) {
 
 // Whether a picture shows everything occupied.
 bool shows_all(const Framing& framing, const SceneShape& shape, const Sight& sight, const Lens& lens) {
-  const Real3 eye = to_reals(framing.kept.eye);
+  const Real3 eye = real_of(framing.kept.eye);
   const double half = voxels_of(framing.kept.span) / 2;
   return std::none_of(shape.corners.begin(), shape.corners.end(), [&](const Vec3i& corner) {
     const Real3 offset = minus(real_of(corner), eye);
@@ -412,7 +395,7 @@ bool shows_all(const Framing& framing, const SceneShape& shape, const Sight& sig
 // The eye and the span that show the corners so; the target keeps to the middle of the view.
 ViewWishes fitted(const ViewWishes& wishes, const SceneShape& shape, const Sight& sight) {
   const Lens lens(wishes);
-  const SightAxes& axes = sight.axes;
+  const PictureAxes& axes = sight.axes;
   const SeenExtent seen(shape.corners, middle_of(shape.bounds), axes);
   ViewWishes placed_view = wishes;
   placed_view.up = wishes.up.value_or(to_reals(sight.up));
@@ -511,6 +494,10 @@ class RoundExtent {
 };
 
 }  // namespace
+
+std::string text_of(const Real3& v) {
+  return shortest(v[0]) + "," + shortest(v[1]) + "," + shortest(v[2]);
+}
 
 PictureAxes::PictureAxes(const SceneCamera& camera) {
   const Vec3i ahead = camera.forward == Vec3i{} ? look_at(camera.eye, camera.target) : camera.forward;

@@ -77,12 +77,20 @@ inline Real3 real_of(const Vec3i& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
+inline Real3 real_of(const Vec3Q8& point) {
+  return {static_cast<double>(point.x.raw) / Q8::kOne, static_cast<double>(point.y.raw) / Q8::kOne,
+          static_cast<double>(point.z.raw) / Q8::kOne};
+}
+/// "1,2.5,-3".
+std::string text_of(const Real3& v);
+
 /// A camera's axes in the picture, at right angles and of any length.
 struct PictureAxes {
+  PictureAxes() = default;
   explicit PictureAxes(const SceneCamera& camera);
-  Real3 right;
-  Real3 up;
-  Real3 forward;
+  Real3 right{};
+  Real3 up{};
+  Real3 forward{};
 };
 
 /// A view as it came out.

@@ -14,15 +14,6 @@ constexpr double kFlightDistances = 0.7;  // a second
 constexpr double kLeastSpan = 1;          // of a parallel picture, in voxels
 constexpr double kMostSpan = 100000;
 
-Real3 real_of(const Vec3Q8& point) {
-  return {static_cast<double>(point.x.raw) / Q8::kOne, static_cast<double>(point.y.raw) / Q8::kOne,
-          static_cast<double>(point.z.raw) / Q8::kOne};
-}
-
-Real3 real_of(const Vec3i& vector) {
-  return {static_cast<double>(vector.x), static_cast<double>(vector.y), static_cast<double>(vector.z)};
-}
-
 // The actions from kFront on, as sides.
 NamedView side_of(Action view) {
   constexpr std::array kSides{NamedView::kFront, NamedView::kBack, NamedView::kLeft,

@@ -1,21 +1,15 @@
 #include "viewer/finished_picture.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <exception>
-#include <mutex>
 #include <new>
 
-#include "scene/default_look.h"
-#include "scene/lit_description.h"
-#include "scene/look_picture.h"
 #include "scene/magnify.h"
 #include "thimble/light/render.h"
 #include "thimble/tree/octree.h"
-#include "wide/threads.h"
 
 namespace thimble::tools::viewer {
 namespace {
@@ -101,11 +95,8 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
     : look_(std::move(look)) {
   const OpenScene& scene = *look_->scene_;
   framing_ = frame_scene(wishes, *scene.source, look_->shape_);
-  shading_.mode = look_->mode_;
-  shading_.palette = Span<const Rgb8>(scene.built->palette().data(), scene.built->palette().size());
-  const DepthRange range = depth_range(camera(), scene.built->bounds());
-  shading_.near_q8 = range.near_q8;
-  shading_.far_q8 = range.far_q8;
+  shading_ = scene_shading(look_->mode_, {scene.built->palette().data(), scene.built->palette().size()},
+                           camera(), scene.built->bounds());
   if (look_->own_) {
     take_own_look();
     return;
@@ -162,6 +153,12 @@ constexpr std::int32_t kRowsAThread = 2;
 constexpr std::chrono::milliseconds kChunkTime{40};
 constexpr std::int32_t kMostRowsAThread = 8;
 constexpr std::int32_t kEdgeRowsAThread = 8;  // many samples are drawn together
+
+void put(Rgb8 color, std::uint8_t* to) {
+  to[0] = color.r;
+  to[1] = color.g;
+  to[2] = color.b;
+}
 
 Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
   return {Bytes(rgb, row_bytes(PixelFormat::kRgb888, camera.width_px())), PixelFormat::kRgb888, 0, row, 1};
@@ -369,9 +366,7 @@ void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* r
     const bool is_behind = own_->has_backdrop && Rgb8{rgb[0], rgb[1], rgb[2]} == kBehind;
     const Rgb8 color = is_behind ? backdrop_color(own_->background, row, thin.height_px())
                                  : Rgb8{quick_tone_[rgb[0]], quick_tone_[rgb[1]], quick_tone_[rgb[2]]};
-    rgb[0] = color.r;
-    rgb[1] = color.g;
-    rgb[2] = color.b;
+    put(color, rgb);
   }
 }
 
@@ -380,9 +375,7 @@ void FinishedPicture::draw_behind_row(int step, std::int32_t row, std::uint8_t* 
   if (own_ && own_->has_backdrop) {
     for (std::int32_t x = 0; x < thin.width_px(); ++x, rgb += 3) {
       const Rgb8 color = backdrop_color(own_->background, row, thin.height_px());
-      rgb[0] = color.r;
-      rgb[1] = color.g;
-      rgb[2] = color.b;
+      put(color, rgb);
     }
     return;
   }

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "output/image.h"
 #include "output/output_file.h"
@@ -18,10 +19,6 @@ namespace {
 
 constexpr int kMostNames = 9999;
 constexpr std::size_t kLongestStem = 200;  // a name has 255 bytes on most file systems
-
-std::string text_of(const Real3& v) {
-  return shortest(v[0]) + "," + shortest(v[1]) + "," + shortest(v[2]);
-}
 
 // models/castle.vox.gz -> castle
 std::string stem_of(const std::string& scene) {
@@ -102,14 +99,11 @@ std::string render_command(const SceneArguments& scene, const ViewWishes& view,
       add("--tilt", shortest(view.onward.tilt));
     }
   }
-  if (view.eye) {
-    add("--eye", text_of(*view.eye));
-  }
-  if (view.target) {
-    add("--target", text_of(*view.target));
-  }
-  if (view.up) {
-    add("--up", text_of(*view.up));
+  for (const auto& [name, point] :
+       {std::pair{"--eye", view.eye}, {"--target", view.target}, {"--up", view.up}}) {
+    if (point) {
+      add(name, text_of(*point));
+    }
   }
   if (view.placed && !view.orthographic) {
     add("--fov", shortest(view.fov_degrees));

@@ -59,13 +59,9 @@ ViewWishes wishes_of(const SceneCamera& camera, std::int32_t width_px, std::int3
 
 // What --eye, --target and the lens say of it.
 ViewWishes placed_wishes(const SceneCamera& camera, std::int32_t width_px, std::int32_t height_px) {
-  const auto real = [](const Vec3Q8& point) {
-    return Real3{static_cast<double>(point.x.raw) / Q8::kOne, static_cast<double>(point.y.raw) / Q8::kOne,
-                 static_cast<double>(point.z.raw) / Q8::kOne};
-  };
   ViewWishes wishes = wishes_of(camera, width_px, height_px);
-  wishes.eye = real(camera.eye);
-  wishes.target = real(camera.target);
+  wishes.eye = real_of(camera.eye);
+  wishes.target = real_of(camera.target);
   if (wishes.orthographic) {
     wishes.span = static_cast<double>(camera.span.raw) / Q14::kOne;
   }
