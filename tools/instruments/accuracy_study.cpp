@@ -1,13 +1,11 @@
 #include "instruments/accuracy_study.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
 
-#include "instruments/timed_frames.h"
 #include "output/hit_rows.h"
 #include "output/units.h"
 #include "readers/source.h"

@@ -8,11 +8,8 @@
 #include <vector>
 
 #include "boards/effect_flash.h"
-#include "instruments/timed_frames.h"
 #include "output/tables.h"
 #include "scene/built_scene.h"
-#include "scene/lit_description.h"
-#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -69,6 +66,7 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
                                       : std::to_string(rest.occlusion.rays) + " rays a face, " +
                                             std::to_string(rest.occlusion.reach) + " voxels far";
     case Effect::kEmission:
+    case Effect::kEmitterLight:
       return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
     case Effect::kMirror:
       return materials(lit, used, SurfaceKind::kMetal, "metal", named);
@@ -88,14 +86,8 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
       return rest.has_sky ? "a sky behind it" : named;
     case Effect::kDepthCue:
       return rest.has_depth_cue ? "far is darker" : named;
-    case Effect::kSmoothNormals:
-    case Effect::kEdges:
-    case Effect::kRipples:
+    default:  // smooth normals, edges and ripples
       return named;
-    case Effect::kEmitterLight:
-      return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
-    default:
-      return {};
   }
 }
 

@@ -1,7 +1,6 @@
 #include "instruments/hard_cases.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <numeric>
 #include <stdexcept>

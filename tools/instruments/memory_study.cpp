@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <string>
 
 #include "output/hit_rows.h"
 #include "readers/oct.h"
@@ -11,7 +10,6 @@
 #include "scene/baking.h"
 #include "scene/built_scene.h"
 #include "scene/host_memory.h"
-#include "scene/scene_source.h"
 #include "thimble/picture/render.h"
 #include "thimble/trace/ray.h"
 #include "thimble/tree/dense_grid.h"
@@ -56,102 +54,88 @@ std::vector<SolidBlock> coarser(const std::vector<SolidBlock>& blocks, int level
 }
 
 // The blocks of one depth in all structures. Memory of its own, as much as it takes.
-class DepthScene {
- public:
+struct DepthScene {
   // A world of 2^world_level; the blocks' coordinates and sides are multiplied by 2^up. `one_material` makes all of them
   // material 0. The dense grid is filled by `make_dense` only. Throws InputError when the machine or the formats cannot
   // hold it.
   DepthScene(const std::vector<SolidBlock>& blocks, int world_level, int up, bool one_material)
-      : pool_memory_(HostMemory::largest()) {
-    if (Octree::make(world_level, pool_memory_.bytes(), &pool_) != Status::kOk) {
+      : pool_memory(HostMemory::largest()) {
+    if (Octree::make(world_level, pool_memory.bytes(), &pool) != Status::kOk) {
       throw InputError("a world of depth " + std::to_string(world_level) + " is beyond the limits");
     }
     for (const SolidBlock& block : blocks) {
       const Vec3i corner{block.corner.x << up, block.corner.y << up, block.corner.z << up};
       const Status status =
-          pool_.insert_block(corner, block.level + up, one_material ? std::uint8_t{0} : block.material);
+          pool.insert_block(corner, block.level + up, one_material ? std::uint8_t{0} : block.material);
       if (status != Status::kOk) {
         throw InputError(std::string("the scene does not go into a pool of nodes: ") + status_text(status));
       }
     }
-    shape_ = compact_shape(pool_);
-    const std::size_t size = compact_bytes(shape_);
-    compact_bytes_.resize(size);
-    if (size == 0 || CompactTree::make(pool_, Bytes(compact_bytes_.data(), size), &compact_) != Status::kOk) {
+    shape = compact_shape(pool);
+    const std::size_t size = compact_bytes(shape);
+    tree_bytes.resize(size);
+    if (size == 0 || CompactTree::make(pool, Bytes(tree_bytes.data(), size), &compact) != Status::kOk) {
       throw InputError("the scene does not go into a compact tree");
     }
     make_shared();
-    dense_size_ = grid_size(compact_.bounds().high, world_level);
+    dense_size = grid_size(compact.bounds().high, world_level);
   }
 
-  const Octree& pool() const { return pool_; }
-  Octree& pool() { return pool_; }
-  const CompactTree& compact() const { return compact_; }
-  const SharedTree& shared() const { return shared_; }
-  const CompactShape& shape() const { return shape_; }
-  // The least grid from 0,0,0 that holds everything solid and whose world is this one.
-  Vec3i dense_size() const { return dense_size_; }
   std::array<std::uint64_t, kMemoryStructures> bytes() const {
-    return {dense_grid_bytes(dense_size_), pool_.used_bytes(), compact_.size_bytes(), shared_.size_bytes()};
+    return {dense_grid_bytes(dense_size), pool.used_bytes(), compact.size_bytes(), shared.size_bytes()};
   }
-  // The hash table that building the DAG took at the least.
-  std::uint64_t shared_work_bytes() const { return shared_build_.work_bytes; }
-
   // Fills the dense grid from the blocks that this was made from.
   void make_dense(const std::vector<SolidBlock>& blocks) {
-    dense_bytes_.resize(dense_grid_bytes(dense_size_));
-    if (DenseGrid::make(dense_size_, Bytes(dense_bytes_.data(), dense_bytes_.size()), &dense_) !=
-        Status::kOk) {
+    dense_bytes.resize(dense_grid_bytes(dense_size));
+    if (DenseGrid::make(dense_size, Bytes(dense_bytes.data(), dense_bytes.size()), &dense) != Status::kOk) {
       throw InputError("the scene does not go into a dense grid");
     }
     for (const SolidBlock& block : blocks) {
       for_voxels(block.corner, block.level, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-        if (dense_.set({x, y, z}) != Status::kOk) {
+        if (dense.set({x, y, z}) != Status::kOk) {
           throw InputError("internal error: a voxel outside the grid");
         }
       });
     }
-    dense_made_ = true;
+    has_dense = true;
   }
-  bool has_dense() const { return dense_made_; }
 
   Status render(std::size_t structure, const Camera& camera, const Shading& shading, const Band& band,
                 RenderCounts* counts) const {
     const auto render_in = [&](const auto& structure_drawn) {
       return render_band(structure_drawn, camera, shading, band, counts, {UINT32_MAX, Width::k64});
     };
-    return structure == kDense     ? render_in(dense_)
-           : structure == kPool    ? render_in(pool_)
-           : structure == kCompact ? render_in(compact_)
-                                   : render_in(shared_);
+    return structure == kDense     ? render_in(dense)
+           : structure == kPool    ? render_in(pool)
+           : structure == kCompact ? render_in(compact)
+                                   : render_in(shared);
   }
 
- private:
   void make_shared() {
-    const HostMemory work(thimble::shared_work_bytes(compact_.node_count()));
-    Status status = SharedTree::make(compact_, {}, work.bytes(), nullptr, &shared_build_);
+    const HostMemory work(thimble::shared_work_bytes(compact.node_count()));
+    Status status = SharedTree::make(compact, {}, work.bytes(), nullptr, &shared_build);
     if (status == Status::kOutOfMemory) {
-      shared_bytes_.resize(shared_build_.bytes);
-      status = SharedTree::make(compact_, Bytes(shared_bytes_.data(), shared_bytes_.size()), work.bytes(),
-                                &shared_, &shared_build_);
+      shared_bytes.resize(shared_build.bytes);
+      status = SharedTree::make(compact, Bytes(shared_bytes.data(), shared_bytes.size()), work.bytes(),
+                                &shared, &shared_build);
     }
     if (status != Status::kOk) {
       throw InputError("the scene does not go into a shared tree");
     }
   }
 
-  HostMemory pool_memory_;
-  Octree pool_;
-  CompactShape shape_;
-  std::vector<std::uint8_t> compact_bytes_;
-  CompactTree compact_;
-  SharedBuild shared_build_;
-  std::vector<std::uint8_t> shared_bytes_;
-  SharedTree shared_;
-  Vec3i dense_size_;
-  std::vector<std::uint8_t> dense_bytes_;
-  DenseGrid dense_;
-  bool dense_made_ = false;
+  HostMemory pool_memory;
+  Octree pool;
+  CompactShape shape;
+  std::vector<std::uint8_t> tree_bytes;
+  CompactTree compact;
+  SharedBuild shared_build;  // its hash table's bytes are those that building the DAG took at the least
+  std::vector<std::uint8_t> shared_bytes;
+  SharedTree shared;
+  Vec3i dense_size;  // the least grid from 0,0,0 that holds everything solid and whose world is this one
+  std::vector<std::uint8_t> dense_bytes;
+  DenseGrid dense;
+  bool has_dense = false;
 };
 
 // What each pixel's ray met: its colour, and the distance in voxels along the unit ray, negative for a miss.
@@ -206,7 +190,7 @@ SceneCamera coarser_view(const SceneCamera& camera, int levels) {
 
 // Frames of all structures by turns, so that whatever else the machine does meets all of them.
 void draw(const DepthScene& scene, const Camera& camera, const Shading& given, int frames, DepthRow* row) {
-  const Shading shading = scene_shading(given.mode, given.palette, camera, scene.compact().bounds());
+  const Shading shading = scene_shading(given.mode, given.palette, camera, scene.compact.bounds());
   std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kRgb888, camera.width_px(), camera.height_px()));
   Band band;
   band.pixels = Bytes(pixels.data(), pixels.size());
@@ -214,7 +198,7 @@ void draw(const DepthScene& scene, const Camera& camera, const Shading& given, i
   std::array<std::vector<double>, kMemoryStructures> times_ms;
   for (int frame = 0; frame < frames; ++frame) {
     for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-      if (i == kDense && !scene.has_dense()) {
+      if (i == kDense && !scene.has_dense) {
         continue;
       }
       RenderCounts counts;
@@ -236,15 +220,15 @@ void draw(const DepthScene& scene, const Camera& camera, const Shading& given, i
 
 // Bytes of all structures; `bits` is the same scene in one material, or null when it is in one already.
 void count_bytes(const SceneSource& source, const DepthScene& scene, const DepthScene* bits, DepthRow* row) {
-  row->grid = scene.dense_size();
+  row->grid = scene.dense_size;
   row->units = static_cast<std::uint64_t>(row->grid.x) * static_cast<std::uint64_t>(row->grid.y) *
                static_cast<std::uint64_t>(row->grid.z);
-  row->voxels = scene.pool().voxels();
-  row->leaves = std::uint64_t{scene.shape().solid_blocks} + scene.shape().voxel_bits;
-  row->pool_nodes = scene.pool().nodes_used();
-  row->compact_nodes = scene.compact().node_count();
-  row->dag_nodes = scene.shared().node_count();
-  row->dag_table_bytes = scene.shared_work_bytes();
+  row->voxels = scene.pool.voxels();
+  row->leaves = std::uint64_t{scene.shape.solid_blocks} + scene.shape.voxel_bits;
+  row->pool_nodes = scene.pool.nodes_used();
+  row->compact_nodes = scene.compact.node_count();
+  row->dag_nodes = scene.shared.node_count();
+  row->dag_table_bytes = scene.shared_build.work_bytes;
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     StructureFigures& figures = row->structures[i];
     figures.bytes = scene.bytes()[i];
@@ -254,11 +238,11 @@ void count_bytes(const SceneSource& source, const DepthScene& scene, const Depth
       places = row->units;
       colored += places;
     } else if (i == kCompact && bits == nullptr) {
-      CompactShape shape = scene.shape();
+      CompactShape shape = scene.shape;
       shape.many_materials = true;
       colored = compact_bytes(shape);
     } else if (i == kShared) {
-      colored = scene.shared().bytes_with_materials();
+      colored = scene.shared.bytes_with_materials();
     }
     figures.stored_bytes[0] = bits == nullptr ? figures.bytes : bits->bytes()[i];
     for (std::size_t stored = 1; stored < kStoredKinds; ++stored) {
@@ -267,15 +251,15 @@ void count_bytes(const SceneSource& source, const DepthScene& scene, const Depth
   }
   auto& structures = row->structures;
   structures[kDense].build_bytes = structures[kDense].bytes;
-  structures[kPool].build_bytes = scene.pool().high_water_bytes();
+  structures[kPool].build_bytes = scene.pool.high_water_bytes();
   // As the command builds: single voxels from a list of keys, all else from a pool.
   const std::uint64_t key_bytes = source.single_material() && row->depth <= 10 ? 4 : 8;
   structures[kCompact].build_bytes =
       structures[kCompact].bytes +
-      (source.is_point_set() ? row->voxels * key_bytes : scene.pool().high_water_bytes());
+      (source.is_point_set() ? row->voxels * key_bytes : scene.pool.high_water_bytes());
   structures[kShared].build_bytes =
       std::max(structures[kCompact].build_bytes,
-               structures[kCompact].bytes + scene.shared_work_bytes() + structures[kShared].bytes);
+               structures[kCompact].bytes + scene.shared_build.work_bytes + structures[kShared].bytes);
 }
 
 // Merges blocks of the pool until its compact tree takes at most `limit` bytes. False when one block is left
@@ -350,21 +334,21 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
 
   // The deepest one is the judge: all pictures are of its rays, so that nothing but the scene differs.
   DepthScene own(blocks, own_depth, 0, false);
-  const Framing framing = frame_scene(options.view, source, own_depth, own.compact().bounds());
+  const Framing framing = frame_scene(options.view, source, own_depth, own.compact.bounds());
   const Camera& camera = framing.camera;
   study.note = framing.note;
   study.pixels =
       static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(camera.height_px());
   const Shading shading =
-      scene_shading(options.shade, {palette.data(), palette.size()}, camera, own.compact().bounds());
-  const TracedPicture reference = trace_picture(own.compact(), camera, shading);
+      scene_shading(options.shade, {palette.data(), palette.size()}, camera, own.compact.bounds());
+  const TracedPicture reference = trace_picture(own.compact, camera, shading);
   const std::string kept_name = scene_name(name).substr(0, kMaxNameBytes);
   BakedParts parts;
-  parts.tree = {own.compact().bytes(), own.compact().size_bytes()};
+  parts.tree = {own.compact.bytes(), own.compact.size_bytes()};
   parts.palette = {palette.data(), blocks.empty() ? 0 : static_cast<std::size_t>(last_color) + 1};
   parts.camera = &framing.kept;
   parts.name = {reinterpret_cast<const std::uint8_t*>(kept_name.data()), kept_name.size()};
-  study.around_tree_bytes = baked_bytes(parts) - own.compact().size_bytes();
+  study.around_tree_bytes = baked_bytes(parts) - own.compact.size_bytes();
 
   for (int depth = 1; depth <= own_depth; ++depth) {
     const auto part = [&](double done) { progress(0.2 + 0.7 * (depth - 1 + done) / own_depth); };
@@ -376,7 +360,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
     row.depth = depth;
     {
       const auto bits =
-          scene.compact().many_materials() ? std::make_unique<DepthScene>(coarse, depth, 0, true) : nullptr;
+          scene.compact.many_materials() ? std::make_unique<DepthScene>(coarse, depth, 0, true) : nullptr;
       count_bytes(source, scene, bits.get(), &row);
     }
     part(0.2);
@@ -397,7 +381,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
     part(0.8);
     if (levels != 0) {
       const DepthScene shown(coarse, own_depth, levels, false);
-      row.error = picture_error(trace_picture(shown.compact(), camera, shading), reference);
+      row.error = picture_error(trace_picture(shown.compact, camera, shading), reference);
     }
     part(1);
     study.depths.push_back(row);
@@ -407,15 +391,15 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
   study.budgets = budgets_of(options, study.depths);
   for (std::size_t i = study.budgets.size(); i-- > 0;) {
     BudgetRow& row = study.budgets[i];
-    if (coarsen_to_bytes(&own.pool(), row.budget_bytes)) {
-      std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(own.pool())));
+    if (coarsen_to_bytes(&own.pool, row.budget_bytes)) {
+      std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(own.pool)));
       std::size_t size = 0;
       CompactTree tree;
-      if (CompactTree::make(own.pool(), Bytes(bytes.data(), bytes.size()), &tree, &size) != Status::kOk) {
+      if (CompactTree::make(own.pool, Bytes(bytes.data(), bytes.size()), &tree, &size) != Status::kOk) {
         throw InputError("internal error: a coarsened tree that cannot be written");
       }
       row.coarsened_bytes = size;
-      row.solid_added = own.pool().voxels() - study.depths.back().voxels;
+      row.solid_added = own.pool.voxels() - study.depths.back().voxels;
       row.coarsened_error = picture_error(trace_picture(tree, camera, shading), reference);
     }
     progress(1 - 0.1 * static_cast<double>(i) / static_cast<double>(study.budgets.size()));

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <type_traits>
-#include <vector>
 
 #include "readers/real3.h"
 #include "thimble/base/vec.h"

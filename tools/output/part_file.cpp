@@ -34,12 +34,6 @@ std::uint32_t crc_from(std::uint32_t crc, std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint32_t>(crc32_z(crc, bytes.data(), bytes.size()));
 }
 
-void put_32(std::uint8_t* to, std::uint32_t number) {
-  for (unsigned i = 0; i < 4; ++i) {
-    to[i] = static_cast<std::uint8_t>(number >> (8 * i));
-  }
-}
-
 std::uint32_t number_at(const std::uint8_t* from) {
   std::uint32_t number = 0;
   for (unsigned i = 0; i < 4; ++i) {
@@ -55,9 +49,9 @@ HeaderBytes bytes_of(const PartHeader& header) {
   bytes[9] = static_cast<std::uint8_t>(header.pixels);
   bytes[10] = header.has_finer_shades ? 1 : 0;
   for (std::size_t i = 0; i < kNumbers.size(); ++i) {
-    put_32(bytes.data() + kNumbersAt + 4 * i, header.*kNumbers[i]);
+    put_little(bytes.data() + kNumbersAt + 4 * i, header.*kNumbers[i]);
   }
-  put_32(bytes.data() + 44, crc_from(0, std::span(bytes).first(44)));
+  put_little(bytes.data() + 44, crc_from(0, std::span(bytes).first(44)));
   return bytes;
 }
 
@@ -152,7 +146,7 @@ void PartWriter::add(std::span<const std::uint8_t> bytes) {
 
 void PartWriter::end() {
   std::array<std::uint8_t, kCrcBytes> bytes{};
-  put_32(bytes.data(), crc_);
+  put_little(bytes.data(), crc_);
   file_->write(bytes);
 }
 

@@ -1,6 +1,6 @@
 /// @file plot.h
-/// Line plots as SVG files that stand on their own: axes with units, legend, readable on light and dark
-/// ground.
+/// Line plots, bar charts and scatter plots as SVG files that stand on their own: axes with units, legend,
+/// readable on light and dark ground.
 #ifndef THIMBLE_TOOLS_OUTPUT_PLOT_H
 #define THIMBLE_TOOLS_OUTPUT_PLOT_H
 
@@ -35,8 +35,7 @@ struct Plot {
 /// own.
 std::string log_plot_text(const Plot& plot);
 
-// Bar charts as SVG files that stand on their own: a bar a line, axis with unit, readable on light and dark
-// ground.
+// Bar charts: a bar a line.
 
 struct Bar {
   std::string name;
@@ -54,8 +53,7 @@ struct BarChart {
 
 std::string bar_chart_text(const BarChart& chart);
 
-// Scatter plots as SVG files that stand on their own: error against cost, with the front of the best marked
-// and named. Readable on light and dark ground.
+// Scatter plots: error against cost, with the front of the best marked and named.
 
 struct Cloud {
   std::string name;

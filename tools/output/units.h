@@ -31,6 +31,14 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 /// Whether a name ends in `ending`, which is in small letters, in any case, with more before it.
 bool ends_in(std::string_view name, std::string_view ending);
 
+/// Writes `number` in 4 bytes, the lowest first.
+template <class Byte>
+void put_little(Byte* to, std::uint32_t number) {
+  for (int i = 0; i < 4; ++i) {
+    to[i] = static_cast<Byte>(number >> (8 * i));
+  }
+}
+
 /// A CRC-32 as 8 hex digits.
 std::string crc_text(std::uint32_t crc);
 

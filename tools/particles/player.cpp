@@ -1,14 +1,12 @@
 #include "particles/player.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "output/units.h"
 #include "particles/line_words.h"
-#include "particles/populated_world.h"
 
 namespace thimble::tools {
 namespace {
@@ -214,25 +212,21 @@ void Player::add_gravity(std::int32_t more) {
 // A small letter is less, a capital more.
 void Player::change_setting(char key) {
   const int sign = key >= 'A' && key <= 'Z' ? 1 : -1;
-  switch (key) {
+  switch (sign > 0 && key != 'E' ? key - 'A' + 'a' : key) {
     case '[':
     case ']':
       change_reach(tool_, key == '[' ? -1 : 1);
       break;
     case 'n':
-    case 'N':
       set_sizes(settings_.least_diameter + sign, settings_.most_diameter);
       break;
     case 'm':
-    case 'M':
       set_sizes(settings_.least_diameter, settings_.most_diameter + sign);
       break;
     case 'b':
-    case 'B':
       add_bounciness(5 * sign);
       break;
     case 'c':
-    case 'C':
       set_count(std::int64_t{world_->world().count()} + sign * kCountStep);
       break;
     case 'e':
@@ -242,7 +236,6 @@ void Player::change_setting(char key) {
       rate_ = std::min(rate_ + std::max(1, rate_ / 4), kMostRate);
       break;
     case 'g':
-    case 'G':
       add_gravity(sign * kGravityStepQ16);
       break;
     case '0':

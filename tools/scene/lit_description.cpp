@@ -1,10 +1,10 @@
 #include "scene/lit_description.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 
+#include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/oct.h"
 #include "scene/emitter_lamps.h"
@@ -341,31 +341,22 @@ namespace {
 
 constexpr std::size_t kNoteBytes = 12;
 constexpr std::uint8_t kNoteVersion = 1;
-constexpr unsigned kIsMesh = 1;
-constexpr unsigned kIsPoints = 2;
-constexpr unsigned kHasColors = 4;
-constexpr unsigned kHasOwnLight = 8;
-constexpr unsigned kHasOwnSky = 16;
+// By their bits, the lowest first.
+constexpr std::array kNoteFlags{&LookNote::is_mesh, &LookNote::is_points, &LookNote::has_colors,
+                                &LookNote::has_own_light, &LookNote::has_own_sky};
 constexpr std::size_t kOn = 4;
 constexpr std::size_t kOff = 8;
-
-void store32(std::uint8_t* to, std::uint32_t value) {
-  for (unsigned i = 0; i < 4; ++i) {
-    to[i] = static_cast<std::uint8_t>(value >> (8 * i));
-  }
-}
 
 }  // namespace
 
 std::vector<std::uint8_t> look_section(const LookNote& note) {
   std::vector<std::uint8_t> bytes(kNoteBytes);
   bytes[0] = kNoteVersion;
-  bytes[1] = static_cast<std::uint8_t>((note.is_mesh ? kIsMesh : 0U) | (note.is_points ? kIsPoints : 0U) |
-                                       (note.has_colors ? kHasColors : 0U) |
-                                       (note.has_own_light ? kHasOwnLight : 0U) |
-                                       (note.has_own_sky ? kHasOwnSky : 0U));
-  store32(bytes.data() + kOn, note.on);
-  store32(bytes.data() + kOff, note.off);
+  for (std::size_t i = 0; i < kNoteFlags.size(); ++i) {
+    bytes[1] = static_cast<std::uint8_t>(bytes[1] | (note.*kNoteFlags[i] ? 1U << i : 0U));
+  }
+  put_little(bytes.data() + kOn, note.on);
+  put_little(bytes.data() + kOff, note.off);
   return bytes;
 }
 
@@ -373,13 +364,10 @@ std::optional<LookNote> read_look_note(ConstBytes section) {
   if (section.size != kNoteBytes || section.data[0] != kNoteVersion) {
     return std::nullopt;
   }
-  const unsigned flags = section.data[1];
   LookNote note;
-  note.is_mesh = (flags & kIsMesh) != 0;
-  note.is_points = (flags & kIsPoints) != 0;
-  note.has_colors = (flags & kHasColors) != 0;
-  note.has_own_light = (flags & kHasOwnLight) != 0;
-  note.has_own_sky = (flags & kHasOwnSky) != 0;
+  for (std::size_t i = 0; i < kNoteFlags.size(); ++i) {
+    note.*kNoteFlags[i] = (section.data[1] >> i & 1U) != 0;
+  }
   note.on = static_cast<EffectSet>(load_bits(section.data + kOn, 4, false)) & Effect::kAll;
   note.off = static_cast<EffectSet>(load_bits(section.data + kOff, 4, false)) & Effect::kAll;
   return note;

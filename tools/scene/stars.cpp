@@ -61,8 +61,7 @@ class Sky {
     for (unsigned corner = 0; corner < 8; ++corner) {
       const std::int64_t depth =
           depth_of({(corner & 1U) != 0 ? box.high.x : box.low.x, (corner & 2U) != 0 ? box.high.y : box.low.y,
-                    (corner & 4U) != 0 ? box.high.z : box.low.z},
-                   0);
+                    (corner & 4U) != 0 ? box.high.z : box.low.z});
       near_ = std::min(near_, depth);
       far_ = std::max(far_, depth);
     }
@@ -112,19 +111,19 @@ class Sky {
     const std::int64_t near_colors[3] = {kNear.r, kNear.g, kNear.b};
     const std::int64_t far_colors[3] = {kFar.r, kFar.g, kFar.b};
     for (int c = 0; c < 3; ++c) {
-      const std::int64_t own =
-          colored_ ? channels[c] : (near_colors[c] * place + far_colors[c] * (256 - place)) / 256;
+      const std::int64_t own = canvas_.look->has_own_colors
+                                   ? channels[c]
+                                   : (near_colors[c] * place + far_colors[c] * (256 - place)) / 256;
       star->light[c] = own * bright;
     }
     return true;
   }
-  void set_colored(bool colored) { colored_ = colored; }
 
  private:
-  std::int64_t depth_of(const Vec3i& corner, std::int64_t half) const {
-    return forward_.along(std::int64_t{corner.x} * Q8::kOne + half - eye_.x.raw,
-                          std::int64_t{corner.y} * Q8::kOne + half - eye_.y.raw,
-                          std::int64_t{corner.z} * Q8::kOne + half - eye_.z.raw);
+  std::int64_t depth_of(const Vec3i& corner) const {
+    return forward_.along(std::int64_t{corner.x} * Q8::kOne - eye_.x.raw,
+                          std::int64_t{corner.y} * Q8::kOne - eye_.y.raw,
+                          std::int64_t{corner.z} * Q8::kOne - eye_.z.raw);
   }
 
   const LookCanvas& canvas_;
@@ -138,7 +137,6 @@ class Sky {
   std::int64_t near_ = 0;
   std::int64_t far_ = 0;
   std::int64_t middle_ = 0;
-  bool colored_ = false;
 };
 
 // Adds a star's light to the rows first .. first + rows - 1.
@@ -191,8 +189,7 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
   const std::int32_t height = canvas.framing->camera.height_px();
   const auto at_once = static_cast<std::int32_t>(std::min<std::size_t>(
       canvas.work.size / (kStarBytes * static_cast<std::size_t>(width)), static_cast<std::size_t>(height)));
-  Sky sky(canvas, canvas.tree->voxel_count());
-  sky.set_colored(canvas.look->has_own_colors);
+  const Sky sky(canvas, canvas.tree->voxel_count());
   auto* const sums = reinterpret_cast<std::uint32_t*>(canvas.work.data);
   // The light of some rows, a part of them on each thread. Sums do not depend on who adds to them when.
   const auto gather = [&](std::int32_t first, std::int32_t rows) {
@@ -273,7 +270,6 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
       progress(0.5 + static_cast<double>(y - image.first_row) / image.height_px / 2);
     }
   }
-  painting->counts.all.rays = 0;
   return Status::kOk;
 }
 
