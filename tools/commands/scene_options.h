@@ -84,7 +84,6 @@ int all_cores();
 /// --threads alone, all cores by default.
 void add_threads(CLI::App& app, int* threads, const std::string& help);
 
-class BuiltScene;
 class GpuEngine;
 class LitStreams;
 class WideRenderer;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <string>
 
 #include "host/y4m.h"
 #include "particles/world_files.h"

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <new>
 #include <string_view>
-#include <vector>
 
 #include "output/units.h"
 #include "readers/oct.h"
@@ -15,9 +14,7 @@
 #include "scene/default_look.h"
 #include "scene/generators.h"
 #include "scene/host_memory.h"
-#include "scene/lit_description.h"
 #include "scene/named_scenes.h"
-#include "scene/scene_source.h"
 #include "thimble/light/render.h"
 #include "thimble/trace/ray.h"
 #include "thimble/tree/octree.h"

@@ -10,7 +10,6 @@
 #include "readers/oct.h"
 #include "scene/key_sort.h"
 #include "scene/scene_source.h"
-#include "thimble/tree/compact_tree.h"
 
 namespace thimble::tools {
 namespace {

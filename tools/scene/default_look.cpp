@@ -7,7 +7,6 @@
 
 #include "output/units.h"
 #include "readers/oct.h"
-#include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "thimble/trace/secondary_ray.h"
 

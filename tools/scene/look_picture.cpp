@@ -1,15 +1,11 @@
 #include "scene/look_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <vector>
 
-#include "scene/lit_description.h"
-#include "scene/lit_streams.h"
 #include "scene/workers.h"
 #include "thimble/light/render.h"
-#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {

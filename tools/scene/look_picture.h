@@ -110,8 +110,6 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
 
 // The light behind a scene for many pixels at a time, in vectors where there are any.
 
-class LitStreams;
-
 /// `light_behind` of many rays, kNothingBehind where they hit; by the vectors of `streams`, unless it is null.
 void find_light_behind(const CompactTree& tree, const Look& look, const LitStreams* streams,
                        Span<const Ray> rays, std::uint8_t* shares);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "output/units.h"
-#include "readers/oct.h"
 #include "readers/read_any.h"
 #include "scene/generators.h"
 #include "scene/mesh_shade.h"

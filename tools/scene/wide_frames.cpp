@@ -3,7 +3,6 @@
 #include <string>
 
 #include "readers/source.h"
-#include "thimble/base/memory.h"
 
 namespace thimble::tools {
 bool WideFrames::prepare(const CompactTree& tree, const Camera& camera) {
