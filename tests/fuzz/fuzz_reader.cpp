@@ -1,8 +1,5 @@
-/// @file check_reader.h
-/// What every fuzz target of a reader does with its input.
-#ifndef THIMBLE_TESTS_FUZZ_CHECK_READER_H
-#define THIMBLE_TESTS_FUZZ_CHECK_READER_H
-
+// libFuzzer targets: THIMBLE_FUZZED, a reader, on any bytes: refused with an InputError, or every promise of source.h
+// kept. CMakeLists.txt names the readers; each is a program of its own.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,16 +11,17 @@
 
 #include "readers/formats.h"
 
-namespace thimble::tools::test {
+namespace thimble::tools {
+namespace {
 
-inline void require(bool condition) {
+void require(bool condition) {
   if (!condition) {
     std::abort();
   }
 }
 
-/// Aborts when a promise of source.h is broken or anything but an InputError is thrown; returns 0.
-inline int check_reader(FormatReader* read, std::span<const std::uint8_t> bytes) {
+// Aborts when a promise of source.h is broken or anything but an InputError is thrown; returns 0.
+int check_reader(FormatReader* read, std::span<const std::uint8_t> bytes) {
   Source source;
   try {
     source = read({bytes, nullptr}, {}, {});
@@ -71,6 +69,9 @@ inline int check_reader(FormatReader* read, std::span<const std::uint8_t> bytes)
   return 0;
 }
 
-}  // namespace thimble::tools::test
+}  // namespace
+}  // namespace thimble::tools
 
-#endif
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return thimble::tools::check_reader(thimble::tools::THIMBLE_FUZZED, {data, size});
+}
