@@ -89,107 +89,65 @@ ref::Ray ref_ray(const Ray& ray) {
           {ray.direction.x, ray.direction.y, ray.direction.z}};
 }
 
-TEST_CASE("shadows: in every pixel what the exact reference says of the ray to the light") {
+TEST_CASE(
+    "shadows: in every pixel what the exact reference says of the ray to the sun, or as far as the lamp") {
   const int kWorlds = thimble::tests::many_or_few(12, 3);
-  int shadowed = 0;
-  int lit = 0;
-  for (int seed = 0; seed < kWorlds; ++seed) {
-    CAPTURE(seed);
-    SplitMix64 random(static_cast<std::uint64_t>(seed) + 77);
-    const auto below = [&](int bound) {
-      return static_cast<int>(random.below(static_cast<std::uint64_t>(bound)));
-    };
-    Place place;
-    place.box({0, 0, 0}, {kSide, kSide, 2});
-    for (int i = 0; i < 30; ++i) {
-      const Vec3i low{below(28), below(28), below(28)};
-      const int size = i < 10 ? 4 : 1;
-      place.box(low, {low.x + size, low.y + size, low.z + size});
-    }
-    LitWorld& world = place.world;
-    world.surfaces[0].albedo = {255, 255, 255};
-    set_ambient(&world.scene, 0);
-    const Vec3i toward{below(2001) - 1000, below(2001) - 1000, 300 + below(2000)};
-    world.lights = {sun(toward, 60000)};
-    world.finish();
-    // Whole numbers for the eye: edges are met exactly now and then.
-    world.look({-20 * 256 - 256 * below(5), -20 * 256, (10 + below(30)) * 256}, {16 * 256, 16 * 256, 8 * 256},
-               50, 80, 60);
-    const std::vector<Rgb8> picture = world.draw(Effect::kDirectLight | Effect::kShadows);
-    int wrong = 0;
-    for (int y = 0; y < 60; ++y) {
-      for (int x = 0; x < 80; ++x) {
-        const ref::Ray ray = ref_ray(world.camera.ray(x, y));
-        const ref::Hit hit = ref::walk(place.grid, ray);
-        bool bright = false;
-        if (hit.hit) {
-          int face = -1;
-          ref::Ray shadow = start_of(place.grid, ray, hit, &face);
-          shadow.direction = {toward.x, toward.y, toward.z};
-          const std::size_t f = static_cast<std::size_t>(face);
-          const bool turned_to = ray.direction[f] > 0 ? shadow.direction[f] < 0 : shadow.direction[f] > 0;
-          bright = turned_to && !ref::walk(place.grid, shadow).hit;
-          shadowed += turned_to && !bright ? 1 : 0;
-          lit += bright ? 1 : 0;
-        }
-        // So bright a light leaves no face that it reaches black.
-        wrong += (picture[static_cast<std::size_t>(y * 80 + x)].r != 0) != bright ? 1 : 0;
+  for (const bool is_lamp : {false, true}) {
+    CAPTURE(is_lamp);
+    int shadowed = 0;
+    int lit = 0;
+    int behind = 0;  // something solid, beyond the lamp
+    for (int seed = 0; seed < kWorlds; ++seed) {
+      CAPTURE(seed);
+      SplitMix64 random(static_cast<std::uint64_t>(seed) + (is_lamp ? 1977 : 77));
+      const auto below = [&](int bound) {
+        return static_cast<int>(random.below(static_cast<std::uint64_t>(bound)));
+      };
+      Place place;
+      place.box({0, 0, 0}, {kSide, kSide, 2});
+      if (is_lamp) {
+        place.box({kSide - 1, 0, 2},
+                  {kSide, kSide, kSide});  // what stands beyond the lamp, seen from the floor
       }
-    }
-    CHECK(wrong == 0);
-  }
-  CHECK(shadowed > 42 * kWorlds);
-  CHECK(lit > 417 * kWorlds);
-}
-
-TEST_CASE("shadows of lamps: in every pixel what the exact reference says of the ray as far as the lamp") {
-  const int kWorlds = thimble::tests::many_or_few(12, 3);
-  int shadowed = 0;
-  int lit = 0;
-  int behind = 0;  // something solid, beyond the lamp
-  for (int seed = 0; seed < kWorlds; ++seed) {
-    CAPTURE(seed);
-    SplitMix64 random(static_cast<std::uint64_t>(seed) + 1977);
-    const auto below = [&](int bound) {
-      return static_cast<int>(random.below(static_cast<std::uint64_t>(bound)));
-    };
-    Place place;
-    place.box({0, 0, 0}, {kSide, kSide, 2});
-    place.box({kSide - 1, 0, 2}, {kSide, kSide, kSide});  // what stands beyond the lamp, seen from the floor
-    for (int i = 0; i < 30; ++i) {
-      const Vec3i low{below(28), below(28), below(20)};
-      const int size = i < 10 ? 4 : 1;
-      place.box(low, {low.x + size, low.y + size, low.z + size});
-    }
-    LitWorld& world = place.world;
-    world.surfaces[0].albedo = {255, 255, 255};
-    set_ambient(&world.scene, 0);
-    const Vec3i at{256 * 4 + below(256 * 24), 256 * 4 + below(256 * 24), 256 * (6 + below(20)) + below(256)};
-    world.lights = {lamp(at, 60000, 100)};
-    world.finish();
-    world.look({-20 * 256 - 256 * below(5), -20 * 256, (10 + below(30)) * 256}, {16 * 256, 16 * 256, 8 * 256},
-               50, 80, 60);
-    const std::vector<Rgb8> picture = world.draw(Effect::kDirectLight | Effect::kShadows);
-    int wrong = 0;
-    for (int y = 0; y < 60; ++y) {
-      for (int x = 0; x < 80; ++x) {
-        const ref::Ray ray = ref_ray(world.camera.ray(x, y));
+      for (int i = 0; i < 30; ++i) {
+        const Vec3i low{below(28), below(28), below(is_lamp ? 20 : 28)};
+        const int size = i < 10 ? 4 : 1;
+        place.box(low, {low.x + size, low.y + size, low.z + size});
+      }
+      LitWorld& world = place.world;
+      world.surfaces[0].albedo = {255, 255, 255};
+      set_ambient(&world.scene, 0);
+      const Vec3i to = is_lamp ? Vec3i{256 * 4 + below(256 * 24), 256 * 4 + below(256 * 24),
+                                       256 * (6 + below(20)) + below(256)}
+                               : Vec3i{below(2001) - 1000, below(2001) - 1000, 300 + below(2000)};
+      world.lights = {is_lamp ? lamp(to, 60000, 100) : sun(to, 60000)};
+      world.finish();
+      // Whole numbers for the eye: edges are met exactly now and then.
+      world.look({-20 * 256 - 256 * below(5), -20 * 256, (10 + below(30)) * 256},
+                 {16 * 256, 16 * 256, 8 * 256}, 50, 80, 60);
+      const std::vector<Rgb8> picture = world.draw(Effect::kDirectLight | Effect::kShadows);
+      int wrong = 0;
+      for (int pixel = 0; pixel < 80 * 60; ++pixel) {
+        const ref::Ray ray = ref_ray(world.camera.ray(pixel % 80, pixel / 80));
         const ref::Hit hit = ref::walk(place.grid, ray);
-        const bool is_bright = picture[static_cast<std::size_t>(y * 80 + x)].r != 0;
+        // So bright a light leaves no face that it reaches black.
+        const bool is_bright = picture[static_cast<std::size_t>(pixel)].r != 0;
         if (!hit.hit) {
           wrong += is_bright ? 1 : 0;
           continue;
         }
         int face = -1;
         ref::Ray shadow = start_of(place.grid, ray, hit, &face);
-        Ray towards;
         RayPoint end;
-        REQUIRE(ray_towards({Q8::from_raw(static_cast<std::int32_t>(shadow.origin_q8[0])),
-                             Q8::from_raw(static_cast<std::int32_t>(shadow.origin_q8[1])),
-                             Q8::from_raw(static_cast<std::int32_t>(shadow.origin_q8[2]))},
-                            {Q8::from_raw(at.x), Q8::from_raw(at.y), Q8::from_raw(at.z)}, 15, &towards,
-                            &end));
-        shadow.direction = ref_ray(towards).direction;
+        shadow.direction = {to.x, to.y, to.z};
+        if (is_lamp) {
+          Ray towards;
+          const auto q8 = [&](std::size_t axis) {
+            return Q8::from_raw(static_cast<std::int32_t>(shadow.origin_q8[axis]));
+          };
+          REQUIRE(ray_towards({q8(0), q8(1), q8(2)}, LitWorld::point(to), 15, &towards, &end));
+          shadow.direction = ref_ray(towards).direction;
+        }
         const auto f = static_cast<std::size_t>(face);
         const std::int64_t away = ray.direction[f] > 0 ? -shadow.direction[f] : shadow.direction[f];
         if (away <= 0) {
@@ -197,23 +155,23 @@ TEST_CASE("shadows of lamps: in every pixel what the exact reference says of the
           continue;
         }
         const ref::Hit met = ref::walk(place.grid, shadow);
-        const bool is_before =
-            met.hit && met.t_numerator * end.t_denominator < end.t_numerator * met.t_denominator;
-        behind += met.hit && !is_before ? 1 : 0;
-        shadowed += is_before ? 1 : 0;
-        if (is_before) {
+        const bool is_dark = met.hit && (!is_lamp || met.t_numerator * end.t_denominator <
+                                                         end.t_numerator * met.t_denominator);
+        behind += met.hit && !is_dark ? 1 : 0;
+        shadowed += is_dark ? 1 : 0;
+        if (is_dark) {
           wrong += is_bright ? 1 : 0;
-        } else if (away > 1 << 9) {  // else light so slanting that it may round to black
+        } else if (!is_lamp || away > 1 << 9) {  // else light so slanting that it may round to black
           ++lit;
           wrong += is_bright ? 0 : 1;
         }
       }
+      CHECK(wrong == 0);
     }
-    CHECK(wrong == 0);
+    CHECK(shadowed > 42 * kWorlds);
+    CHECK(lit > (is_lamp ? 200 : 417) * kWorlds);
+    CHECK((behind > 20 * kWorlds) == is_lamp);
   }
-  CHECK(shadowed > 42 * kWorlds);
-  CHECK(lit > 200 * kWorlds);
-  CHECK(behind > 20 * kWorlds);
 }
 
 TEST_CASE("shadows: what is behind a point light casts none, what is before it does") {

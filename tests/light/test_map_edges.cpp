@@ -5,11 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "support/lit_world.h"
+#include "support/map_world.h"
 #include "support/scene_under_test.h"
 #include "thimble/light/map_render.h"
 #include "thimble/light/render.h"
-#include "thimble/tree/brick_map.h"
 
 namespace thimble::testing::map_edges {
 namespace {
@@ -17,8 +16,8 @@ namespace {
 using tests::HeapBytes;
 
 // A house of a few walls, in all materials.
-struct House : LitWorld {
-  explicit House(bool empty = false, int level = 5) : LitWorld(level) {
+struct House : MapWorld {
+  explicit House(bool empty = false, int level = 5) : MapWorld(level) {
     if (!empty) {
       box({2, 2, 0}, {30, 30, 2}, 1);
       box({6, 6, 2}, {8, 26, 14}, 2);
@@ -30,30 +29,16 @@ struct House : LitWorld {
     surfaces[2] = surface(SurfaceKind::kDiffuse, {200, 60, 30});
     surfaces[3] = surface(SurfaceKind::kEmit, {90, 120, 220});
     surfaces[4] = surface(SurfaceKind::kDiffuse, {40, 160, 70});
-    scene.has_shadows = true;
     scene.has_sky = true;
-    shading.background = {30, 60, 90};
-    lights = {sun({-5, -9, 16}), sun({7, -3, 4}, 120)};
-    finish();
+    lights.push_back(sun({7, -3, 4}, 120));
+    map_it();
     look({-14 * 256 + 3, -20 * 256 + 17, 24 * 256}, {16 * 256, 16 * 256, 6 * 256}, 46, 53, 37);
   }
 };
 
-// The same with its map.
-struct MappedHouse : House {
-  explicit MappedHouse(bool empty = false, int level = 5)
-      : House(empty, level), room(most_brick_map_bytes(tree)) {
-    map_it();
-  }
-  void map_it() { REQUIRE(BrickMap::make(tree, room.span(), &map) == Status::kOk); }
-
-  HeapBytes room;
-  BrickMap map;
-};
-
 // What is proven of the house's first sun.
 struct ProvenSun {
-  explicit ProvenSun(const MappedHouse& world) : bytes(SunBricks::bytes(world.map)) {
+  explicit ProvenSun(const House& world) : bytes(SunBricks::bytes(world.map)) {
     REQUIRE(SunBricks::make(world.map, world.lights[0].place, bytes.span(), &sun) == Status::kOk);
     sun.prove();
   }
@@ -63,79 +48,56 @@ struct ProvenSun {
 
 constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
 
-template <EffectSet kSet>
-void compare(const LitWorld& world, const BrickMap& map, Span<const SunBricks> suns, PixelFormat format,
-             bool dither, bool counted, std::size_t offset) {
-  const Camera& camera = world.camera;
-  const std::size_t size = band_bytes(format, camera.width_px(), camera.height_px());
-  LitOptions options;
-  options.dither = dither;
-  std::vector<std::uint8_t> fast(size + offset, 0x5A);
-  std::vector<std::uint8_t> right(size + offset, 0x5A);
-  LitCounts fast_counts;
-  LitCounts right_counts;
-  REQUIRE(render_lit_band<kSet>(world.tree, map, camera, world.shading, world.scene, suns,
-                                {{fast.data() + offset, size}, format, 0, 0, camera.height_px()},
-                                counted ? &fast_counts : nullptr, options) == Status::kOk);
-  REQUIRE(render_lit_band<kSet>(world.tree, camera, world.shading, world.scene,
-                                {{right.data() + offset, size}, format, 0, 0, camera.height_px()},
-                                &right_counts, options) == Status::kOk);
+// The tree's bytes, and its rays one by one.
+template <EffectSet kSet = kSun>
+void compare(const House& world, Span<const SunBricks> suns = {}, PixelFormat format = PixelFormat::kRgb888,
+             std::size_t offset = 0) {
   CAPTURE(static_cast<int>(format));
-  CAPTURE(dither);
-  CAPTURE(counted);
   CAPTURE(suns.size);
-  CHECK(fast == right);
+  const BothCounts both = draw_both<kSet>(world, format, offset, suns);
   for (int kind = 0; kind < kLitRayKinds; ++kind) {
-    CHECK(fast_counts.rays[kind] == (counted ? right_counts.rays[kind] : 0));
-    CHECK(fast_counts.hits[kind] == (counted ? right_counts.hits[kind] : 0));
+    CHECK(both.by_map.rays[kind] == both.by_tree.rays[kind]);
+    CHECK(both.by_map.hits[kind] == both.by_tree.hits[kind]);
   }
 }
+// By each set of the sun's, and by light without shadows.
+void compare_sets(const House& world, Span<const SunBricks> suns, Span<const SunBricks> of_all,
+                  PixelFormat format, std::size_t offset = 0) {
+  compare(world, suns, format, offset);
+  compare<Effect::kDirectLight>(world, {}, format, offset);
+  compare<kSun | Effect::kEmission | Effect::kSky>(world, of_all, format, offset);
+  compare<kSun | Effect::kEmission>(world, suns, format, offset);
+  compare<kSun | Effect::kSky>(world, suns, format, offset);
+}
 
-TEST_CASE(
-    "lit frames by the map: every format, with dither and without, counted or not -> the tree's bytes") {
+TEST_CASE("lit frames by the map: every format, with dither and without -> the tree's bytes") {
   for (const bool empty : {false, true}) {
-    const MappedHouse world(empty);
+    House world(empty);
     const ProvenSun proven(world);
     for (int number = 0; number < kPixelFormats; ++number) {
-      const auto format = static_cast<PixelFormat>(number);
-      for (int bits = 0; bits < 8; ++bits) {
-        const bool dither = (bits & 1) != 0;
-        const bool counted = (bits & 2) != 0;
-        const std::size_t offset = (bits & 4) != 0 ? 1 : 0;  // of a buffer that begins between halfwords
-        compare<kSun>(world, world.map, {&proven.sun, 1}, format, dither, counted, offset);
-        compare<kSun | Effect::kEmission | Effect::kSky>(world, world.map, {&proven.sun, bits < 4 ? 1U : 0U},
-                                                         format, dither, counted, offset);
-        compare<Effect::kDirectLight>(world, world.map, {}, format, dither, counted, offset);
-        compare<kSun | Effect::kEmission>(world, world.map, {&proven.sun, 1}, format, dither, counted,
-                                          offset);
-        compare<kSun | Effect::kSky>(world, world.map, {&proven.sun, 1}, format, dither, counted, offset);
+      for (int bits = 0; bits < 4; ++bits) {
+        world.options.dither = (bits & 1) != 0;
+        // Also in a buffer that begins between halfwords.
+        compare_sets(world, {&proven.sun, 1}, {&proven.sun, bits < 2 ? 1U : 0U},
+                     static_cast<PixelFormat>(number), bits < 2 ? 0 : 1);
       }
     }
   }
 }
 
 // Faces of many pixels are drawn as wholes.
-TEST_CASE(
-    "lit frames by the map: large faces in formats of halfwords and less, counted or not -> the tree's "
-    "bytes") {
-  MappedHouse world;
+TEST_CASE("lit frames by the map: large faces in formats of halfwords and less -> the tree's bytes") {
+  House world;
   const ProvenSun proven(world);
   world.look({-6 * 256 + 3, -9 * 256 + 17, 18 * 256}, {16 * 256, 16 * 256, 4 * 256}, 40, 240, 176);
   for (const PixelFormat format : {PixelFormat::kRgb565, PixelFormat::kRgb565Be, PixelFormat::kBgr565,
                                    PixelFormat::kGray4, PixelFormat::kMono1Pages}) {
-    for (const bool counted : {false, true}) {
-      compare<kSun>(world, world.map, {&proven.sun, 1}, format, true, counted, 0);
-      compare<Effect::kDirectLight>(world, world.map, {}, format, true, counted, 0);
-      compare<kSun | Effect::kEmission | Effect::kSky>(world, world.map, {&proven.sun, 1}, format, true,
-                                                       counted, 0);
-      compare<kSun | Effect::kEmission>(world, world.map, {&proven.sun, 1}, format, true, counted, 0);
-      compare<kSun | Effect::kSky>(world, world.map, {&proven.sun, 1}, format, true, counted, 0);
-    }
+    compare_sets(world, {&proven.sun, 1}, {&proven.sun, 1}, format);
   }
 }
 
 TEST_CASE("lit frames by the map: rows of whole tiles -> nothing is written behind the last") {
-  MappedHouse world;
+  House world;
   for (const Vec3i& target : {Vec3i{16 * 256, 16 * 256, 0}, Vec3i{0, 16 * 256, 60 * 256}}) {  // ground, sky
     world.look({16 * 256, 3 * 256, 12 * 256}, target, 60, 96, 48);
     std::vector<std::uint16_t> pixels(96 * 64, 0x5A5A);
@@ -155,7 +117,7 @@ TEST_CASE("lit frames by the map: rows of whole tiles -> nothing is written behi
 }
 
 TEST_CASE("lit frames by the map: effects that there are not -> by the map as without, no node is read") {
-  MappedHouse world;
+  House world;
   LitCounts counts[2];
   std::vector<std::uint8_t> pixels[2];
   for (int i = 0; i < 2; ++i) {
@@ -171,50 +133,63 @@ TEST_CASE("lit frames by the map: effects that there are not -> by the map as wi
   }
 }
 
-// The middle row's points lie on a plane between voxels, in which the light of a level sun runs.
-TEST_CASE("lit frames by the map: large faces under a sun without x, y or z -> the tree's bytes") {
-  MappedHouse world;
+// The middle row's points lie on a plane between voxels, in which the light of a level sun runs; suns of 12 bits.
+TEST_CASE(
+    "lit frames by the map: large faces under a sun without x, y or z, or of 12 bits -> the tree's bytes") {
+  House world;
   world.look({-6 * 256 + 3, -9 * 256 + 17, 6 * 256}, {16 * 256, 16 * 256, 6 * 256}, 40, 240, 177);
   for (const Vec3i& direction :
-       {Vec3i{0, -9, 16}, Vec3i{-5, 0, 16}, Vec3i{-5, -9, 0}, Vec3i{-1, -9, 0}, Vec3i{-9, -5, 0}}) {
+       {Vec3i{0, -9, 16}, Vec3i{-5, 0, 16}, Vec3i{-5, -9, 0}, Vec3i{-1, -9, 0}, Vec3i{-9, -5, 0},
+        Vec3i{-3900, -4000, 4095}, Vec3i{-4000, -2100, 4090}, Vec3i{2900, -4095, 4000}}) {
     CAPTURE(direction.x);
     world.lights[0].place = direction;
-    compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, true, 0);
-  }
-}
-
-// A column of points less than 1/256 beside an edge of two voxels, at the end of the shadow of both.
-TEST_CASE("lit frames by the map: points on voxels' edges under a sun without x -> the tree's bytes") {
-  MappedHouse world;
-  world.lights[0].place = Vec3i{0, -9, 40};
-  const Vec3Q8 eye = LitWorld::point({18 * 256, 44 * 256, 30 * 256});
-  for (const int width : {31, 33}) {
-    for (const int off : {-1, 1}) {
-      REQUIRE(world.camera.set(
-                  PerspectiveView{eye, {off, -16500, -28000}, {}, Q16::saturate(3), width, 24, 15}, 5) ==
-              Status::kOk);
-      compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, true, 0);
-    }
-  }
-}
-
-TEST_CASE("lit frames by the map: suns of 12 bits -> the tree's bytes") {
-  MappedHouse world;
-  for (const Vec3i& direction :
-       {Vec3i{-3900, -4000, 4095}, Vec3i{-4000, -2100, 4090}, Vec3i{2900, -4095, 4000}}) {
-    CAPTURE(direction.x);
-    world.lights[0].place = direction;
-    compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, true, 0);
+    compare(world);
   }
 }
 
 // The picture's middle column runs through the edges of boxes, which only the tree can name.
-TEST_CASE("lit frames by the map: rays through edges, counted or not -> the tree's bytes") {
-  MappedHouse world;
+TEST_CASE("lit frames by the map: rays through edges -> the tree's bytes") {
+  House world;
   world.look({-6 * 256, -6 * 256, 8 * 256}, {16 * 256, 16 * 256, 8 * 256}, 46, 53, 37);
-  for (const bool counted : {false, true}) {
-    compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, counted, 0);
-    compare<Effect::kDirectLight>(world, world.map, {}, PixelFormat::kRgb888, true, counted, 0);
+  compare(world);
+  compare<Effect::kDirectLight>(world);
+}
+
+TEST_CASE("lit frames by the map: views in which something ends -> the tree's bytes") {
+  House world;
+  constexpr Vec3i kAbove{18 * 256, 44 * 256, 30 * 256};
+  constexpr Vec3i kWithin{2176, 2320, 1552};
+  const struct {
+    Vec3i eye;
+    Vec3i forward;
+    int fov;
+    int width;
+    int height;
+    int bits;
+    Vec3i sun;
+  } kViews[] = {
+      // A column of points less than 1/256 beside an edge of two voxels, at the end of the shadow of both.
+      {kAbove, {-1, -16500, -28000}, 3, 31, 24, 15, {0, -9, 40}},
+      {kAbove, {1, -16500, -28000}, 3, 31, 24, 15, {0, -9, 40}},
+      {kAbove, {-1, -16500, -28000}, 3, 33, 24, 15, {0, -9, 40}},
+      {kAbove, {1, -16500, -28000}, 3, 33, 24, 15, {0, -9, 40}},
+      // Neighbours that go opposite ways along the axis on which they are fastest, so a quad has no such axis.
+      {kWithin, {-3, 3, -1}, 111, 2, 1, 8, {-5, -9, 16}},
+      {kWithin, {0, 788, 910}, 56, 7, 1, 8, {-5, -9, 16}},
+      {kWithin, {985, 3, 177}, 55, 14, 1, 8, {-5, -9, 16}},
+      {kWithin, {-902, 2, 668}, 96, 23, 3, 8, {-5, -9, 16}}};
+  for (const auto& view : kViews) {
+    CAPTURE(view.width);
+    world.lights[0].place = view.sun;
+    REQUIRE(world.camera.set(PerspectiveView{LitWorld::point(view.eye),
+                                             view.forward,
+                                             {},
+                                             Q16::saturate(view.fov),
+                                             view.width,
+                                             view.height,
+                                             view.bits},
+                             5) == Status::kOk);
+    compare(world);
   }
 }
 
@@ -229,56 +204,24 @@ TEST_CASE("lit frames by the map: rays that start far outside, along each axis -
       }
       return result;
     };
-    LitWorld world(7);
+    House world(true, 7);
     for (const Vec3i& voxel : {Vec3i{30, 102, 55}, Vec3i{0, 0, 0}, Vec3i{127, 123, 127}}) {
       world.voxel(turned(voxel), 1);
     }
-    world.surfaces[1] = surface(SurfaceKind::kDiffuse, {210, 190, 150});
-    world.scene.has_shadows = true;
-    world.lights = {sun({-5, -9, 16})};
-    world.finish();
+    world.lights.resize(1);
+    world.map_it();
     REQUIRE(world.camera.set(
                 PerspectiveView{LitWorld::point(turned({32640, 48145, 15488})), turned({-397, 18, -388}),
                                 turned({-459, -673, -407}), Q16::saturate(120), 3, 4, 14},
                 7) == Status::kOk);
-    HeapBytes room(most_brick_map_bytes(7));
-    BrickMap map;
-    REQUIRE(BrickMap::make(world.tree, room.span(), &map) == Status::kOk);
-    compare<kSun>(world, map, {}, PixelFormat::kRgb888, true, true, 0);
-  }
-}
-
-// Neighbours that go opposite ways along the axis on which they are fastest, so a quad has no such axis.
-TEST_CASE(
-    "lit frames by the map: rays of wide views in a few pixels, from within a house -> the tree's bytes") {
-  MappedHouse world;
-  const struct {
-    Vec3i forward;
-    int fov;
-    int width;
-    int height;
-  } kViews[] = {{{-3, 3, -1}, 111, 2, 1},
-                {{0, 788, 910}, 56, 7, 1},
-                {{985, 3, 177}, 55, 14, 1},
-                {{-902, 2, 668}, 96, 23, 3}};
-  for (const auto& view : kViews) {
-    CAPTURE(view.width);
-    REQUIRE(world.camera.set(PerspectiveView{LitWorld::point({2176, 2320, 1552}),
-                                             view.forward,
-                                             {},
-                                             Q16::saturate(view.fov),
-                                             view.width,
-                                             view.height,
-                                             8},
-                             5) == Status::kOk);
-    compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, true, true, 0);
+    compare(world);
   }
 }
 
 TEST_CASE(
     "lit frames by the map: a set that is known only at run time, with lamps and without -> the tree's "
     "bytes") {
-  MappedHouse world;
+  House world;
   world.scene.occlusion = {6, 160, 8};
   world.surfaces[4].kind = SurfaceKind::kMetal;
   world.surfaces[4].mirror = 190;
@@ -333,9 +276,9 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "lit frames by the map: too little room, a stranger's world.map, too many lights -> a status, nothing "
+    "lit frames by the map: too little room, a stranger's map, too many lights -> a status, nothing "
     "drawn") {
-  MappedHouse world;
+  House world;
   std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kGray8, 53, 37), 0x5A);
   const std::vector<std::uint8_t> before = bytes;
   const auto draw = [&](const BrickMap& by, std::size_t size) {
@@ -344,7 +287,7 @@ TEST_CASE(
   };
   CHECK(draw(world.map, bytes.size() - 1) == Status::kOutOfMemory);
   CHECK(draw(BrickMap(), bytes.size()) == Status::kDamaged);
-  const MappedHouse stranger(true);
+  const House stranger(true);
   CHECK(draw(stranger.map, bytes.size()) == Status::kDamaged);
   const std::vector<Light> lights = world.lights;
   world.lights.resize(kMaxLights + 1, lamp({2000, 2000, 2000}));
@@ -358,14 +301,14 @@ TEST_CASE(
 }
 
 TEST_CASE("lit frames by the map: a world of level 9 -> the tree's bytes, and nothing is proven of a sun") {
-  const MappedHouse world(false, 9);
+  const House world(false, 9);
   CHECK(SunBricks::bytes(world.map) == 0);
   HeapBytes sun_bytes(4096);
   SunBricks sun;
   CHECK(SunBricks::make(world.map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOutOfRange);
   CHECK_FALSE(sun.belongs_to(world.map, world.lights[0].place));
-  compare<kSun>(world, world.map, {}, PixelFormat::kRgb888, false, true, 0);
-  compare<kSun>(world, world.map, {&sun, 1}, PixelFormat::kGray8, true, false, 0);
+  compare(world);
+  compare(world, {&sun, 1}, PixelFormat::kGray8);
 }
 
 // ---- balls

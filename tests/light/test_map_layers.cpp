@@ -22,31 +22,51 @@ constexpr int kWide = 44;
 constexpr int kHigh = 32;
 constexpr EffectSet kByLamps = Effect::kDirectLight | Effect::kShadows | Effect::kEmitterLight;
 
+constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+
 struct Drawn {
   std::vector<std::uint8_t> bytes;
   LitCounts counts;
+  std::uint64_t visits_by_tree = 0;
+  std::uint64_t hits_by_tree = 0;
 };
-template <class Render>
-Drawn drawn(const Render& render) {
-  Drawn made;
-  made.bytes.resize(3 * kWide * kHigh);
-  REQUIRE(render({{made.bytes.data(), made.bytes.size()}, PixelFormat::kRgb888, 0, 0, kHigh}, &made.counts) ==
-          Status::kOk);
-  return made;
+// The picture by the map, which is the tree's and sends the same rays of light.
+Drawn drawn(const ChipScene& scene, const Camera& camera, const LitScene& lit) {
+  Drawn both[2];
+  const Shading shading;
+  for (int by_map = 0; by_map < 2; ++by_map) {
+    Drawn& made = both[by_map];
+    made.bytes.resize(band_bytes(PixelFormat::kRgb888, camera.width_px(), camera.height_px()));
+    const Band band{{made.bytes.data(), made.bytes.size()}, PixelFormat::kRgb888, 0, 0, camera.height_px()};
+    REQUIRE((by_map != 0 ? render_lit_band<kByLamps>(scene.tree, scene.map, camera, shading, lit, {}, band,
+                                                     &made.counts)
+                         : render_lit_band<kByLamps>(scene.tree, camera, shading, lit, band, &made.counts)) ==
+            Status::kOk);
+  }
+  REQUIRE(both[1].bytes == both[0].bytes);
+  REQUIRE(both[1].counts.rays[kShadow] == both[0].counts.rays[kShadow]);
+  both[1].visits_by_tree = both[0].counts.node_visits[kShadow];
+  both[1].hits_by_tree = both[0].counts.hits[kShadow];
+  return both[1];
+}
+
+/// A wall through the world.
+std::vector<Vec3i> wall_at(int place, int side, int axis) {
+  std::vector<Vec3i> voxels;
+  voxels.reserve(static_cast<std::size_t>(side * side));
+  for (int i = 0; i < side * side; ++i) {
+    Vec3i at{};
+    at[axis] = place;
+    at[(axis + 1) % 3] = i / side;
+    at[(axis + 2) % 3] = i % side;
+    voxels.push_back(at);
+  }
+  return voxels;
 }
 
 /// A wall all over one side of the world, and a few voxels in the air before it, in clusters.
 std::vector<Vec3i> hang_before_a_wall(std::mt19937_64& random, int side, int axis, bool high, int count) {
-  std::vector<Vec3i> voxels;
-  for (int i = 0; i < side; ++i) {
-    for (int k = 0; k < side; ++k) {
-      Vec3i at{};
-      at[axis] = high ? side - 1 : 0;
-      at[(axis + 1) % 3] = i;
-      at[(axis + 2) % 3] = k;
-      voxels.push_back(at);
-    }
-  }
+  std::vector<Vec3i> voxels = wall_at(high ? side - 1 : 0, side, axis);
   Vec3i at{};
   for (int i = 0; i < count; ++i) {
     const bool anew = i % 12 == 0;
@@ -98,17 +118,8 @@ TEST_CASE("lamps by the map: voxels that hang in the air, empty bricks around th
     }
     LitScene lit;
     lit.lights = {lamps.data(), lamps.size()};
-    const Shading shading;
-    const Drawn wanted = drawn([&](const Band& band, LitCounts* counts) {
-      return render_lit_band<kByLamps>(scene.tree, camera, shading, lit, band, counts);
-    });
-    const Drawn got = drawn([&](const Band& band, LitCounts* counts) {
-      return render_lit_band<kByLamps>(scene.tree, scene.map, camera, shading, lit, {}, band, counts);
-    });
-    REQUIRE(got.bytes == wanted.bytes);
-    constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
-    CHECK(got.counts.rays[kShadow] == wanted.counts.rays[kShadow]);
-    CHECK(got.counts.node_visits[kShadow] <= wanted.counts.node_visits[kShadow] / 4);
+    const Drawn got = drawn(scene, camera, lit);
+    CHECK(got.counts.node_visits[kShadow] <= got.visits_by_tree / 4);
     hidden += got.counts.hits[kShadow];
     reached += got.counts.rays[kShadow] - got.counts.hits[kShadow];
   }
@@ -122,13 +133,9 @@ TEST_CASE("lamps by the map: a wall two voxels behind a lamp, near and far -> no
   constexpr int kNear = 3;
   for (int way = 6; way <= 40; ++way) {
     CAPTURE(way);
-    std::vector<Vec3i> voxels;
-    for (int i = 0; i < 64; ++i) {
-      for (int k = 0; k < 64; ++k) {
-        voxels.push_back({kNear, i, k});
-        voxels.push_back({kNear + way + 3, i, k});
-      }
-    }
+    std::vector<Vec3i> voxels = wall_at(kNear, 64, 0);
+    const std::vector<Vec3i> behind = wall_at(kNear + way + 3, 64, 0);
+    voxels.insert(voxels.end(), behind.begin(), behind.end());
     const ChipScene scene = make_chip_scene(6, voxels);
     Light lamp;
     lamp.is_point = true;
@@ -141,10 +148,7 @@ TEST_CASE("lamps by the map: a wall two voxels behind a lamp, near and far -> no
     const Vec3Q8 eye{Q8::saturate(kNear + 3), Q8::saturate(32), Q8::saturate(32)};
     REQUIRE(camera.set(PerspectiveView{eye, {-1, 0, 0}, {}, Q16::saturate(20), kWide, kHigh, 0}, 6) ==
             Status::kOk);
-    const Drawn got = drawn([&](const Band& band, LitCounts* counts) {
-      return render_lit_band<kByLamps>(scene.tree, scene.map, camera, Shading(), lit, {}, band, counts);
-    });
-    constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+    const Drawn got = drawn(scene, camera, lit);
     CHECK(got.counts.rays[kShadow] == kWide * kHigh);
     CHECK(got.counts.hits[kShadow] == 0);
   }
@@ -195,16 +199,7 @@ TEST_CASE("lamps by the map: planes of bricks crossed at the same time -> the tr
     }
     REQUIRE(times > 0);
     // The wall, and voxels that touch the ray's way or stand in it.
-    std::vector<Vec3i> voxels;
-    for (int i = 0; i < kSide; ++i) {
-      for (int k = 0; k < kSide; ++k) {
-        Vec3i at{};
-        at[axis] = high ? kSide - 4 : 3;
-        at[(axis + 1) % 3] = i;
-        at[(axis + 2) % 3] = k;
-        voxels.push_back(at);
-      }
-    }
+    std::vector<Vec3i> voxels = wall_at(high ? kSide - 4 : 3, kSide, axis);
     for (int i = pick_int(random, 1, 3); i > 0; --i) {
       const int along = pick_int(random, 1, 4 * times);
       Vec3i at{};
@@ -237,22 +232,9 @@ TEST_CASE("lamps by the map: planes of bricks crossed at the same time -> the tr
     lamp.color_q8[0] = lamp.color_q8[1] = lamp.color_q8[2] = 2000;
     LitScene lit;
     lit.lights = {&lamp, 1};
-    const Shading shading;
-    std::vector<std::uint8_t> bytes[2];
-    LitCounts counts[2];
-    for (int by_map = 0; by_map < 2; ++by_map) {
-      bytes[by_map].resize(3 * kPicture * kPicture);
-      const Band band{{bytes[by_map].data(), bytes[by_map].size()}, PixelFormat::kRgb888, 0, 0, kPicture};
-      REQUIRE((by_map != 0 ? render_lit_band<kByLamps>(scene.tree, scene.map, camera, shading, lit, {}, band,
-                                                       &counts[1])
-                           : render_lit_band<kByLamps>(scene.tree, camera, shading, lit, band, &counts[0])) ==
-              Status::kOk);
-    }
-    REQUIRE(bytes[1] == bytes[0]);
-    constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
-    REQUIRE(counts[1].rays[kShadow] == counts[0].rays[kShadow]);
-    hidden += counts[0].hits[kShadow] != 0 ? 1 : 0;
-    reached += counts[0].rays[kShadow] != counts[0].hits[kShadow] ? 1 : 0;
+    const Drawn got = drawn(scene, camera, lit);
+    hidden += got.hits_by_tree != 0 ? 1 : 0;
+    reached += got.counts.rays[kShadow] != got.hits_by_tree ? 1 : 0;
   }
   CAPTURE(hidden);
   CAPTURE(reached);

@@ -175,7 +175,7 @@ TEST_CASE("mirrors by the map: reflected rays through edges and corners -> the t
   int asked = 0;
   int passed = 0;
   int seen = 0;
-  const int turns = many_or_few(4000, 800);
+  const int turns = many_or_few(4000, 300);
   for (int turn = 0; turn < turns; ++turn) {
     CAPTURE(turn);
     const int axis = turn % 3;

@@ -3,16 +3,17 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <iterator>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "support/chip_worlds.h"
 #include "support/ray_cases.h"
 #include "thimble/light/map_render.h"
-#include "thimble/tree/octree.h"
 
 namespace {
 
@@ -53,46 +54,24 @@ constexpr LitWay lit_way() {
 }
 
 constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
+constexpr EffectSet kBeside[] = {Effect::kEmitterLight, Effect::kAmbientOcclusion, Effect::kMirror,
+                                 Effect::kEmission, Effect::kSky};
+// The sun with those beside it whose bits are set.
+constexpr EffectSet sun_and(unsigned bits) {
+  EffectSet set = kSun;
+  for (unsigned i = 0; i < std::size(kBeside); ++i) {
+    set |= (bits >> i & 1U) != 0 ? kBeside[i] : Effect::kNone;
+  }
+  return set;
+}
 // All sets of the fast way, and some that the tree draws.
-constexpr LitWay kLitWays[] = {
-    lit_way<kSun>(),
-    lit_way<kSun | Effect::kEmission>(),
-    lit_way<kSun | Effect::kSky>(),
-    lit_way<kSun | Effect::kEmission | Effect::kSky>(),
-    lit_way<kSun | Effect::kEmitterLight>(),
-    lit_way<kSun | Effect::kEmitterLight | Effect::kEmission>(),
-    lit_way<kSun | Effect::kEmitterLight | Effect::kSky>(),
-    lit_way<kSun | Effect::kEmitterLight | Effect::kEmission | Effect::kSky>(),
-    lit_way<kSun | Effect::kAmbientOcclusion>(),
-    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmission>(),
-    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kSky>(),
-    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight>(),
-    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission>(),
-    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kSky>(),
-    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmission | Effect::kSky>(),
-    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission | Effect::kSky>(),
-    lit_way<kSun | Effect::kMirror>(),
-    lit_way<kSun | Effect::kMirror | Effect::kEmission>(),
-    lit_way<kSun | Effect::kMirror | Effect::kSky>(),
-    lit_way<kSun | Effect::kMirror | Effect::kEmission | Effect::kSky>(),
-    lit_way<kSun | Effect::kMirror | Effect::kEmitterLight>(),
-    lit_way<kSun | Effect::kMirror | Effect::kEmitterLight | Effect::kEmission>(),
-    lit_way<kSun | Effect::kMirror | Effect::kEmitterLight | Effect::kSky>(),
-    lit_way<kSun | Effect::kMirror | Effect::kEmitterLight | Effect::kEmission | Effect::kSky>(),
-    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion>(),
-    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmission>(),
-    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kSky>(),
-    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmission | Effect::kSky>(),
-    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmitterLight>(),
-    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission>(),
-    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kSky>(),
-    lit_way<kSun | Effect::kMirror | Effect::kAmbientOcclusion | Effect::kEmitterLight | Effect::kEmission |
-            Effect::kSky>(),
-    lit_way<Effect::kDirectLight>(),
-    lit_way<Effect::kEmission>(),
-    lit_way<Effect::kNone>(),
-    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kMirror | Effect::kFog>(),
-};
+template <unsigned... kBits>
+constexpr auto lit_ways(std::integer_sequence<unsigned, kBits...>) {
+  return std::array{lit_way<sun_and(kBits)>()..., lit_way<Effect::kDirectLight>(),
+                    lit_way<Effect::kEmission>(), lit_way<Effect::kNone>(),
+                    lit_way<kSun | Effect::kAmbientOcclusion | Effect::kMirror | Effect::kFog>()};
+}
+constexpr auto kLitWays = lit_ways(std::make_integer_sequence<unsigned, 1U << std::size(kBeside)>());
 
 /// Along axes and diagonals, flat, from below, of few bits and of many.
 Light hard_sun(std::mt19937_64& random) {
@@ -320,18 +299,7 @@ TEST_CASE(
     "it") {
   // The middle row's rays run at z = 8 exactly and end on a face of the first voxel; from there the sun's go through
   // edges only, to the second one in the same brick.
-  std::vector<std::uint8_t> pool_bytes(Octree::octree_bytes(1000));
-  Octree pool;
-  REQUIRE(Octree::make(4, {pool_bytes.data(), pool_bytes.size()}, &pool) == Status::kOk);
-  REQUIRE(pool.insert({8, 9, 8}, 1) == Status::kOk);
-  REQUIRE(pool.insert({11, 9, 10}, 2) == Status::kOk);
-  ChipScene scene{compact_of(pool), {}, {}, {}};
-  scene.tree = open_or_throw(scene.tree_bytes);
-  scene.map_words.resize(most_brick_map_bytes(4) / 8 + 1);
-  REQUIRE(BrickMap::make(scene.tree,
-                         {static_cast<std::uint8_t*>(static_cast<void*>(scene.map_words.data())),
-                          8 * scene.map_words.size()},
-                         &scene.map) == Status::kOk);
+  const ChipScene scene = make_chip_scene(4, {{8, 9, 8}, {11, 9, 10}});
   Light light;
   light.place = Vec3i{1, 0, 1};
   std::vector<std::uint8_t> room(SunBricks::bytes(scene.map));

@@ -130,38 +130,27 @@ Solid box(const Vec3i& low, const Vec3i& high) {
 }
 
 TEST_CASE("a plane, a cube, a lone voxel, a plate, a room: every face keeps its own normal, exactly") {
-  SUBCASE("a plane") {
-    expect_faces(Body(box({0, 0, 0}, {64, 64, 21})));
-  }
-  SUBCASE("a cube") {
-    expect_faces(Body(box({13, 20, 31}, {29, 36, 47})));
-  }
-  SUBCASE("a cube of 3") {
-    expect_faces(Body(box({13, 20, 31}, {16, 23, 34})));
-  }
-  SUBCASE("a voxel") {
-    expect_faces(Body(box({30, 31, 33}, {31, 32, 34})));
-  }
-  SUBCASE("a plate") {
-    expect_faces(Body(box({10, 11, 33}, {40, 50, 34})));
-  }
-  SUBCASE("a beam") {
-    expect_faces(Body(box({10, 30, 33}, {50, 33, 37})));
-  }
-  SUBCASE("a room with a block in it") {
-    expect_faces(Body([](int x, int y, int z) {
-      const bool wall = x < 8 || y < 8 || z < 8 || x >= 56 || y >= 56 || z >= 56;
-      return wall || (x >= 20 && x < 32 && y >= 20 && y < 32 && z < 16);
-    }));
-  }
-  SUBCASE("a room of thin walls") {
-    expect_faces(Body([](int x, int y, int z) {
-      const bool inside = x < 60 && y < 60 && z < 50 && x >= 2 && y >= 2 && z >= 2;
-      return x < 62 && y < 62 && z < 52 && !inside;
-    }));
-  }
-  SUBCASE("a floor below a slab") {
-    expect_faces(Body([](int x, int, int z) { return z < 20 || (z >= 23 && z < 30 && x < 30); }));
+  const Solid room = [](int x, int y, int z) {
+    const bool wall = x < 8 || y < 8 || z < 8 || x >= 56 || y >= 56 || z >= 56;
+    return wall || (x >= 20 && x < 32 && y >= 20 && y < 32 && z < 16);
+  };
+  const Solid thin_room = [](int x, int y, int z) {
+    const bool inside = x < 60 && y < 60 && z < 50 && x >= 2 && y >= 2 && z >= 2;
+    return x < 62 && y < 62 && z < 52 && !inside;
+  };
+  const Solid slab = [](int x, int, int z) { return z < 20 || (z >= 23 && z < 30 && x < 30); };
+  const std::pair<const char*, Solid> bodies[] = {{"a plane", box({0, 0, 0}, {64, 64, 21})},
+                                                  {"a cube", box({13, 20, 31}, {29, 36, 47})},
+                                                  {"a cube of 3", box({13, 20, 31}, {16, 23, 34})},
+                                                  {"a voxel", box({30, 31, 33}, {31, 32, 34})},
+                                                  {"a plate", box({10, 11, 33}, {40, 50, 34})},
+                                                  {"a beam", box({10, 30, 33}, {50, 33, 37})},
+                                                  {"a room with a block in it", room},
+                                                  {"a room of thin walls", thin_room},
+                                                  {"a floor below a slab", slab}};
+  for (const auto& [name, solid] : bodies) {
+    CAPTURE(name);
+    expect_faces(Body(solid));
   }
 }
 
@@ -299,58 +288,43 @@ TEST_CASE("between a floor and a ceiling that balance: the gradient of its defin
   CHECK(degrees_between(normal, gradient) < 0.02);
 }
 
+// A ball, or a shell of it; the worst and the mean square of how far its outside's normals are from the true ones.
+void expect_round(double radius, double thickness, double middle, double most, double most_mean) {
+  CAPTURE(radius);
+  CAPTURE(middle);
+  const auto square = [](double value) { return value * value; };
+  const Body ball([=](int x, int y, int z) {
+    const double from = square(x + 0.5 - middle) + square(y + 0.5 - middle) + square(z + 0.5 - middle);
+    return from < square(radius) && (thickness >= radius || from >= square(radius - thickness));
+  });
+  double worst = 0;
+  double sum = 0;
+  double count = 0;
+  ball.each_place(1, [&](const Vec3Q8& at, const Face& face, const Vec3i& normal) {
+    const Real3 out{at.x.raw / 256.0 - middle, at.y.raw / 256.0 - middle, at.z.raw / 256.0 - middle};
+    if (thickness < radius && (at[face.axis].raw / 256.0 < middle) != face.negative) {
+      return;  // its inside
+    }
+    const double error = degrees_between(normal, out);
+    worst = std::max(worst, error);
+    sum += error * error;
+    ++count;
+  });
+  CHECK(worst < most);
+  CHECK(std::sqrt(sum / count) < most_mean);
+}
+
 TEST_CASE("a ball: within 6 degrees of the true normals from radius 6 on, 2.5 in the mean square") {
   for (const double radius : {6.0, 7.3, 10.0, 14.5, 20.0, 28.0}) {
     for (const double middle : {32.0, 32.25, 31.5}) {
-      CAPTURE(radius);
-      CAPTURE(middle);
-      const auto square = [](double value) { return value * value; };
-      const Body ball([=](int x, int y, int z) {
-        return square(x + 0.5 - middle) + square(y + 0.5 - middle) + square(z + 0.5 - middle) <
-               square(radius);
-      });
-      double worst = 0;
-      double sum = 0;
-      double count = 0;
-      ball.each_place(1, [&](const Vec3Q8& at, const Face&, const Vec3i& normal) {
-        const Real3 out{at.x.raw / 256.0 - middle, at.y.raw / 256.0 - middle, at.z.raw / 256.0 - middle};
-        const double error = degrees_between(normal, out);
-        worst = std::max(worst, error);
-        sum += error * error;
-        ++count;
-      });
-      CHECK(worst < 6);
-      CHECK(std::sqrt(sum / count) < (radius < 7 ? 2.5 : 1.6));
+      expect_round(radius, radius, middle, 6, radius < 7 ? 2.5 : 1.6);
     }
   }
 }
 
 TEST_CASE("a thin shell, as meshes are: within 18 degrees, 2.5 in the mean square") {
   for (const double radius : {6.0, 10.0, 14.5, 20.0, 28.0}) {
-    CAPTURE(radius);
-    const auto distance = [](double x, double y, double z) {
-      return std::sqrt((x - 32.25) * (x - 32.25) + (y - 32.25) * (y - 32.25) + (z - 32.25) * (z - 32.25));
-    };
-    const Body shell([=](int x, int y, int z) {
-      const double at = distance(x + 0.5, y + 0.5, z + 0.5);
-      return at < radius && at >= radius - 1.5;
-    });
-    double worst = 0;
-    double sum = 0;
-    double count = 0;
-    shell.each_place(1, [&](const Vec3Q8& at, const Face& face, const Vec3i& normal) {
-      const double from_middle = at[face.axis].raw / 256.0 - 32.25;
-      if ((from_middle < 0) != face.negative) {
-        return;  // its inside
-      }
-      const Real3 out{at.x.raw / 256.0 - 32.25, at.y.raw / 256.0 - 32.25, at.z.raw / 256.0 - 32.25};
-      const double error = degrees_between(normal, out);
-      worst = std::max(worst, error);
-      sum += error * error;
-      ++count;
-    });
-    CHECK(worst < 18);
-    CHECK(std::sqrt(sum / count) < 2.5);
+    expect_round(radius, 1.5, 32.25, 18, 2.5);
   }
 }
 

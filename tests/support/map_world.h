@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,7 +24,7 @@ struct MapWorld : LitWorld {
   }
   void map_it() {
     finish();
-    room.resize(most_brick_map_bytes(tree.level()) / 8 + 1);
+    room.resize(most_brick_map_bytes(tree) / 8 + 1);
     REQUIRE(BrickMap::make(tree,
                            {static_cast<std::uint8_t*>(static_cast<void*>(room.data())), 8 * room.size()},
                            &map) == Status::kOk);
@@ -40,24 +41,27 @@ struct BothCounts {
   LitCounts by_tree;
 };
 
-/// Holds that both pictures are the same, that by the map in bands of 1 to 7 rows as well (or as few as share bytes), for a
-/// set that is known when running, and that both sent the same rays of the camera.
+/// Holds that both pictures are the same, that by the map uncounted and in bands of 1 to 7 rows as well (or as few as share
+/// bytes), for a set that is known when running, and that both sent the same rays of the camera.
 template <EffectSet kSet>
-BothCounts draw_both(const MapWorld& world, PixelFormat format = PixelFormat::kRgb888,
-                     std::size_t offset = 0) {
+BothCounts draw_both(const MapWorld& world, PixelFormat format = PixelFormat::kRgb888, std::size_t offset = 0,
+                     Span<const SunBricks> suns = {}) {
   const Camera& camera = world.camera;
   REQUIRE(draws_fast(world.map, camera));
   const std::size_t size = band_bytes(format, camera.width_px(), camera.height_px());
   std::vector<std::uint8_t> fast(size + offset, 0x5A);
   std::vector<std::uint8_t> right(size + offset, 0x5A);
   BothCounts counts;
-  REQUIRE(render_lit_band<kSet>(world.tree, world.map, camera, world.shading, world.scene, {},
-                                {{fast.data() + offset, size}, format, 0, 0, camera.height_px()},
-                                &counts.by_map, world.options) == Status::kOk);
   REQUIRE(render_lit_band<kSet>(world.tree, camera, world.shading, world.scene,
                                 {{right.data() + offset, size}, format, 0, 0, camera.height_px()},
                                 &counts.by_tree, world.options) == Status::kOk);
-  REQUIRE(fast == right);
+  for (LitCounts* const counted : {static_cast<LitCounts*>(nullptr), &counts.by_map}) {
+    std::fill(fast.begin(), fast.end(), std::uint8_t{0x5A});
+    REQUIRE(render_lit_band<kSet>(world.tree, world.map, camera, world.shading, world.scene, suns,
+                                  {{fast.data() + offset, size}, format, 0, 0, camera.height_px()}, counted,
+                                  world.options) == Status::kOk);
+    REQUIRE(fast == right);
+  }
   std::vector<std::uint8_t> parts(size + offset, 0x5A);
   const std::int32_t together = band_row_multiple(format);
   for (std::int32_t row = 0, turn = 1; row < camera.height_px(); ++turn) {
@@ -65,7 +69,7 @@ BothCounts draw_both(const MapWorld& world, PixelFormat format = PixelFormat::kR
     const std::int32_t rows = wanted < camera.height_px() - row ? wanted : camera.height_px() - row;
     const std::size_t at = offset + band_bytes(format, camera.width_px(), row);
     REQUIRE(render_lit_band(
-                kSet, world.tree, world.map, camera, world.shading, world.scene, {},
+                kSet, world.tree, world.map, camera, world.shading, world.scene, suns,
                 {{parts.data() + at, band_bytes(format, camera.width_px(), rows)}, format, 0, row, rows},
                 nullptr, world.options) == Status::kOk);
     row += rows;
