@@ -77,47 +77,6 @@ Camera small_camera() {
 
 }  // namespace
 
-TEST_CASE("arena: any alignment and address -> aligned spans, one behind the other, inside the bytes") {
-  for (std::size_t offset = 0; offset < 16; ++offset) {
-    Guarded bytes(1000, offset);
-    Arena arena(bytes.span());
-    const std::uint8_t* behind = bytes.span().begin();
-    for (std::size_t alignment = 1; alignment <= 64; alignment *= 2) {
-      const Bytes taken = arena.take(alignment + 3, alignment);
-      REQUIRE(taken.size == alignment + 3);
-      CHECK(reinterpret_cast<std::uintptr_t>(taken.data) % alignment == 0);
-      CHECK(taken.begin() >= behind);
-      CHECK(taken.end() <= bytes.span().end());
-      CHECK(taken.begin() < behind + alignment);
-      behind = taken.end();
-      CHECK(arena.used_bytes() == static_cast<std::size_t>(behind - bytes.span().begin()));
-      std::fill(taken.begin(), taken.end(), std::uint8_t{0});
-    }
-    CHECK(bytes.intact());
-  }
-}
-
-TEST_CASE("arena: more than is left -> an empty span and nothing changed") {
-  Guarded bytes(100);
-  Arena arena(bytes.span());
-  CHECK(arena.take(101, 1).empty());
-  CHECK(arena.take(SIZE_MAX, 1).empty());
-  CHECK(arena.take(SIZE_MAX - 7, 8).empty());
-  CHECK(arena.take(0, 1).empty());
-  CHECK(arena.used_bytes() == 0);
-  CHECK(arena.high_water_bytes() == 0);
-  CHECK(arena.take(99, 1).size == 99);
-  CHECK(arena.take(2, 1).empty());
-  CHECK(arena.free_bytes() == 1);
-  CHECK(arena.take(1, 1).size == 1);
-  CHECK(arena.take(1, 1).empty());
-  CHECK(arena.free_bytes() == 0);
-  CHECK(arena.rest().empty());
-  Arena none;
-  CHECK(none.take(1, 1).empty());
-  CHECK(none.capacity_bytes() == 0);
-}
-
 TEST_CASE("memory: build, compact, render, sort with the global allocator trapped -> no call") {
   static std::array<std::uint8_t, 32768> pool_bytes;
   static std::array<std::uint8_t, 8192> tree_bytes;

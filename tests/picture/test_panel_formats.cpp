@@ -1,5 +1,5 @@
-// The formats of panels, in every renderer: each picture is what a straight encoder, written from the layouts' words
-// alone, makes of the same picture in kRgb888. Any band height, stride, odd width and last page.
+// The formats of panels: each picture is what a straight encoder, written from the layouts' words alone, makes of the same
+// picture in kRgb888. Any band height, stride, odd width and last page. Other engines: test_frames.cpp, test_wide.cpp.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -278,7 +278,7 @@ TEST_CASE("panel formats: render_band, any size and band -> what a straight enco
   }
 }
 
-TEST_CASE("panel formats: depth, cut-off, 32 bits -> the same") {
+TEST_CASE("panel formats: depth, cut-off -> the same") {
   Stairs stairs;
   const Size size{61, 37};
   const Camera& camera = stairs.look(size.width, size.height);
@@ -292,32 +292,11 @@ TEST_CASE("panel formats: depth, cut-off, 32 bits -> the same") {
     return render_band_cut(stairs.world.tree, camera, stairs.world.shading, cutoff, colors, band);
   };
   expect_encoded(size, in_rgb(size, cut), cut);
-  const auto narrow = [&](const Band& band) {
-    return render_band_32(stairs.world.tree, camera, stairs.world.shading, band);
-  };
-  expect_encoded(size, in_rgb(size, narrow), narrow);
   Shading depth = stairs.world.shading;
   depth.mode = ShadeMode::kDepth;
   depth.far_q8 = 256 * 80;
   const auto deep = [&](const Band& band) { return render_band(stairs.world.tree, camera, depth, band); };
   expect_encoded(size, in_rgb(size, deep), deep);
-}
-
-TEST_CASE("panel formats: frames by bricks, small ones and swept ones -> the same") {
-  Stairs stairs;
-  Picture map_bytes(1 << 16);
-  BrickMap map;
-  REQUIRE(BrickMap::make(stairs.world.tree, {map_bytes.data(), map_bytes.size()}, &map) == Status::kOk);
-  for (const Size& size : {Size{61, 37}, Size{128, 64}, Size{84, 48}, Size{250, 190}}) {
-    const Camera& camera = stairs.look(size.width, size.height);
-    REQUIRE(draws_fast(map, camera));
-    const auto plain = [&](const Band& band) {
-      return render_band(stairs.world.tree, camera, stairs.world.shading, band);
-    };
-    expect_encoded(size, in_rgb(size, plain), [&](const Band& band) {
-      return render_band(stairs.world.tree, map, camera, stairs.world.shading, band);
-    });
-  }
 }
 
 TEST_CASE(
@@ -376,44 +355,6 @@ TEST_CASE("panel formats: samples -> the encoder's, rows of a page one after ano
     return Status::kOk;
   };
   expect_encoded(size, in_rgb(size, draw), draw);
-}
-
-TEST_CASE("panel formats: the wide renderer, any number of threads -> the same") {
-  const tests::WideScene scene = tests::make_scene(6, [](Octree* octree) {
-    for (int i = 0; i < 60; ++i) {
-      REQUIRE(octree->insert_box({{i, i / 2, 0}, {i + 3, i / 2 + 20, 5 + i / 3}},
-                                 static_cast<std::uint8_t>(i % 16)) == Status::kOk);
-    }
-  });
-  const std::vector<Rgb8> palette = palette_of_many();
-  Shading shading;
-  shading.mode = ShadeMode::kColor;
-  shading.palette = {palette.data(), palette.size()};
-  shading.background = {90, 30, 10};
-  for (const Size& size : {Size{61, 37}, Size{128, 64}, Size{200, 150}}) {
-    Camera camera;
-    REQUIRE(camera.set(PerspectiveView{{Q8::saturate(-30), Q8::saturate(-40), Q8::saturate(50)},
-                                       {5, 6, -3},
-                                       {},
-                                       Q16::saturate(50),
-                                       size.width,
-                                       size.height,
-                                       0},
-                       6) == Status::kOk);
-    for (const ShadeMode mode : {ShadeMode::kColor, ShadeMode::kDepth}) {
-      shading.mode = mode;
-      shading.far_q8 = 256 * 120;
-      const Picture rgb =
-          in_rgb(size, [&](const Band& band) { return render_band(scene.tree, camera, shading, band); });
-      expect_encoded(size, rgb, [&](const Band& band) {
-        const int threads = band.rows % 3 + 1;
-        const wide::Options options = tests::options_of(threads, wide::Order::kAuto);
-        Picture workspace(wide::workspace_bytes(size.width, band.rows, threads));
-        return wide::render(scene.lists(), camera, shading, band, {workspace.data(), workspace.size()},
-                            nullptr, options);
-      });
-    }
-  }
 }
 
 TEST_CASE(

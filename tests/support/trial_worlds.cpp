@@ -53,36 +53,15 @@ class Builder {
   }
 
   // The voxels low .. high - 1 within a block, as the largest blocks.
-  bool add_box(const Vec3i& low, const Vec3i& high) { return add_box({0, 0, 0}, level_, low, high); }
+  bool add_box(const Vec3i& low, const Vec3i& high) {
+    return octree_.insert_box({low, high}, 1) == Status::kOk;
+  }
 
  private:
   Builder(int level, std::size_t bytes) : level_(level), pool_(bytes), random_(1) {
     if (Octree::make(level, Bytes(pool_.data(), pool_.size()), &octree_) != Status::kOk) {
       throw std::logic_error("no such level");
     }
-  }
-
-  bool add_box(const Vec3i& corner, int level, const Vec3i& low, const Vec3i& high) {
-    const std::int32_t size = std::int32_t{1} << level;
-    bool inside = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (corner[axis] >= high[axis] || corner[axis] + size <= low[axis]) {
-        return true;
-      }
-      inside = inside && corner[axis] >= low[axis] && corner[axis] + size <= high[axis];
-    }
-    if (inside) {
-      return octree_.insert_block(corner, level, 1) == Status::kOk;
-    }
-    for (int octant = 0; octant < 8; ++octant) {
-      const std::int32_t half = size / 2;
-      const Vec3i child{corner.x + (octant & 1) * half, corner.y + (octant >> 1 & 1) * half,
-                        corner.z + (octant >> 2) * half};
-      if (!add_box(child, level - 1, low, high)) {
-        return false;
-      }
-    }
-    return true;
   }
 
   int level_;

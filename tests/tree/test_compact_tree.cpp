@@ -94,24 +94,6 @@ TEST_CASE("compact tree: one material, whichever -> no byte more than with none"
   CHECK(size_with(0, 0) < size_with(0, 255));
 }
 
-TEST_CASE("morton: voxels to codes and back -> the same, bit by bit interleaved") {
-  std::mt19937_64 random(101);
-  for (int i = 0; i < 20000; ++i) {
-    const std::uint64_t bits = random();
-    const auto x = static_cast<std::uint32_t>(bits & 0x1FFFFF);
-    const auto y = static_cast<std::uint32_t>((bits >> 21) & 0x1FFFFF);
-    const auto z = static_cast<std::uint32_t>((bits >> 42) & 0x1FFFFF);
-    std::uint64_t plain = 0;
-    for (int bit = 0; bit < 21; ++bit) {
-      plain |= std::uint64_t{(x >> bit) & 1} << (3 * bit) | std::uint64_t{(y >> bit) & 1} << (3 * bit + 1) |
-               std::uint64_t{(z >> bit) & 1} << (3 * bit + 2);
-    }
-    REQUIRE(morton_code(x, y, z) == plain);
-    REQUIRE(morton_voxel(plain) ==
-            Vec3i{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)});
-  }
-}
-
 namespace {
 
 template <class Key>

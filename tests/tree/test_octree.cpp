@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -595,37 +594,6 @@ TEST_CASE("octree: edits between coarsenings -> only the edit changes, and the t
 }
 
 TEST_CASE(
-    "octree: make_room and coarsen_to -> at least the requested number, or out of memory and unchanged") {
-  Random random(41);
-  const int level = 4;
-  const Model model = random_model(random, level, 2, 120);
-  const std::size_t all = nodes_of(model, level);
-  for (std::size_t wanted = 0; wanted <= all + 3; ++wanted) {
-    Pool pool = Pool::of_nodes(all + 1);
-    Octree tree;
-    REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
-    CHECK(tree.make_room(all + 1) == Status::kOk);
-    CHECK(tree.make_room(all + 2) == Status::kOutOfMemory);
-    CHECK(tree.coarsen_to(0) == Status::kOk);
-    fill(tree, model);
-    const std::vector<std::uint8_t> before = pool.contents();
-    const Status status = tree.make_room(wanted);
-    if (wanted <= all) {
-      CHECK(status == Status::kOk);
-      CHECK(tree.nodes_free() >= wanted);
-    } else {
-      CHECK(status == Status::kOutOfMemory);
-    }
-    if (wanted <= 1 || wanted > all) {
-      CHECK(pool.contents() == before);
-      check_same(tree, model);
-    }
-    check_holds(tree, model);
-    CHECK(tree.coarsen_to(0) == Status::kOutOfMemory);
-  }
-}
-
-TEST_CASE(
     "octree: a merged block that was split, and filled again -> its pieces, and it merges for nothing") {
   Pool pool = Pool::of_nodes(100);
   Octree tree;
@@ -710,49 +678,6 @@ TEST_CASE("octree: pieces of a merged block that was split -> no larger than the
   CHECK(text_of(tree) == "(255 (3:6) M3 M3 M3 M3 M3 M3 M3)");
   REQUIRE(tree.coarsen_to(1) == Status::kOk);
   CHECK(text_of(tree) == "M6");
-}
-
-TEST_CASE(
-    "octree: coarsening at a price -> the nodes foretold, never more at a higher price, all kept solid") {
-  std::mt19937_64 random(3);
-  std::vector<std::uint8_t> bytes(Octree::octree_bytes(20000));
-  std::vector<Vec3i> voxels;
-  for (int i = 0; i < 1500; ++i) {
-    const auto place = [&] { return static_cast<std::int32_t>(random() % 32); };
-    voxels.push_back({place(), place(), place()});
-  }
-  uint32_t before = UINT32_MAX;
-  for (int step = 0; step < Octree::kPriceSteps; step += 4) {
-    CAPTURE(step);
-    Octree tree;
-    REQUIRE(Octree::make(5, {bytes.data(), bytes.size()}, &tree) == Status::kOk);
-    for (const Vec3i& voxel : voxels) {
-      REQUIRE(tree.insert(voxel) == Status::kOk);
-    }
-    const uint64_t exact_voxels = tree.voxels();
-    const uint32_t exact_nodes = tree.nodes_used();
-    const uint32_t foretold = tree.nodes_at(step);
-    CHECK(tree.nodes_used() == exact_nodes);
-    CHECK(foretold <= before);
-    before = foretold;
-    tree.coarsen_at(step);
-    CHECK(tree.nodes_used() == foretold);
-    CHECK(tree.nodes_at(step) == foretold);
-    CHECK(tree.voxels() == exact_voxels + tree.solid_added());
-    // What was added is at most the price for each node saved: 2^(step / 4 - 27).
-    const double price = std::ldexp(1.0, step / 4 - 27);
-    CHECK(static_cast<double>(tree.solid_added()) <= price * (exact_nodes - tree.nodes_used()));
-    for (const Vec3i& voxel : voxels) {
-      CHECK(tree.test(voxel));
-    }
-    REQUIRE(tree.insert({31, 31, 31}) == Status::kOk);  // still a tree that can be edited
-  }
-  CHECK(before == 1);
-  Octree empty;
-  REQUIRE(Octree::make(5, {bytes.data(), bytes.size()}, &empty) == Status::kOk);
-  CHECK(empty.nodes_at(100) == 0);
-  empty.coarsen_at(100);
-  CHECK(empty.empty());
 }
 
 }  // namespace thimble::tools
