@@ -360,7 +360,8 @@ TEST_CASE("balls: none, or none that is there -> picture and counts of a scene w
 TEST_CASE("balls: effects that there are not -> as without any") {
   const BallWorld world(false);
   REQUIRE(draw_with(world, kLight, world.balls) != draw_with(world, Effect::kNone, world.balls));
-  CHECK(draw_with(world, ~Effect::kAll, world.balls) == draw_with(world, Effect::kNone, world.balls));
+  CHECK(draw_with(world, ~Effect::kAll, world.balls) == world.draw(Effect::kNone));
+  CHECK(draw_with(world, Effect::kNone, world.balls) == world.draw(Effect::kNone));
 }
 
 TEST_CASE("balls: rows whose rays pass no fall -> as they were, wherever the ball is on it") {
@@ -392,26 +393,4 @@ TEST_CASE("balls: rows whose rays pass no fall -> as they were, wherever the bal
   }
   CHECK(changed > 40);
   CHECK(spared > 3);
-}
-
-TEST_CASE("balls: what cannot be drawn -> a status, and nothing is drawn") {
-  const BallWorld world(false);
-  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kRgb888, 96, 1), 7);
-  const std::vector<std::uint8_t> before = bytes;
-  const auto draw = [&](const std::vector<Ball>& balls) {
-    return render_lit_band(kLight, world.tree, {{balls.data(), balls.size()}, nullptr}, world.camera,
-                           world.shading, world.scene,
-                           {{bytes.data(), bytes.size()}, PixelFormat::kRgb888, 0, 0, 1});
-  };
-  Ball odd = world.balls[0];
-  odd.half_q8 = 3;
-  CHECK(draw({odd}) == Status::kBadArgument);
-  odd.half_q8 = -2;
-  CHECK(draw({odd}) == Status::kBadArgument);
-  Ball far = world.balls[0];
-  far.center.z = 5 * 32 * 256;
-  CHECK(draw({far}) == Status::kOutOfRange);
-  CHECK(draw(std::vector<Ball>(kMaxDrawnBalls + 1)) == Status::kOutOfRange);
-  CHECK(bytes == before);
-  CHECK(draw(std::vector<Ball>(kMaxDrawnBalls)) == Status::kOk);
 }

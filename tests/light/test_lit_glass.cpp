@@ -161,21 +161,6 @@ TEST_CASE("a mirror: shows what the mirrored camera sees, in the metal's colour"
   CHECK(tinted.b < 45);
 }
 
-TEST_CASE("a rough metal: four rays at the first bounce, one at those that follow") {
-  LitWorld world;
-  world.box({0, 0, 0}, {32, 32, 4}, 1);
-  world.surfaces[1] = surface(SurfaceKind::kMetal, kWhite);
-  world.surfaces[1].roughness = 100;
-  set_sky(&world, {150, 150, 150});
-  world.finish();
-  world.look({16 * 256, -10 * 256, 20 * 256}, {16 * 256, 16 * 256, 4 * 256}, 30);
-  LitCounts counts;
-  const std::vector<Rgb8> picture =
-      world.draw(Effect::kDirectLight | Effect::kMirror | Effect::kSky, &counts);
-  CHECK(counts.rays[static_cast<int>(LitRayKind::kMirrorRay)] == 4 * counts.hits[0]);
-  CHECK(near(world.middle(Effect::kDirectLight | Effect::kMirror | Effect::kSky).r, 150, 1));
-}
-
 TEST_CASE("a closed box of mirrors: ends at its limit of bounces in the metal's plain colour") {
   LitWorld world;
   world.box({4, 4, 4}, {28, 28, 28}, 1);
@@ -401,19 +386,6 @@ TEST_CASE("water: the floor, seen by total reflection at the water's open sides,
     sent += counts.rays[static_cast<int>(LitRayKind::kWaterRay)];
   }
   CHECK(sent > 6 * 2 * 160 * 120);
-}
-
-TEST_CASE("light under water: dimmed by the way through it") {
-  LitWorld world;
-  build_basin(&world, 8 * 256);
-  set_ambient(&world.scene, 0);
-  world.lights = {sun({0, 0, 1}, 256)};
-  set_sky(&world, {0, 0, 0});
-  world.finish();
-  world.look({16 * 256, 16 * 256, 6 * 256}, {16 * 256, 16 * 256, 0}, 4, 9, 9);
-  const EffectSet effects = Effect::kDirectLight | Effect::kShadows | Effect::kWater | Effect::kSky;
-  // 8 voxels down with the light, 2 up to the eye.
-  CHECK(near(world.middle(effects).r, absorbed(40, 0, 10), 2));
 }
 
 TEST_CASE("light through glass: takes its colour, and what is solid behind still casts a shadow") {

@@ -201,17 +201,6 @@ TEST_CASE("effects_of: every material and light calls for its own effect and not
     const bool none[256] = {};
     CHECK(effects_of(scene, &none) == Effect::kNone);
   }
-  one = Surface{};
-  one.kind = SurfaceKind::kMetal;
-  one.mirror = 0;
-  CHECK(effects_of(scene) == Effect::kNone);
-  Light light;
-  scene.lights = {&light, 1};
-  CHECK(effects_of(scene) == Effect::kDirectLight);
-  scene.has_shadows = true;
-  CHECK(effects_of(scene) == (Effect::kDirectLight | Effect::kShadows));
-  light.color_q8[0] = light.color_q8[1] = light.color_q8[2] = 0;
-  CHECK(effects_of(scene) == Effect::kNone);
   CHECK(effect_name(Effect::kAmbientOcclusion) == doctest::String("ambient-occlusion"));
   CHECK(effect_name(Effect::kGlass | Effect::kMirror) == doctest::String(""));
   CHECK(effect_name(1U << Effect::kCount) == doctest::String(""));
@@ -243,16 +232,6 @@ TEST_CASE("limits: too many lights, surfaces or bounces are an error, with nothi
   band.pixels.size -= 1;
   CHECK(drawn() == Status::kOutOfMemory);
   CHECK(pixels == untouched);
-}
-
-TEST_CASE("zero lights: what is there is as bright as the ambient light") {
-  LitWorld world;
-  world.box({0, 0, 0}, {32, 32, 4}, 0);
-  world.surfaces[0].albedo = {200, 100, 50};
-  set_ambient(&world.scene, 128);
-  world.finish();
-  world.look({16 * 256, 16 * 256, 40 * 256}, {16 * 256, 16 * 256, 0});
-  CHECK(world.middle(Effect::kDirectLight | Effect::kShadows) == Rgb8{100, 50, 25});
 }
 
 TEST_CASE("a hundred lights: as bright as one of their sum") {

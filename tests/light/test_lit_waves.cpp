@@ -227,32 +227,6 @@ TEST_CASE("waves in pictures: a pixel whose rays meet no column that may ever ri
   CHECK(changed > 500);
 }
 
-TEST_CASE("waves in pictures: reflected and refracted light together are no more than came in") {
-  LitWorld world;
-  build(&world);
-  world.surfaces[1] = surface(SurfaceKind::kEmit, {200, 200, 200});
-  set_ambient(&world.scene, 0);
-  world.scene.sky = {{200, 200, 200}, {200, 200, 200}, {200, 200, 200}};
-  world.scene.water_material.albedo = {255, 255, 255};
-  world.scene.bounces = kMaxBounces;
-  world.finish();
-  Waves waves;
-  for (int round = 0; round < 5; ++round) {
-    waves.stir();
-    waves.step(4);
-    world.scene.water = waves.water.surface({4, 4, 4});
-    world.look({-4 * 256, 3 * 256, 12 * 256}, {16 * 256, 13 * 256, 8 * 256}, 50, 64, 48);
-    double sum = 0;
-    for (const Rgb8& color :
-         world.draw(Effect::kDirectLight | Effect::kEmission | Effect::kWater | Effect::kSky)) {
-      CHECK(color.r <= 200);
-      sum += color.r;
-    }
-    // What is lost: rays below 1/256, and those that end at the limit of bounces.
-    CHECK(sum / (64 * 48) > 190);
-  }
-}
-
 TEST_CASE("waves in pictures: smooth waves seen from above -> a smooth picture, no column's edge in it") {
   LitWorld world;
   world.box({0, 0, 0}, {32, 32, 4}, 1);

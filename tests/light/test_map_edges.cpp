@@ -354,18 +354,6 @@ TEST_CASE("balls: one behind another, in either order, within one another -> the
   }
 }
 
-TEST_CASE("balls: with no effect -> the plain picture, without them") {
-  const House world;
-  const BallPicture plain = draw_balls(world, Effect::kNone, {ball_at({4, 1, 13}, 768, {255, 0, 0})});
-  REQUIRE(plain.status == Status::kOk);
-  const std::vector<Rgb8> right = world.draw(Effect::kNone);
-  bool same = true;
-  for (std::size_t i = 0; i < right.size(); ++i) {
-    same = same && Rgb8{plain.bytes[3 * i], plain.bytes[3 * i + 1], plain.bytes[3 * i + 2]} == right[i];
-  }
-  CHECK(same);
-}
-
 TEST_CASE("balls: of no such side, or where no ray may start -> a status, nothing drawn") {
   const House world;
   const auto with = [&](const Vec3i& center_q8, std::int32_t half) {
@@ -391,6 +379,8 @@ TEST_CASE("balls: of no such side, or where no ray may start -> a status, nothin
       CHECK(with(center, 512) == Status::kOutOfRange);
     }
   }
+  CHECK(draw_balls(world, kSun, std::vector<Ball>(kMaxDrawnBalls + 1)).status == Status::kOutOfRange);
+  CHECK(draw_balls(world, kSun, std::vector<Ball>(kMaxDrawnBalls)).status == Status::kOk);
 }
 
 }  // namespace

@@ -218,31 +218,4 @@ TEST_CASE("ripples: a world without water, or water as clear as air -> the pictu
   CHECK(basin.draw(kPool | Effect::kRipples) == basin.draw(kPool));
 }
 
-TEST_CASE("water: what comes up through d voxels of it has halved density * (1 - albedo) * d times") {
-  // Straight down on a floor that a lamp-less ambient light makes white: what is left is what water leaves.
-  for (const int depth : {2, 7, 20}) {
-    CAPTURE(depth);
-    LitWorld world;
-    world.box({0, 0, 0}, {32, 32, 2}, 1);
-    world.surfaces[1].albedo = {255, 255, 255};
-    world.scene.has_water = true;
-    world.scene.water = still_water({0, 0, 2}, 32, 32, depth * 256);
-    Surface& water = world.scene.water_material;
-    water.albedo = {55, 155, 255};
-    water.density_q8 = 40;
-    water.index_q12 = kMinIndexQ12;  // nothing is mirrored
-    world.finish();
-    set_ambient(&world.scene, 256);
-    world.look({16 * 256 + 128, 16 * 256 + 128, 31 * 256}, {16 * 256 + 128, 16 * 256 + 129, 0}, 2, 8, 8);
-    const Rgb8 seen = world.middle(Effect::kDirectLight | Effect::kWater);
-    const Rgb8 dry = world.middle(Effect::kDirectLight);
-    const auto left = [&](int channel, int albedo) {
-      return channel * std::exp2(-40.0 / 256 * (255 - albedo) / 255 * depth);
-    };
-    CHECK(std::abs(seen.r - left(dry.r, 55)) < 1.5);
-    CHECK(std::abs(seen.g - left(dry.g, 155)) < 1.5);
-    CHECK(seen.b == dry.b);
-  }
-}
-
 }  // namespace thimble::testing
