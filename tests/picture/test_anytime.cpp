@@ -30,40 +30,8 @@ constexpr std::uint32_t kStarts[] = {32, 37, 42, 47, 53, 59};
 #endif
 
 /// What a display shows of a pixel.
-struct Shown {
-  int r = 0;
-  int g = 0;
-  int b = 0;
-  friend bool operator==(const Shown&, const Shown&) = default;
-  int gray() const {
-    return gray_of(
-        {static_cast<std::uint8_t>(r), static_cast<std::uint8_t>(g), static_cast<std::uint8_t>(b)});
-  }
-};
-Shown shown(const std::uint8_t* picture, int width, int x, int y, PixelFormat format) {
-  const auto column = static_cast<std::size_t>(x);
-  const std::uint8_t* row = picture + row_bytes(format, width) * static_cast<std::size_t>(y);
-  const auto gray = [](int value) { return Shown{value, value, value}; };
-  switch (format) {
-    case PixelFormat::kMono1:
-      return gray((row[column / 8] >> (7 - column % 8) & 1) * 255);
-    case PixelFormat::kGray4:
-      return gray((column % 2 == 0 ? row[column / 2] >> 4 : row[column / 2] & 15) * 17);
-    case PixelFormat::kGray8:
-      return gray(row[column]);
-    case PixelFormat::kRgb565: {
-      const int packed = row[2 * column] + 256 * row[2 * column + 1];
-      const int r = packed >> 11;
-      const int g = packed >> 5 & 63;
-      const int b = packed & 31;
-      return {r * 8 + r / 4, g * 4 + g / 16, b * 8 + b / 4};
-    }
-    case PixelFormat::kRgb888:
-      return {row[3 * column], row[3 * column + 1], row[3 * column + 2]};
-    default:
-      FAIL("test_panel_formats.cpp has this format");
-      return {};
-  }
+Rgb8 shown(const std::uint8_t* picture, int width, int x, int y, PixelFormat format) {
+  return load_pixel(picture + row_bytes(format, width) * static_cast<std::size_t>(y), x, y, format);
 }
 
 struct Error {
@@ -97,10 +65,10 @@ struct Case {
     Error error;
     for (int y = 0; y < camera.height_px(); ++y) {
       for (int x = 0; x < camera.width_px(); ++x) {
-        const Shown is = shown(picture, camera.width_px(), x, y, format);
-        const Shown should = shown(wanted.data(), camera.width_px(), x, y, format);
+        const Rgb8 is = shown(picture, camera.width_px(), x, y, format);
+        const Rgb8 should = shown(wanted.data(), camera.width_px(), x, y, format);
         const auto square = [](int a, int b) { return static_cast<std::uint64_t>((a - b) * (a - b)); };
-        const int gray = std::abs(is.gray() - should.gray());
+        const int gray = std::abs(int{gray_of(is)} - int{gray_of(should)});
         error.wrong += is == should ? 0U : 1U;
         error.squares += square(is.r, should.r) + square(is.g, should.g) + square(is.b, should.b);
         error.grays += static_cast<std::uint64_t>(gray);

@@ -1,29 +1,18 @@
-// Cameras, any-time frames, cut-offs, node colours and edge samples of many kinds, and the CRC-32 of each that was written
-// down: whatever changes a ray, a pixel or a count is seen here first. Whether they are right others say.
+// Cameras and edge samples of many kinds, and the CRC-32 of each that was written down: whatever changes a ray or a sample
+// is seen here first. Whether they are right others say. The portable cases do the same for any-time frames and cut-offs.
 #include <doctest/doctest.h>
 
 #include <cstdint>
-#include <cstring>
 #include <random>
 #include <vector>
 
-#include "support/lit_cases.h"
-#include "support/ray_cases.h"
-#include "support/wide_cases.h"
+#include "support/scene_under_test.h"
 #include "thimble/base/memory.h"
-#include "thimble/picture/anytime.h"
 #include "thimble/picture/cutoff.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::tests {
 namespace {
-
-// The scenes of wide_cases.h draw some numbers in an order that the language leaves open; these were written down by gcc.
-#if defined(__clang__)
-constexpr bool kSameScenes = false;
-#else
-constexpr bool kSameScenes = true;
-#endif
 
 // A CRC-32 over numbers, whatever the machine's order of bytes.
 struct Written {
@@ -40,12 +29,6 @@ struct Written {
     }
   }
   void add(ConstBytes bytes) { crc = crc32(bytes, crc); }
-  void add(const RenderCounts& counts) {
-    add(static_cast<std::int64_t>(counts.rays));
-    add(static_cast<std::int64_t>(counts.hits));
-    add(static_cast<std::int64_t>(counts.node_visits));
-    add(static_cast<std::int64_t>(counts.step_limited));
-  }
   std::uint32_t crc = 0;
 };
 
@@ -125,101 +108,6 @@ std::uint32_t cameras(bool perspective, std::uint64_t seed) {
 TEST_CASE("picture written: cameras of numbers of every size -> the CRC-32 of rays, depths and cut-offs") {
   CHECK(cameras(true, 20260901) == 401325518U);
   CHECK(cameras(false, 20260902) == 102344967U);
-}
-
-// By small steps, so that every order of pixels and every guess shows.
-TEST_CASE("picture written: any-time frames in small steps -> the CRC-32 of each step's picture and counts") {
-  std::mt19937_64 random(20260911);
-  Written written;
-  for (int drawn = 0; drawn < 40;) {
-    const WideScene scene = drawn % 3 == 0 ? random_scene(random) : cabinet(random);
-    FrameCase frame;
-    if (!random_frame(random, scene, &frame)) {
-      continue;
-    }
-    const std::int32_t width = frame.camera.width_px();
-    const std::int32_t height = frame.camera.height_px();
-    const HeapBytes memory(anytime_bytes(width, height, frame.band.format));
-    AnytimeFrame anytime;
-    // A second use of the same object begins anew.
-    for (int use = 0; use < 2; ++use) {
-      const Status status = AnytimeFrame::make(scene.tree, frame.camera, frame.shading, frame.band.format,
-                                               memory.span(), &anytime);
-      written.add(static_cast<int>(status));
-      if (status != Status::kOk) {
-        break;
-      }
-      written.add(anytime.gray_range());
-      for (int step = 0; step < 9; ++step) {
-        const auto visits = static_cast<std::uint32_t>(random() % (step < 5 ? 900 : 20000));
-        const Width wanted = step % 3 == 0 ? Width::k64 : step % 3 == 1 ? Width::k32 : Width::kAuto;
-        written.add(static_cast<int>(anytime.refine(scene.tree, visits, wanted)));
-        written.add(anytime.inexact());
-        written.add(anytime.mean_error_bound_q8());
-        written.add(static_cast<std::int64_t>(anytime.given_visits()));
-        written.add(static_cast<std::int64_t>(anytime.spent_visits()));
-        written.add(anytime.reserve_visits());
-        written.add(anytime.counts());
-        written.add(anytime.band(0, height).pixels);
-      }
-    }
-    ++drawn;
-  }
-  CAPTURE(written.crc);
-  CHECK((written.crc == 3062253137U || !kSameScenes));
-}
-
-TEST_CASE("picture written: frames cut off, by node colours -> the CRC-32 of pictures and counts") {
-  std::mt19937_64 random(20260921);
-  Written written;
-  NodeColors colors;  // used again for every tree
-  for (int drawn = 0; drawn < 60;) {
-    const WideScene scene = drawn % 3 == 0 ? random_scene(random) : cabinet(random);
-    FrameCase frame;
-    if (!random_frame(random, scene, &frame)) {
-      continue;
-    }
-    const HeapBytes room(node_colors_bytes(scene.tree.node_count()));
-    written.add(static_cast<int>(NodeColors::make(scene.tree, frame.shading.palette,
-                                                  frame.shading.default_color, room.span(), &colors)));
-    for (std::uint32_t node = 0; node < colors.nodes(); node += 1 + node / 9) {
-      const Rgb8 color = colors.color(node);
-      written.add(Vec3i{color.r, color.g, color.b});
-    }
-    Cutoff cutoff;
-    written.add(static_cast<int>(
-        drawn % 4 == 0
-            ? cutoff.set_level(static_cast<int>(random() % 6))
-            : cutoff.set(frame.camera, Q16::from_raw(static_cast<std::int32_t>(random() % (40 << 16))))));
-    std::vector<std::uint8_t> pixels(band_size(frame), 0xA5);
-    Band band = frame.band;
-    band.pixels = {pixels.data(), pixels.size()};
-    RenderCounts counts;
-    const TraceOptions options{drawn % 5 == 0 ? 9 : UINT32_MAX, Width::kAuto};
-    written.add(static_cast<int>(
-        render_band_cut(scene.tree, frame.camera, frame.shading, cutoff, colors, band, &counts, options)));
-    written.add(counts);
-    written.add(ConstBytes{pixels.data(), pixels.size()});
-    for (int i = 0; i < 20; ++i) {
-      const auto x = static_cast<std::int32_t>(random() % static_cast<unsigned>(frame.camera.width_px()));
-      const auto y = static_cast<std::int32_t>(random() % static_cast<unsigned>(frame.camera.height_px()));
-      CutHit hit;
-      written.add(
-          static_cast<int>(closest_hit_cut(scene.tree, frame.camera.ray(x, y), cutoff, &hit, options)));
-      written.add(hit.cut ? 1 : 0);
-      written.add(static_cast<int>(hit.hit.kind));
-      written.add(hit.hit.visits);
-      written.add(hit.hit.voxel);
-      written.add(hit.hit.t_numerator);
-    }
-    ++drawn;
-  }
-  // Of a tree without nodes there are none, whatever was there before.
-  CHECK(colors.nodes() != 0);
-  CHECK(NodeColors::make(CompactTree(), {}, {}, {}, &colors) == Status::kOk);
-  CHECK(colors.nodes() == 0);
-  CAPTURE(written.crc);
-  CHECK((written.crc == 220904234U || !kSameScenes));
 }
 
 TEST_CASE("picture written: edges of rows of every kind -> the CRC-32 of their strengths and samples") {

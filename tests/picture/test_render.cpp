@@ -5,30 +5,24 @@
 #include <vector>
 
 #include "scene/random.h"
-#include "support/formats.h"
 #include "thimble/picture/render.h"
 
 namespace {
 
 using namespace thimble;
-using testing::kFormats;
 using thimble::tools::SplitMix64;
 
-constexpr ShadeMode kModes[] = {ShadeMode::kDepth, ShadeMode::kNormal, ShadeMode::kColor, ShadeMode::kMono};
 constexpr int kWidthPx = 29;
 constexpr int kHeightPx = 23;
 constexpr std::uint8_t kGuard = 0xA5;
 constexpr Rgb8 kPalette[] = {{250, 120, 30}, {20, 200, 90}, {70, 80, 240}};
 
-/// A level-5 world of random voxels and blocks in all three structures. Not to be moved: they point into it.
+/// A level-5 world of random voxels. Not to be moved: they point into it.
 class Scene {
  public:
   explicit Scene(std::uint64_t seed) {
     pool_bytes_.resize(Octree::octree_bytes(8000));
     REQUIRE(Octree::make(5, Bytes(pool_bytes_.data(), pool_bytes_.size()), &pool) == Status::kOk);
-    grid_bytes_.resize(dense_grid_bytes({32, 32, 32}));
-    REQUIRE(DenseGrid::make({32, 32, 32}, Bytes(grid_bytes_.data(), grid_bytes_.size()), &grid) ==
-            Status::kOk);
     SplitMix64 random(seed);
     for (int i = 0; i < 400; ++i) {
       insert({static_cast<int>(random.below(32)), static_cast<int>(random.below(32)),
@@ -40,10 +34,7 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  void insert(const Vec3i& at, std::uint8_t material) {
-    REQUIRE(pool.insert(at, material) == Status::kOk);
-    REQUIRE(grid.set(at) == Status::kOk);
-  }
+  void insert(const Vec3i& at, std::uint8_t material) { REQUIRE(pool.insert(at, material) == Status::kOk); }
   void finish() {
     tree_bytes_.resize(compact_bytes(compact_shape(pool)));
     std::size_t written = 0;
@@ -53,18 +44,11 @@ class Scene {
   }
 
   Octree pool;
-  DenseGrid grid;
   CompactTree compact;
 
  private:
   std::vector<std::uint8_t> pool_bytes_;
-  std::vector<std::uint8_t> grid_bytes_;
   std::vector<std::uint8_t> tree_bytes_;
-};
-
-struct RowRange {
-  int first;
-  int rows;
 };
 
 Vec3Q8 point(int x, int y, int z) {
@@ -108,54 +92,6 @@ Band band_over(std::vector<std::uint8_t>& bytes, PixelFormat format, int first_r
   return band;
 }
 
-/// The picture by its definition: each pixel is the shade of its ray's closest hit. Adds up what was met.
-template <class Structure>
-std::vector<std::uint8_t> picture_by_rays(const Structure& structure, const Camera& camera,
-                                          const Shading& shading, PixelFormat format, RenderCounts& counts,
-                                          const TraceOptions& options = {}) {
-  const std::size_t line = row_bytes(format, camera.width_px());
-  std::vector<std::uint8_t> picture(line * static_cast<std::size_t>(camera.height_px()), 0);
-  for (int y = 0; y < camera.height_px(); ++y) {
-    for (int x = 0; x < camera.width_px(); ++x) {
-      const Ray ray = camera.ray(x, y);
-      Hit hit;
-      REQUIRE(closest_hit(structure, ray, &hit, options) == Status::kOk);
-      store_pixel(picture.data() + line * static_cast<std::size_t>(y), x, y, format,
-                  shade(hit, ray, camera, shading));
-      ++counts.rays;
-      counts.hits += hit.kind == HitKind::kHit ? 1 : 0;
-      counts.step_limited += hit.kind == HitKind::kStepLimit ? 1 : 0;
-      counts.node_visits += hit.visits;
-    }
-  }
-  return picture;
-}
-
-template <class Structure>
-void check_against_rays(const Structure& structure, const Camera& camera, const TraceOptions& options = {}) {
-  for (const ShadeMode mode : kModes) {
-    for (const PixelFormat format : kFormats) {
-      CAPTURE(static_cast<int>(mode));
-      CAPTURE(static_cast<int>(format));
-      const Shading shading = shading_of(mode, camera);
-      RenderCounts wanted;
-      const auto picture = picture_by_rays(structure, camera, shading, format, wanted, options);
-      // The bytes' former content does not shine through.
-      std::vector<std::uint8_t> drawn(picture.size(), kGuard);
-      RenderCounts counts{1000, 2000, 3000, 4000};
-      REQUIRE(render_band(structure, camera, shading, band_over(drawn, format, 0, kHeightPx), &counts,
-                          options) == Status::kOk);
-      CHECK(drawn == picture);
-      // Counters are added to.
-      CHECK(counts.rays == 1000 + std::uint64_t{kWidthPx * kHeightPx});
-      CHECK(counts.hits == 2000 + wanted.hits);
-      CHECK(counts.node_visits == 3000 + wanted.node_visits);
-      CHECK(counts.step_limited == 4000 + wanted.step_limited);
-      CHECK(wanted.hits > 50);
-    }
-  }
-}
-
 /// Draws what must be refused, and checks the status, the bytes and the counters.
 template <class Structure>
 void check_refused(Status wanted, const Structure& structure, const Camera& camera, Band band,
@@ -172,17 +108,6 @@ void check_refused(Status wanted, const Structure& structure, const Camera& came
 }
 
 }  // namespace
-
-TEST_CASE(
-    "render_band: every structure, shade and format -> each pixel is its ray's shade, counters the sums") {
-  const Scene scene(0x5CE7E);
-  for (const Camera& camera : {usual_camera(), parallel(point(-3001, -7003, 9987), point(4096, 4096, 4000)),
-                               pinhole(point(4100, 4111, 4090), point(8000, 5000, 3000))}) {
-    check_against_rays(scene.compact, camera);
-    check_against_rays(scene.pool, camera);
-    check_against_rays(scene.grid, camera);
-  }
-}
 
 TEST_CASE("render_band: Width::k32 at the border of what it takes -> all rays of a picture or none") {
   const Scene scene(0xB04D);

@@ -323,21 +323,6 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(tree.uniform_material(), 3);
        THIMBLE_EQUAL(tree.voxel_count(), uint64_t{1} << 30);
      }},
-    {"one voxel -> a mask a level, first children counted on", 256,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 3, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({5, 2, 7}, 0));
-       THIMBLE_REQUIRE(make_compact(check));
-       const CompactTree& tree = check.world.compact;
-       THIMBLE_EQUAL(tree.node_count(), 3U);
-       THIMBLE_EQUAL(tree.mask(0), 1 << 5);
-       THIMBLE_EQUAL(tree.mask(1), 1 << 6);
-       THIMBLE_EQUAL(tree.mask(2), 1 << 5);
-       THIMBLE_EQUAL(tree.first_child(0), 1U);
-       THIMBLE_EQUAL(tree.first_child(1), 2U);
-       THIMBLE_EQUAL(tree.first_child(2), 3U);
-       THIMBLE_EQUAL(tree.bounds(), (VoxelBox{{5, 2, 7}, {6, 3, 8}}));
-     }},
     {"the header's bytes -> magic, level, size, counts where the format says", 256,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 3, 3));
@@ -363,34 +348,6 @@ constexpr Case kCases[] = {
     {"what the header says -> what the octree holds", kSmallBytes, header_of, kMerged, kKindNames[2]},
     {"what the header says -> what the octree holds", kSmallBytes, header_of, kMergedMaterials,
      kKindNames[3]},
-    {"every material is kept -> that of each voxel", 600,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 40, 2));
-       for (int32_t i = 0; i < 24; ++i) {
-         THIMBLE_REQUIRE_OK(
-             check.world.pool.insert({i % 4, i / 4 % 4, i / 16}, static_cast<uint8_t>(255 - i)));
-       }
-       THIMBLE_REQUIRE(make_compact(check));
-       const CompactTree& tree = check.world.compact;
-       THIMBLE_CHECK(tree.many_materials());
-       uint32_t sum = 0;
-       for (uint32_t number = tree.node_count(); number < tree.node_count() + 24; ++number) {
-         sum += tree.voxel_material(number);
-       }
-       THIMBLE_EQUAL(sum, 24U * 255 - 276);
-     }},
-    {"solid blocks of two materials -> each its own", 256,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 3, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert_block({0, 0, 0}, 2, 7));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert_block({4, 4, 4}, 2, 8));
-       THIMBLE_REQUIRE(make_compact(check));
-       const CompactTree& tree = check.world.compact;
-       THIMBLE_EQUAL(tree.node_count(), 3U);
-       THIMBLE_EQUAL(tree.block_material(1), 7);
-       THIMBLE_EQUAL(tree.block_material(2), 8);
-       THIMBLE_CHECK(!tree.is_merged(1));
-     }},
     {"an output that is too small -> out of memory, the need, not a byte written", kSmallBytes, too_small,
      kPlain, kKindNames[0]},
     {"an output that is too small -> out of memory, the need, not a byte written", kSmallBytes, too_small,

@@ -241,98 +241,20 @@ constexpr Case kCases[] = {
        THIMBLE_CHECK(check.world.pool.bounds().empty());
        THIMBLE_CHECK(!check.world.pool.test({0, 0, 0}));
      }},
-    {"one voxel -> one node a level, found again", 64,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 5, 3));
-       Octree& pool = check.world.pool;
-       THIMBLE_REQUIRE_OK(pool.insert({5, 2, 7}, 33));
-       THIMBLE_EQUAL(pool.nodes_used(), 3U);
-       THIMBLE_EQUAL(pool.material({5, 2, 7}), 33);
-       THIMBLE_EQUAL(pool.material({5, 2, 6}), -1);
-       THIMBLE_EQUAL(pool.bounds(), (VoxelBox{{5, 2, 7}, {6, 3, 8}}));
-     }},
-    {"nodes as others read them -> masks of the octants on the way", 64,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 5, 3));
-       Octree& pool = check.world.pool;
-       THIMBLE_REQUIRE_OK(pool.insert({5, 2, 7}, 33));  // octants 5, 6 (in 2 x 2 x 2 blocks: 1, 2, 7)
-       Octree::NodeView node = pool.node(pool.root());
-       THIMBLE_EQUAL(node.mask, 1 << 5);
-       THIMBLE_CHECK(node.has_children);
-       THIMBLE_EQUAL(pool.child(node, 4), Octree::kNone);
-       node = pool.node(pool.child(node, 5));
-       THIMBLE_EQUAL(node.mask, 1 << 6);
-       node = pool.node(pool.child(node, 6));
-       THIMBLE_EQUAL(node.mask, 1 << 5);
-       THIMBLE_CHECK(!node.has_children);
-       THIMBLE_EQUAL(node.material, 33);
-     }},
     {"a node's index that never was -> a solid view without children", 64,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 5, 3));
        THIMBLE_CHECK(check.world.pool.node(4).solid());
        THIMBLE_EQUAL(check.world.pool.node(Octree::kNone).first_child, Octree::kNone);
      }},
-    {"the same voxel again -> its new material, nothing else", 64,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 5, 3));
-       Octree& pool = check.world.pool;
-       THIMBLE_REQUIRE_OK(pool.insert({1, 1, 1}, 3));
-       THIMBLE_REQUIRE_OK(pool.insert({1, 1, 1}, 4));
-       THIMBLE_EQUAL(pool.material({1, 1, 1}), 4);
-       THIMBLE_EQUAL(pool.voxels(), 1U);
-       THIMBLE_EQUAL(pool.nodes_used(), 3U);
-     }},
-    {"voxels of one material in one 2 x 2 x 2 -> one node for all", 64,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 6, 3));
-       Octree& pool = check.world.pool;
-       for (int32_t x = 0; x < 2; ++x) {
-         THIMBLE_REQUIRE_OK(pool.insert({x, 0, 0}, 5));
-         THIMBLE_REQUIRE_OK(pool.insert({x, 1, 1}, 5));
-       }
-       THIMBLE_EQUAL(pool.nodes_used(), 3U);
-       THIMBLE_EQUAL(pool.node(pool.child(pool.node(pool.child(pool.node(pool.root()), 0)), 0)).mask, 0xC3);
-     }},
-    {"materials that differ in one 2 x 2 x 2 -> a node a voxel", 64,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 6, 3));
-       Octree& pool = check.world.pool;
-       THIMBLE_REQUIRE_OK(pool.insert({0, 0, 0}, 5));
-       THIMBLE_REQUIRE_OK(pool.insert({1, 0, 0}, 6));
-       THIMBLE_EQUAL(pool.nodes_used(), 5U);
-       THIMBLE_EQUAL(pool.material({0, 0, 0}), 5);
-       THIMBLE_EQUAL(pool.material({1, 0, 0}), 6);
-       THIMBLE_REQUIRE_OK(pool.insert({1, 0, 0}, 5));
-       THIMBLE_EQUAL(pool.nodes_used(), 3U);
-     }},
     {"a full world voxel by voxel -> one node", pool_bytes(73), fill_voxel_by_voxel, 1, "in order"},
     {"a full world voxel by voxel -> one node", pool_bytes(73), fill_voxel_by_voxel, 37, "in leaps"},
-    {"a full world of two materials -> no one block", pool_bytes(100),
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 100, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert_block({0, 0, 0}, 3, 1));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({7, 7, 7}, 2));
-       THIMBLE_EQUAL(check.world.pool.nodes_used(), 25U);  // 8 on each of the three levels below the root
-       THIMBLE_EQUAL(check.world.pool.voxels(), 512U);
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({7, 7, 7}, 1));
-       THIMBLE_EQUAL(check.world.pool.nodes_used(), 1U);
-     }},
     {"the same voxels in any order -> the same tree", pool_bytes(100) + 1024, any_order},
     {"random edits -> what a bit grid holds, at every step", pool_bytes(73) + 64, random_edits, 2,
      "world of 4"},
     {"random edits -> what a bit grid holds, at every step", pool_bytes(200) + 64, random_edits, 3,
      "world of 8"},
     {"a pool that is too small -> out of memory, not a byte changed", pool_bytes(12), full_pool},
-    {"a pool of just enough nodes -> everything fits", pool_bytes(12),
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 12, 12));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({4095, 0, 4095}, 1));
-       THIMBLE_EQUAL(check.world.pool.nodes_free(), 0U);
-       THIMBLE_EQUAL(check.world.pool.insert({0, 0, 0}, 1), Status::kOutOfMemory);
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({4094, 1, 4095}, 1));
-       THIMBLE_EQUAL(check.world.pool.voxels(), 2U);
-     }},
     {"insert_block: corner no multiple of the side -> bad argument", 64,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 5, 3));
@@ -346,18 +268,6 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(check.world.pool.insert_block({0, 0, 0}, 4, 0), Status::kOutOfRange);
        THIMBLE_EQUAL(check.world.pool.insert_block({0, 0, 0}, -1, 0), Status::kOutOfRange);
        THIMBLE_CHECK(check.world.pool.empty());
-     }},
-    {"insert_block over voxels -> they become the block, their nodes are free again", pool_bytes(60),
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 60, 3));
-       Octree& pool = check.world.pool;
-       for (int32_t i = 0; i < 4; ++i) {
-         THIMBLE_REQUIRE_OK(pool.insert({i, i, i}, static_cast<uint8_t>(i)));
-       }
-       THIMBLE_REQUIRE_OK(pool.insert_block({0, 0, 0}, 2, 7));
-       THIMBLE_EQUAL(pool.nodes_used(), 2U);
-       THIMBLE_EQUAL(pool.voxels(), 64U);
-       THIMBLE_EQUAL(pool.material({2, 2, 2}), 7);
      }},
     {"insert_box -> the voxels of the box and no other", pool_bytes(300) + 64, insert_box_of, 0, "the world"},
     {"insert_box -> the voxels of the box and no other", pool_bytes(300) + 64, insert_box_of, 1, "inside"},
@@ -392,42 +302,6 @@ constexpr Case kCases[] = {
     {"outside the world -> out of range, and not solid", pool_bytes(40), outside, 0, "x"},
     {"outside the world -> out of range, and not solid", pool_bytes(40), outside, 1, "y"},
     {"outside the world -> out of range, and not solid", pool_bytes(40), outside, 2, "z"},
-    {"remove: what is empty -> nothing happens", 64,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 5, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.remove({1, 2, 3}));
-       THIMBLE_CHECK(check.world.pool.empty());
-     }},
-    {"remove: the last voxel -> no node left", 64,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 5, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({1, 2, 3}, 8));
-       THIMBLE_REQUIRE_OK(check.world.pool.remove({1, 2, 3}));
-       THIMBLE_CHECK(check.world.pool.empty());
-       THIMBLE_EQUAL(check.world.pool.root(), Octree::kNone);
-       THIMBLE_EQUAL(check.world.pool.nodes_high_water(), 3U);
-     }},
-    {"remove: a voxel of a solid block -> its siblings on every level stay", pool_bytes(30),
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 30, 3));
-       Octree& pool = check.world.pool;
-       THIMBLE_REQUIRE_OK(pool.insert_block({0, 0, 0}, 3, 4));
-       THIMBLE_REQUIRE_OK(pool.remove({3, 4, 5}));
-       THIMBLE_EQUAL(pool.voxels(), 511U);
-       THIMBLE_EQUAL(pool.nodes_used(), 17U);  // 8 * (3 - 1) new ones
-       THIMBLE_CHECK(!pool.test({3, 4, 5}));
-       THIMBLE_EQUAL(pool.material({2, 4, 5}), 4);
-       THIMBLE_REQUIRE_OK(pool.insert({3, 4, 5}, 4));
-       THIMBLE_EQUAL(pool.nodes_used(), 1U);
-     }},
-    {"remove: no nodes for the split -> out of memory, the block stays", 64,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 5, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert_block({0, 0, 0}, 3, 4));
-       THIMBLE_EQUAL(check.world.pool.remove({3, 4, 5}), Status::kOutOfMemory);
-       THIMBLE_EQUAL(check.world.pool.voxels(), 512U);
-       THIMBLE_CHECK(check.world.pool.test({3, 4, 5}));
-     }},
     {"everything removed and inserted again -> the pool does not grow", pool_bytes(200),
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 200, 4));
@@ -496,64 +370,6 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE_OK(check.world.pool.make_room(10));
        THIMBLE_CHECK(check.world.pool.nodes_used() <= 2);
        THIMBLE_EQUAL(check.world.pool.make_room(12), Status::kOutOfMemory);
-     }},
-    {"coarsen: the cheapest block first -> the one that is nearly full", pool_bytes(20),
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 20, 3));
-       Octree& pool = check.world.pool;
-       // Seven eighths of a 4 x 4 x 4 block in blocks of 2, and a lonely voxel elsewhere.
-       for (int32_t octant = 0; octant < 7; ++octant) {
-         THIMBLE_REQUIRE_OK(
-             pool.insert_block({(octant & 1) * 2, (octant >> 1 & 1) * 2, (octant >> 2) * 2}, 1, 1));
-       }
-       THIMBLE_REQUIRE_OK(pool.insert({7, 7, 7}, 2));
-       THIMBLE_EQUAL(pool.nodes_used(), 11U);
-       THIMBLE_REQUIRE_OK(pool.coarsen_to(10));
-       THIMBLE_EQUAL(pool.nodes_used(), 4U);
-       THIMBLE_EQUAL(pool.solid_added(), 8U);
-       THIMBLE_EQUAL(pool.material({3, 3, 3}), 1);
-       THIMBLE_EQUAL(pool.voxels(), 65U);
-     }},
-    {"coarsen: a block of several materials -> merged first, nothing added, the largest piece's material",
-     pool_bytes(40),
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 40, 3));
-       Octree& pool = check.world.pool;
-       THIMBLE_REQUIRE_OK(pool.insert_block({0, 0, 0}, 2, 1));
-       THIMBLE_REQUIRE_OK(pool.insert_block({2, 2, 2}, 1, 2));
-       THIMBLE_REQUIRE_OK(pool.insert({0, 0, 0}, 3));
-       THIMBLE_REQUIRE_OK(pool.insert({7, 7, 7}, 1));
-       THIMBLE_EQUAL(pool.nodes_used(), 20U);
-       THIMBLE_REQUIRE_OK(pool.coarsen_to(4));
-       THIMBLE_EQUAL(pool.solid_added(), 0U);
-       THIMBLE_EQUAL(pool.material({0, 0, 0}), 1);
-       THIMBLE_EQUAL(pool.nodes_used(), 4U);
-       THIMBLE_REQUIRE_OK(pool.coarsen_to(3));
-       THIMBLE_EQUAL(pool.solid_added(), 63U);
-     }},
-    {"coarsen: everything into one node -> the whole world, of the first piece's material", pool_bytes(20),
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 20, 3));
-       Octree& pool = check.world.pool;
-       THIMBLE_REQUIRE_OK(pool.insert({0, 0, 0}, 3));
-       THIMBLE_REQUIRE_OK(pool.insert({7, 7, 7}, 4));
-       THIMBLE_REQUIRE_OK(pool.coarsen_to(1));
-       THIMBLE_CHECK(pool.node(pool.root()).merged);
-       THIMBLE_EQUAL(pool.material({4, 4, 4}), 3);
-       THIMBLE_EQUAL(pool.solid_added(), 510U);
-       THIMBLE_EQUAL(pool.bounds(), (VoxelBox{{0, 0, 0}, {8, 8, 8}}));
-     }},
-    {"a merged block: inserted into -> nothing changes, the material neither", pool_bytes(20),
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 20, 3));
-       Octree& pool = check.world.pool;
-       THIMBLE_REQUIRE_OK(pool.insert({0, 0, 0}, 3));
-       THIMBLE_REQUIRE_OK(pool.insert({7, 7, 7}, 4));
-       THIMBLE_REQUIRE_OK(pool.coarsen_to(1));
-       THIMBLE_REQUIRE_OK(pool.insert({5, 5, 5}, 9));
-       THIMBLE_REQUIRE_OK(pool.insert_block({4, 4, 4}, 2, 9));
-       THIMBLE_EQUAL(pool.nodes_used(), 1U);
-       THIMBLE_EQUAL(pool.material({5, 5, 5}), 3);
      }},
     {"a merged block: a voxel removed -> merged blocks around it, single voxels beside it", pool_bytes(30),
      [](Check& check, int) {

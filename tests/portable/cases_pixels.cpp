@@ -82,26 +82,6 @@ constexpr Case kCases[] = {
          THIMBLE_EQUAL(bits_per_pixel(kFormats[i]), kBits[i]);
        }
      }},
-    {"row_bytes: mono1 -> eight pixels a byte, rounded up", 0,
-     [](Check& check, int) {
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kMono1, 0), 0U);
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kMono1, 1), 1U);
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kMono1, 8), 1U);
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kMono1, 9), 2U);
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kMono1, 16384), 2048U);
-     }},
-    {"row_bytes: gray4 -> two pixels a byte, rounded up", 0,
-     [](Check& check, int) {
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kGray4, 1), 1U);
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kGray4, 2), 1U);
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kGray4, 61), 31U);
-     }},
-    {"row_bytes: whole bytes -> their number", 0,
-     [](Check& check, int) {
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kGray8, 61), 61U);
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kRgb565, 61), 122U);
-       THIMBLE_EQUAL(row_bytes(PixelFormat::kRgb888, 16384), 49152U);
-     }},
     {"row_bytes: every format and width up to 99 -> bits rounded up to whole bytes", 0,
      [](Check& check, int) {
        for (const PixelFormat format : kFormats) {
@@ -118,12 +98,6 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(gray_of({255, 0, 0}), 76);
        THIMBLE_EQUAL(gray_of({0, 255, 0}), 149);
        THIMBLE_EQUAL(gray_of({0, 0, 255}), 28);
-     }},
-    {"gray_of: a grey -> itself", 0,
-     [](Check& check, int) {
-       for (int value = 0; value < 256; ++value) {
-         THIMBLE_EQUAL(gray_of(gray(value)), value);
-       }
      }},
     {"mono1: leftmost pixel -> highest bit", 0,
      [](Check& check, int) {

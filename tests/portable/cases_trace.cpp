@@ -358,28 +358,6 @@ void merged_world(Check& check, int) {
   }
 }
 
-// One merged block of 2 beside single voxels: its corner, its level, t at its face.
-void merged_block(Check& check, int) {
-  THIMBLE_REQUIRE(make_pool(check, 40, 3));
-  Octree& pool = check.world.pool;
-  constexpr Vec3i kAts[] = {{4, 4, 4}, {5, 5, 5}, {4, 5, 4}};
-  for (const Vec3i& at : kAts) {
-    THIMBLE_REQUIRE_OK(pool.insert(at, 2));
-  }
-  THIMBLE_REQUIRE_OK(pool.insert({5, 4, 4}, 1));
-  const uint32_t before = pool.nodes_used();
-  THIMBLE_REQUIRE_OK(pool.coarsen_to(before - 1));
-  THIMBLE_EQUAL(pool.solid_added(), 4U);
-  THIMBLE_REQUIRE(make_compact(check));
-  for (int structure = 1; structure < 3; ++structure) {
-    THIMBLE_REQUIRE_OK(closest(check, structure, ray_q8({1500, 0, 1400}, {0, 7, 0}), check.options));
-    THIMBLE_EQUAL(check.hit.voxel, (Vec3i{4, 4, 4}));
-    THIMBLE_EQUAL(check.hit.block_level, 1);
-    THIMBLE_EQUAL(check.hit.material, 2);
-    THIMBLE_EQUAL(check.hit.t_numerator, 1024);
-  }
-}
-
 constexpr Case kCases[] = {
     {"random rays -> the brute force's answer, in every structure and width", cloud_bytes(3),
      against_brute_force, kLattice, "lattice points and small slopes"},
@@ -514,54 +492,10 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE_OK(closest(check, 1, ray_q8({-256, 700, 700}, {5, 0, 0}), check.options));
        THIMBLE_EQUAL(check.hit.kind, HitKind::kMiss);
      }},
-    {"materials -> that of the voxel hit, in pool and compact tree", 1024,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 64, 3));
-       for (int32_t y = 0; y < 8; ++y) {
-         THIMBLE_REQUIRE_OK(check.world.pool.insert({5, y, 1}, static_cast<uint8_t>(31 * y)));
-       }
-       THIMBLE_REQUIRE(make_compact(check));
-       for (int structure = 1; structure < 3; ++structure) {
-         for (int32_t y = 0; y < 8; ++y) {
-           THIMBLE_REQUIRE_OK(
-               closest(check, structure, ray_q8({0, 256 * y + 9, 300}, {1, 0, 0}), check.options));
-           THIMBLE_EQUAL(check.hit.material, 31 * y);
-         }
-       }
-     }},
-    {"a solid block of a material -> its voxels one by one, all of that material", 1024,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 64, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert_block({4, 4, 4}, 2, 9));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({0, 0, 0}, 1));
-       THIMBLE_REQUIRE(make_compact(check));
-       for (int structure = 1; structure < 3; ++structure) {
-         THIMBLE_REQUIRE_OK(closest(check, structure, ray_q8({0, 1700, 1500}, {1, 0, 0}), check.options));
-         THIMBLE_EQUAL(check.hit.voxel, (Vec3i{4, 6, 5}));
-         THIMBLE_EQUAL(check.hit.material, 9);
-         THIMBLE_EQUAL(check.hit.block_level, 0);
-       }
-     }},
     {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 0, "x"},
     {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 1, "y"},
     {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 2, "z"},
     {"a world merged to one block -> its lowest corner, its level, t at its face", 512, merged_world},
-    {"a merged block of 2 -> its lowest corner, its level, t at its face", 1024, merged_block},
-    {"start inside a merged block -> t 0, its lowest corner", 512,
-     [](Check& check, int) {
-       THIMBLE_REQUIRE(make_pool(check, 16, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({0, 0, 0}, 3));
-       THIMBLE_REQUIRE_OK(check.world.pool.insert({7, 7, 7}, 4));
-       THIMBLE_REQUIRE_OK(check.world.pool.coarsen_to(1));
-       THIMBLE_REQUIRE(make_compact(check));
-       for (int structure = 1; structure < 3; ++structure) {
-         THIMBLE_REQUIRE_OK(closest(check, structure, ray_q8({1100, 1100, 999}, {0, 0, -2}), check.options));
-         THIMBLE_EQUAL(check.hit.voxel, (Vec3i{0, 0, 0}));
-         THIMBLE_EQUAL(check.hit.axis, -1);
-         THIMBLE_EQUAL(check.hit.t_numerator, 0);
-         THIMBLE_EQUAL(check.hit.t_denominator, 1);
-       }
-     }},
 };
 
 }  // namespace
