@@ -54,7 +54,7 @@ void refine(OddValues& odd, const CompactTree& tree, const Camera& camera, const
 
 TEST_CASE(
     "misuse: any camera, shading and band over sound and damaged trees -> refused or drawn in the band") {
-  misuse(20, 700, [](OddValues& odd) {
+  misuse(20, 350, [](OddValues& odd) {
     const int level = odd.between_32(kMinLevel, 6);
     OddWorld world(odd, level);
     ExactBytes map_bytes(most_brick_map_bytes(std::max(level, kMinBrickMapLevel)));

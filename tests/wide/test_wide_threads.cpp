@@ -39,7 +39,7 @@ void look_at_corner(int view_number, std::int32_t width, std::int32_t height, Fr
 }  // namespace
 
 TEST_CASE("wide: work in some rows, several threads -> parts change hands, every pixel is the core's") {
-  const int kRepeats = many_or_few(10, 3);
+  const int kRepeats = many_or_few(10, 2);
   const std::int64_t kPoints = many_or_few<std::int64_t>(900000, 100000);
 #ifdef __SANITIZE_THREAD__
   constexpr int kLarge = 2;  // there every step takes ten times as long
