@@ -113,6 +113,12 @@ catches() {
   fresh
 }
 
+# fault CHECK WORDS FILE TEXT: what the check catches where the file holds that, too.
+fault() {
+  add "$3" "$4"
+  catches "$1" "$2"
+}
+
 fresh
 for name in layering words format headers arduino one_unit tidy core.host core.cortex-m0 core.cortex-m3 core.rv32 sizes links \
   readme_program readme_commands; do
@@ -161,10 +167,8 @@ frame_tree 3015001
 catches board_rows 'the budgets say: .* 3.02 million (a few) |'
 
 fresh
-add include/thimble/base/sum.h '#include <string.h>'
-catches layering 'the core includes more'
-add src/base/sum.cpp '#include <vector>'
-catches layering 'the core includes more'
+fault layering 'the core includes more' include/thimble/base/sum.h '#include <string.h>'
+fault layering 'the core includes more' src/base/sum.cpp '#include <vector>'
 add src/tree/tree.cpp '#include "../base/sum.h"'
 add src/base/sum.h ''
 passes layering
@@ -182,59 +186,45 @@ add include/thimble/base/vec.h ''
 add include/thimble/base/sum.h '#include "thimble/base/vec.h"'
 catches layering 'from where it stands'
 mkdir -p "$tree/src/attic"
-add src/attic/old.cpp ''
-catches layering 'is no room'
-add src/lone.cpp ''
-catches layering 'stand in rooms'
-add tools/tool.cpp '#include "thimble/base/detail/sum.h"'
-catches layering "the core's own"
+fault layering 'is no room' src/attic/old.cpp ''
+fault layering 'stand in rooms' src/lone.cpp ''
+fault layering "the core's own" tools/tool.cpp '#include "thimble/base/detail/sum.h"'
 mkdir -p "$tree/include/thimble/base/host" "$tree/platform/wide" "$tree/tests/base"
 add include/thimble/base/host/sum.h '#include "../sum.h"'
 add src/base/sum.cpp '#include "thimble/base/host/sum.h"'
 add tests/base/test_sum.cpp '#include "thimble/base/host/sum.h"'
 add platform/wide/sum.cpp '#include "thimble/base/host/sum.h"'
 passes layering
-add platform/apps/app.cpp '#include "thimble/base/host/sum.h"'
-catches layering "host's own renderer"
-add tools/tool.cpp '#include "thimble/base/host/sum.h"'
-catches layering "host's own renderer"
+fault layering "host's own renderer" platform/apps/app.cpp '#include "thimble/base/host/sum.h"'
+fault layering "host's own renderer" tools/tool.cpp '#include "thimble/base/host/sum.h"'
 mkdir -p "$tree/include/thimble/base/host"
 add include/thimble/base/host/more.h ''
 add include/thimble/base/sum.h '#include "host/more.h"'
 catches layering 'for callers includes none of a folder host'
-add tools/tool.cpp '#include "../src/base/sum.h"'
-catches layering 'never src'
+fault layering 'never src' tools/tool.cpp '#include "../src/base/sum.h"'
 mkdir -p "$tree/tools/commands" "$tree/tools/instruments"
 add tools/commands/stats.cpp '#include "instruments/study.h"'
 passes layering
-add tools/instruments/study.h '#include "commands/stats.h"'
-catches layering 'tools/instruments sees only itself'
-add platform/port.cpp '#include "../src/base/sum.h"'
-catches layering 'never src'
-add platform/port.cpp '#include "portable/case.h"'
-catches layering 'platform sees no test'
+fault layering 'tools/instruments sees only itself' tools/instruments/study.h '#include "commands/stats.h"'
+fault layering 'never src' platform/port.cpp '#include "../src/base/sum.h"'
+fault layering 'platform sees no test' platform/port.cpp '#include "portable/case.h"'
 mkdir -p "$tree/tests/boards/apps"
 add tests/boards/apps/cases.cpp '#include "portable/case.h"'
 add tests/portable/case.h '#include "thimble/base/sum.h"'
 passes layering
-add tests/portable/case.h '#include <vector>'
-catches layering 'the cases that run on boards'
-add tests/reference/judge.cpp '#include "thimble/base/sum.h"'
-catches layering 'shares no code'
+fault layering 'the cases that run on boards' tests/portable/case.h '#include <vector>'
+fault layering 'shares no code' tests/reference/judge.cpp '#include "thimble/base/sum.h"'
 
 # lines COUNT TEXT
 lines() {
   awk -v count="$1" -v text="$2" 'BEGIN { for (i = 0; i < count; ++i) print text }'
 }
-add tools/tool.cpp "$(lines 800 '// nothing')"
-catches sizes 'longer than 800 lines'
-add tools/CMakeLists.txt "$(lines 121 '# nothing')"
-catches sizes 'longer than 120 lines'
+fault sizes 'longer than 800 lines' tools/tool.cpp "$(lines 800 '// nothing')"
+fault sizes 'longer than 120 lines' tools/CMakeLists.txt "$(lines 121 '# nothing')"
 for kind in js py sh; do
   add "tools/script.$kind" "$(lines 800 nothing)"
   passes sizes
-  add "tools/script.$kind" nothing
-  catches sizes 'these scripts are longer than 800 lines'
+  fault sizes 'these scripts are longer than 800 lines' "tools/script.$kind" nothing
 done
 # headers COUNT: so many for callers, and two that are not.
 headers() {
@@ -247,10 +237,8 @@ headers 37
 passes sizes
 headers 38
 catches sizes '38 headers for callers'
-add README.md "$(lines 150 nothing)"
-catches sizes 'longer than 150 lines'
-add README.md "$(lines 23 'five ' | tr -d '\n')"
-catches sizes 'wider than 110 columns'
+fault sizes 'longer than 150 lines' README.md "$(lines 150 nothing)"
+fault sizes 'wider than 110 columns' README.md "$(lines 23 'five ' | tr -d '\n')"
 add README.md "$(lines 55 'é ' | tr -d '\n')"
 passes sizes
 # 98 lines between its first and its last are a hundred; what stands around a function does not count.
@@ -268,15 +256,13 @@ long_function 96
 passes sizes
 long_function 97
 catches sizes 'longer than 100 lines'
-add README.md '[There](src/gone.cpp#here)'
-catches links 'src/gone.cpp'
+fault links 'src/gone.cpp' README.md '[There](src/gone.cpp#here)'
 printf '# One: two parts\n\n[Here](#one-two-parts)\n' >"$tree/src/page.md"
 add README.md '[There](src/page.md#one-two-parts)'
 passes links
 printf '# One: two parts\n\n[Here](#two)\n' >"$tree/src/page.md"
 catches links 'src/page.md#two'
-add platform/examples/sum.cpp '// more'
-catches readme_program 'is not the text of'
+fault readme_program 'is not the text of' platform/examples/sum.cpp '// more'
 sed -i 's/none/many/' "$tree/README.md"
 catches readme_program 'is not the text of'
 sed -i 's/puts/put/' "$tree/README.md" "$tree/platform/examples/sum.cpp"
@@ -285,13 +271,10 @@ sed -i 's/sum\.cpp$/gone.cpp/' "$tree/README.md"
 catches readme_program 'not there'
 sed -i 's/^```cpp/```/' "$tree/README.md"
 catches readme_program 'blocks of C++'
-add README.md '    thimble gone.vox   # a scene'
-catches readme_commands 'thimble gone.vox'
-add README.md '    make unheard-of'
-catches readme_commands 'make unheard-of'
+fault readme_commands 'thimble gone.vox' README.md '    thimble gone.vox   # a scene'
+fault readme_commands 'make unheard-of' README.md '    make unheard-of'
 if command -v Xvfb >/dev/null && command -v xdotool >/dev/null; then
-  add README.md '    thimble --window     # window'
-  catches readme_commands 'opens no window'
+  fault readme_commands 'opens no window' README.md '    thimble --window     # window'
 fi
 add README.md '    make install   # somewhere'
 add Makefile 'all:
@@ -314,8 +297,7 @@ for fault in 'static Status begin(int a);' 'static constexpr Status set(int a);'
 done
 add include/thimble/thimble_c.h 'int32_t thimble_sum_make(int count);'
 passes words
-add include/thimble/thimble_c.h 'int32_t thimble_sum_begin(int count);'
-catches words 'in C a handle is filled by'
+fault words 'in C a handle is filled by' include/thimble/thimble_c.h 'int32_t thimble_sum_begin(int count);'
 # Phrases, taken apart here since no file may hold one: in a comment, in a page, in a message.
 for fault in 'is ~told the rest' 'was ~asked for' 'ray goes ~on' 'rays that go ~on' 'What a box ha~s of itself' 'Asked ~were two'; do
   text=$(echo "$fault" | tr -d '~')
@@ -339,61 +321,46 @@ for fault in 'return int64_t{a} * b;' 'return b * static_cast<uint64_t>(f(a));' 
   add src/trace/sum.cpp "long f(int a) { $fault }"
   catches words 'a product of 64 bits has a name'
 done
-add src/base/sum.cpp 'int   x   ;'
-catches format 'make format'
-add include/thimble/lone.h 'inline thimble::Vec3i zero() { return {}; }'
-catches headers 'lone.h does not compile alone'
-add include/thimble/lone.h 'struct Low { bool operator==(const Low&) const = default; };'
-catches headers 'lone.h does not compile alone'
-add include/thimble/lone.h 'struct Range { int LOW; };'
-catches arduino 'after Arduino'
-add include/thimble/lone.h 'struct Range { int max() const; };'
-catches arduino 'after Arduino'
-add include/thimble/lone.h 'template <int B1> struct Counted {};'
-catches arduino 'after Arduino'
+fault format 'make format' src/base/sum.cpp 'int   x   ;'
+fault headers 'lone.h does not compile alone' include/thimble/lone.h 'inline thimble::Vec3i zero() { return {}; }'
+fault headers 'lone.h does not compile alone' include/thimble/lone.h 'struct Low { bool operator==(const Low&) const = default; };'
+fault arduino 'after Arduino' include/thimble/lone.h 'struct Range { int LOW; };'
+fault arduino 'after Arduino' include/thimble/lone.h 'struct Range { int max() const; };'
+fault arduino 'after Arduino' include/thimble/lone.h 'template <int B1> struct Counted {};'
 add src/base/sum.cpp 'namespace { struct Frame { int left; }; int width(Frame frame) { return frame.left; } } int a() { return width({1}); }'
 add src/other.cpp 'namespace { struct Frame { int top; }; int height(Frame frame) { return frame.top; } } int b() { return height({2}); }'
 catches one_unit 'one translation unit'
-add src/base/sum.cpp 'int* nothing() { return 0; }'
-catches tidy 'nullptr'
+fault tidy 'nullptr' src/base/sum.cpp 'int* nothing() { return 0; }'
 add src/base/sum.cpp 'namespace { int look(int k) { int* p = nullptr; return k > 3 ? *p : k; } } int seen(int k) { return look(k); }'
 catches tidy 'Dereference of null pointer'
 
 for target in host cortex-m0 cortex-m3 rv32; do
   add src/base/sum.cpp 'extern "C" void* malloc(__SIZE_TYPE__); void* get(unsigned n) { return malloc(n); }'
   catches core.$target 'needs malloc'
-  add src/base/sum.cpp 'int counter = 3; int next() { return ++counter; }'
-  catches core.$target 'no writable data'
-  add src/base/sum.cpp 'int tally; int next() { return ++tally; }'
-  catches core.$target 'no writable data'
+  fault core.$target 'no writable data' src/base/sum.cpp 'int counter = 3; int next() { return ++counter; }'
+  fault core.$target 'no writable data' src/base/sum.cpp 'int tally; int next() { return ++tally; }'
   add src/base/sum.cpp 'int from(); int from() { volatile int x = 1; return x; } extern const int kValue; const int kValue = from();'
   catches core.$target 'run no constructors'
-  add src/base/sum.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
-  catches core.$target 'is recursive'
+  fault core.$target 'is recursive' src/base/sum.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
   add src/base/sum.cpp 'int odd(int n); __attribute__((noinline)) int even(int n) { return n == 0 ? 1 : odd(n - 1) + 2; }'
   add src/base/sum.cpp '__attribute__((noinline)) int odd(int n) { return n == 0 ? 0 : even(n - 1) + 3; }'
   catches core.$target 'is recursive'
-  add src/base/sum.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
-  catches core.$target 'through a pointer'
+  fault core.$target 'through a pointer' src/base/sum.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
   # A driver may, since what it calls is the board's.
   add src/drivers/panel.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
   passes core.$target
-  add src/drivers/panel.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
-  catches core.$target 'is recursive'
+  fault core.$target 'is recursive' src/drivers/panel.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
   add src/base/sum.cpp 'int grow(int n) { volatile char* p = static_cast<char*>(__builtin_alloca(n)); p[0] = 1; return p[n - 1]; }'
   catches core.$target 'not known when compiling'
   add src/base/sum.cpp 'bool seldom(int n) { if (n == 0) [[unlikely]] { return true; } auto l = [&]<int k>() { return n == k; }; return l.template operator()<3>(); }'
   catches core.$target 'does not compile'
-  add src/base/sum.cpp 'int wide(int n) { volatile int a[200]; a[n] = 1; return a[n + 1]; }'
-  catches core.$target 'the limit is 512'
+  fault core.$target 'the limit is 512' src/base/sum.cpp 'int wide(int n) { volatile int a[200]; a[n] = 1; return a[n + 1]; }'
   printf 'nothing,*,10\n' >"$tree/stack.csv"
   catches core.$target 'no row'
 done
 for target in cortex-m0 cortex-m3 rv32; do
-  add src/base/sum.cpp 'int64_t divide(int64_t a, int64_t b) { return a / b; }'
-  catches core.$target 'divmod\|divdi3'
-  add src/base/sum.cpp 'double scale(double a) { return a * 3; }'
-  catches core.$target 'dmul\|muldf3'
+  fault core.$target 'divmod\|divdi3' src/base/sum.cpp 'int64_t divide(int64_t a, int64_t b) { return a / b; }'
+  fault core.$target 'dmul\|muldf3' src/base/sum.cpp 'double scale(double a) { return a * 3; }'
 done
 
 # Formats of panels that are left out. formats WORD...: a source that stores nine of them, behind WORD each.
@@ -421,12 +388,9 @@ catches panel_formats 'panel_store.cpp takes .* bytes without formats of panels'
 catches c_header 'there is no include/thimble/thimble_c.h'
 add include/thimble/thimble_c.h 'int thimble_sum(int count);'
 passes c_header
-add include/thimble/thimble_c.h 'int thimble_default(int count = 3);'
-catches c_header 'does not compile alone with gcc'
-add include/thimble/thimble_c.h 'int thimble_class(int class);'
-catches c_header 'does not compile alone with g++'
-add include/thimble/thimble_c.h 'int thimble_sum();'
-catches c_header 'does not compile alone with gcc'
+fault c_header 'does not compile alone with gcc' include/thimble/thimble_c.h 'int thimble_default(int count = 3);'
+fault c_header 'does not compile alone with g++' include/thimble/thimble_c.h 'int thimble_class(int class);'
+fault c_header 'does not compile alone with gcc' include/thimble/thimble_c.h 'int thimble_sum();'
 # program BUDGETS: a program in C over the tree's core, and its row.
 program() {
   mkdir -p "$tree/tests/budgets" "$tree/tests/c/programs"
