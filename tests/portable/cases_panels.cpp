@@ -135,40 +135,6 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(whole_rows(PixelFormat::kMono1Pages, 9), 16);
        THIMBLE_EQUAL(whole_rows(PixelFormat::kRgb444, 9), 9);
      }},
-    {"565 in other orders -> bytes by hand", 0,
-     [](Check& check, int) {
-       const Rgb8 colors[] = {kRed, kGreen, kBlue, {8, 4, 8}};
-       const uint8_t big[] = {0xF8, 0x00, 0x07, 0xE0, 0x00, 0x1F, 0x08, 0x21};
-       expect_row(check, PixelFormat::kRgb565Be, colors, 0, big, THIMBLE_WHAT("big-endian"));
-       const uint8_t bgr[] = {0x1F, 0x00, 0xE0, 0x07, 0x00, 0xF8, 0x21, 0x08};
-       expect_row(check, PixelFormat::kBgr565, colors, 0, bgr, THIMBLE_WHAT("blue highest"));
-     }},
-    {"rgb444: two pixels -> three bytes; an odd one -> half a byte unused", 0,
-     [](Check& check, int) {
-       const Rgb8 colors[] = {{0x11, 0x22, 0x33}, {0x44, 0x55, 0x66}, {0x77, 0x88, 0x99}};
-       const uint8_t wanted[] = {0x12, 0x34, 0x56, 0x78, 0x90};
-       expect_row(check, PixelFormat::kRgb444, colors, 0, wanted, THIMBLE_WHAT("rgb444"));
-     }},
-    {"mono1_pages: row of the page -> bit of the column's byte", 0,
-     [](Check& check, int) {
-       const Rgb8 colors[] = {kWhite, kBlack, kWhite};
-       const uint8_t top[] = {0x01, 0x00, 0x01};
-       expect_row(check, PixelFormat::kMono1Pages, colors, 16, top, THIMBLE_WHAT("first row of a page"));
-       const uint8_t last[] = {0x80, 0x00, 0x80};
-       expect_row(check, PixelFormat::kMono1Pages, colors, 7, last, THIMBLE_WHAT("last row"));
-     }},
-    {"gray4_low: left pixel -> low nibble", 0,
-     [](Check& check, int) {
-       const Rgb8 colors[] = {gray(17), gray(34), gray(170)};
-       const uint8_t wanted[] = {0x21, 0x0A};
-       expect_row(check, PixelFormat::kGray4Low, colors, 0, wanted, THIMBLE_WHAT("gray4_low"));
-     }},
-    {"gray2: leftmost pixel -> highest bits", 0,
-     [](Check& check, int) {
-       const Rgb8 colors[] = {gray(85), gray(170), kWhite, kBlack, kWhite};
-       const uint8_t wanted[] = {0x6C, 0xC0};
-       expect_row(check, PixelFormat::kGray2, colors, 3, wanted, THIMBLE_WHAT("gray2"));
-     }},
     {"paper3: a byte of white, a byte of red", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {kWhite, kRed, kBlack, kWhite, kRed, kBlack, kBlack, kBlack, kRed};
@@ -186,12 +152,6 @@ constexpr Case kCases[] = {
          store_pixel(row, i % 8, i / 8 % 8, PixelFormat::kPaper7, kSeven[i / 64]);
          THIMBLE_EQUAL(load_pixel(row, i % 8, i / 8 % 8, PixelFormat::kPaper7), kSeven[i / 64]);
        }
-     }},
-    {"rgb332: bits and rounding", 0,
-     [](Check& check, int) {
-       const Rgb8 colors[] = {kRed, kGreen, kBlue, {18, 19, 42}, {19, 18, 43}};
-       const uint8_t wanted[] = {0xE0, 0x1C, 0x03, 0x04, 0x21};
-       expect_row(check, PixelFormat::kRgb332, colors, 0, wanted, THIMBLE_WHAT("rgb332"));
      }},
     {"white rows of any width -> white, cleared -> nothing", 0, white_rows, 0, "rgb565_be"},
     {"white rows of any width -> white, cleared -> nothing", 0, white_rows, 1, "bgr565"},

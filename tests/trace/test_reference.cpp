@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <map>
 #include <random>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -218,38 +217,6 @@ TEST_CASE("reference: blocks split into voxels -> the block of the voxel hit fir
     }
   }
   CHECK(hits > 20 * kScale * 20);
-}
-
-TEST_CASE("bit grid: random sets and clears -> as a set of voxels, and empty cubes are empty") {
-  const std::uint64_t seed = 20260702;
-  std::mt19937_64 random(seed);
-  const Voxel size = {70, 9, 130};
-  BitGrid grid(size);
-  std::set<Voxel> model;
-  for (int i = 0; i < 3000; ++i) {
-    const Voxel voxel = {static_cast<int>(pick(random, 0, 69)), static_cast<int>(pick(random, 0, 8)),
-                         static_cast<int>(pick(random, 0, 40))};
-    const bool solid = pick(random, 0, 2) > 0;
-    grid.set(voxel, solid);
-    if (solid) {
-      model.insert(voxel);
-    } else {
-      model.erase(voxel);
-    }
-  }
-  CHECK(grid.count() == static_cast<std::int64_t>(model.size()));
-  for (int z = -1; z <= size[2]; ++z) {
-    for (int y = -1; y <= size[1]; ++y) {
-      for (int x = -1; x <= size[0]; ++x) {
-        REQUIRE(grid.test({x, y, z}) == (model.count({x, y, z}) != 0));
-      }
-    }
-  }
-  CHECK(grid.empty_log2_side({0, 0, 129}) == 6);
-  CHECK_THROWS_AS(grid.set({70, 0, 0}), std::out_of_range);
-  CHECK_THROWS_AS(grid.set({0, -1, 0}), std::out_of_range);
-  CHECK_THROWS_AS(BitGrid({0, 1, 1}), std::invalid_argument);
-  CHECK_THROWS_AS(BitGrid({1, 1, 4097}), std::invalid_argument);
 }
 
 TEST_CASE("reference: random rays in small worlds of any size -> walk, brute force and midpoints agree") {
