@@ -18,25 +18,6 @@ ColorModel::ColorModel(Kind kind, const Glass& glass)
       memory_(static_cast<std::size_t>(3 * glass.memory_width * glass.memory_height), 0xA5),
       written_(static_cast<std::size_t>(glass.memory_width * glass.memory_height), false) {}
 
-drivers::PanelBus ColorModel::spi() {
-  drivers::PanelBus bus;
-  bus.context = this;
-  bus.command = [](void* self, const std::uint8_t* bytes, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-      static_cast<ColorModel*>(self)->command(bytes[i]);
-    }
-    return true;
-  };
-  bus.data = [](void* self, const std::uint8_t* bytes, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-      static_cast<ColorModel*>(self)->data(bytes[i]);
-    }
-    return true;
-  };
-  bus.wait_ms = [](void* self, std::uint32_t ms) { static_cast<ColorModel*>(self)->now_ms_ += ms; };
-  return bus;
-}
-
 std::size_t ColorModel::parameters_of(std::uint8_t byte) {
   switch (byte) {
     case 0x01:

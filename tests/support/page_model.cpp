@@ -22,23 +22,23 @@ PageModel::PageModel(Kind kind, int width, int height, int first_column)
       memory_(static_cast<std::size_t>(columns_) * 8, 0xA5),
       written_(memory_.size(), false) {}
 
-drivers::PanelBus PageModel::spi() {
+drivers::PanelBus PanelModel::spi() {
   drivers::PanelBus bus;
-  bus.context = this;
+  bus.context = static_cast<PanelModel*>(this);
   bus.command = [](void* self, const std::uint8_t* bytes, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      static_cast<PageModel*>(self)->command(bytes[i]);
+      static_cast<PanelModel*>(self)->command(bytes[i]);
     }
     return true;
   };
   bus.data = [](void* self, const std::uint8_t* bytes, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      static_cast<PageModel*>(self)->data(bytes[i]);
+      static_cast<PanelModel*>(self)->data(bytes[i]);
     }
     return true;
   };
   bus.wait_ms = [](void* self, std::uint32_t milliseconds) {
-    static_cast<PageModel*>(self)->wait(milliseconds);
+    static_cast<PanelModel*>(self)->wait(milliseconds);
   };
   return bus;
 }

@@ -18,8 +18,13 @@ class PanelModel {
  public:
   const std::string& fault() const { return fault_; }
   std::uint64_t bytes_sent() const { return bytes_sent_; }
+  void wait(std::uint32_t milliseconds) { now_ms_ += milliseconds; }
+  drivers::PanelBus spi();
 
  protected:
+  ~PanelModel() = default;
+  virtual void command(std::uint8_t byte) = 0;
+  virtual void data(std::uint8_t byte) = 0;
   void complain(const std::string& what) { fault_ = fault_.empty() ? what : fault_; }
   /// Only what follows at least that long after `since` is allowed.
   void expect_since(std::uint64_t since, std::uint64_t least_ms, const std::string& what) {
@@ -35,16 +40,13 @@ class PanelModel {
 
 /// SSD1306, SH1106, ST7567. An SSD1306 may be scrolling when it is set up, and its module of 72 x 40 has no resistor
 /// that sets the segments' current.
-class PageModel : public PanelModel {
+class PageModel final : public PanelModel {
  public:
   enum class Kind : std::uint8_t { kSsd1306, kSh1106, kSt7567 };
   PageModel(Kind kind, int width, int height, int first_column);
 
-  drivers::PanelBus spi();
   /// One transfer over I2C, control byte and all.
   bool i2c(const std::uint8_t* bytes, std::size_t count);
-  void wait(std::uint32_t milliseconds) { now_ms_ += milliseconds; }
-
   /// Lit pixels before the glass, rows from the top; all dark while the display is off.
   std::vector<bool> picture() const;
   bool is_on() const { return is_on_; }
@@ -52,10 +54,10 @@ class PageModel : public PanelModel {
   std::size_t longest_transfer() const { return longest_; }
 
  private:
-  void command(std::uint8_t byte);
+  void command(std::uint8_t byte) override;
   void finish(const std::vector<std::uint8_t>& command);
   void turn_on();
-  void data(std::uint8_t byte);
+  void data(std::uint8_t byte) override;
   std::optional<std::size_t> parameters_of(std::uint8_t byte);
 
   Kind kind_;
@@ -88,7 +90,7 @@ class PageModel : public PanelModel {
 };
 
 /// ST7735, ST7789, ILI9341.
-class ColorModel : public PanelModel {
+class ColorModel final : public PanelModel {
  public:
   enum class Kind : std::uint8_t { kSt7735, kSt7789, kIli9341 };
   /// The glass: which rectangle of the memory it shows, and how it sits on it.
@@ -106,14 +108,13 @@ class ColorModel : public PanelModel {
   };
   ColorModel(Kind kind, const Glass& glass);
 
-  drivers::PanelBus spi();
   /// r, g, b of every pixel before the glass, turned by nothing: as the module's pins say. Black while off.
   std::vector<std::uint8_t> picture() const;
   bool is_on() const { return is_on_ && !sleeps_; }
 
  private:
-  void command(std::uint8_t byte);
-  void data(std::uint8_t byte);
+  void command(std::uint8_t byte) override;
+  void data(std::uint8_t byte) override;
   void parameter(std::uint8_t byte);
   void pixel(unsigned r, unsigned g, unsigned b);
   void leave_write();
