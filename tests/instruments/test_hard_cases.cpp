@@ -3,11 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "instruments/hard_cases.h"
+#include "instruments/operation_errors.h"
 #include "reference/textbook.h"
 #include "support/counts.h"
 
@@ -104,6 +106,35 @@ TEST_CASE("textbook traversals: a ray along x through the middle of cells -> the
   }
   const reference::BitGrid flat({8, 4, 8});
   CHECK_THROWS_AS(reference::Pyramid{flat}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace thimble::tools
+
+// Every fixed-point operation against exact arithmetic: within the bound that its header names, and the bound
+// means something.
+namespace thimble::tools {
+namespace {
+
+const std::uint64_t kCases = thimble::tests::many_or_few<std::uint64_t>(100000, 3000);
+constexpr std::uint64_t kSeed = 41;
+
+TEST_CASE("operation errors: sweep -> none above its bound, and no bound above four times what is seen") {
+  INFO("seed ", kSeed);
+  double last = 0;
+  std::set<std::string> names;
+  for (const OperationError& found : sweep_operations(kCases, kSeed, [&](double done) {
+         CHECK(done >= last);
+         last = done;
+       })) {
+    INFO(found.operation, ": ", found.error, " of ", found.bound, " ", found.unit);
+    CHECK(found.cases >= 256);
+    CHECK(found.error <= found.bound);
+    CHECK(found.bound <= 4 * found.error);
+    CHECK(names.insert(found.operation).second);
+  }
+  CHECK(last == 1);
+  CHECK(names.size() >= 24);
 }
 
 }  // namespace
