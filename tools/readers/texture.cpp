@@ -4,74 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 
 #include "readers/file_bytes.h"
 #include "readers/mesh.h"
+#include "readers/picture.h"
 #include "readers/text.h"
-
-namespace thimble::tools {
-namespace {
-
-/// Memory for the decoder, which knows no bound: what a picture holds behind its header may be far more than its pixels.
-/// A block's size stands before it.
-constexpr std::size_t kBeforeBlock = alignof(std::max_align_t);
-thread_local std::size_t room_bytes = 0;
-
-void* take_block(std::size_t size) {
-  if (size > room_bytes) {
-    return nullptr;
-  }
-  auto* const block = static_cast<std::uint8_t*>(std::malloc(size + kBeforeBlock));
-  if (block == nullptr) {
-    return nullptr;
-  }
-  room_bytes -= size;
-  *reinterpret_cast<std::size_t*>(block) = size;
-  return block + kBeforeBlock;
-}
-void free_block(void* block) {
-  if (block != nullptr) {
-    void* const whole = static_cast<std::uint8_t*>(block) - kBeforeBlock;
-    room_bytes += *static_cast<std::size_t*>(whole);
-    std::free(whole);
-  }
-}
-// The analyzer does not see the decoder, which alone calls it.
-[[maybe_unused]] void* move_block(void* block, std::size_t old_size, std::size_t size) {
-  void* const moved = take_block(size);
-  if (moved != nullptr && block != nullptr) {
-    std::copy_n(static_cast<const std::uint8_t*>(block), std::min(old_size, size),
-                static_cast<std::uint8_t*>(moved));
-    free_block(block);
-  }
-  return moved;
-}
-
-}  // namespace
-}  // namespace thimble::tools
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-#pragma GCC diagnostic ignored "-Wcast-align"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#ifndef __clang_analyzer__  // what it finds in the library is not ours to change
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#endif
-#define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
-#define STBI_NO_STDIO
-#define STBI_NO_LINEAR
-#define STBI_NO_HDR
-#define STBI_MALLOC(size) thimble::tools::take_block(size)
-#define STBI_REALLOC_SIZED(block, old_size, size) thimble::tools::move_block(block, old_size, size)
-#define STBI_FREE(block) thimble::tools::free_block(block)
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
 
 namespace thimble::tools {
 namespace {
@@ -215,14 +154,13 @@ std::shared_ptr<const Texture> Textures::inside(const std::string& key, std::spa
     return known->second;
   }
   std::shared_ptr<const Texture>& texture = known_[{key, is_opacity}];
-  int width = 0;
-  int height = 0;
-  int channels = 0;
-  const auto size = static_cast<int>(std::min<std::size_t>(encoded.size(), std::numeric_limits<int>::max()));
-  room_bytes = std::size_t{1} << 20;
-  const bool is_webp = WebPGetInfo(encoded.data(), encoded.size(), &width, &height) != 0;
-  if ((!is_webp && stbi_info_from_memory(encoded.data(), size, &width, &height, &channels) == 0) ||
-      width < 1 || height < 1) {
+  std::array<int, 2> sides{};
+  const bool is_webp = WebPGetInfo(encoded.data(), encoded.size(), &sides[0], &sides[1]) != 0;
+  if (!is_webp) {
+    sides = picture_size(encoded);
+  }
+  const auto [width, height] = sides;
+  if (width < 1 || height < 1) {
     const std::string_view begins(reinterpret_cast<const char*>(encoded.data()), encoded.size());
     miss(key, begins.starts_with("\xABKTX") ? "is KTX, which is not read" : "is no PNG, JPEG or WebP");
     return texture;
@@ -235,12 +173,16 @@ std::shared_ptr<const Texture> Textures::inside(const std::string& key, std::spa
                   " pixels, too many for a file of " + std::to_string(encoded.size()) + " bytes");
     return texture;
   }
-  room_bytes = static_cast<std::size_t>(5 * bytes + 3 * encoded.size() + (std::uint64_t{1} << 20));
   std::shared_ptr<std::uint8_t> rgba;
-  if (is_webp) {
-    rgba.reset(WebPDecodeRGBA(encoded.data(), encoded.size(), &width, &height), WebPFree);
-  } else {
-    rgba.reset(stbi_load_from_memory(encoded.data(), size, &width, &height, &channels, 4), free_block);
+  try {
+    if (is_webp) {
+      rgba.reset(WebPDecodeRGBA(encoded.data(), encoded.size(), &sides[0], &sides[1]), WebPFree);
+    } else {
+      rgba = decode_picture(encoded, 4);
+    }
+  } catch (const InputError& error) {
+    miss(key, error.what());
+    return texture;
   }
   if (rgba == nullptr) {
     miss(key, "is damaged");
