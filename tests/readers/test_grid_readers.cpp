@@ -1,4 +1,5 @@
-// Readers of voxel grids: .binvox, .mts, .schematic and .schem, .qb, .kvx, NumPy arrays, grids of heights.
+// Readers of voxel grids: .binvox, .mts, .schematic and .schem, .qb and .qbcl, .kvx and .kv6, .vxl, .gox, NumPy arrays,
+// grids of heights.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -89,7 +90,7 @@ std::string zip(const std::vector<std::pair<std::string, std::string>>& members,
          little(members.size(), 2) + little(directory.size(), 4) + little(start, 4) + little(0, 2);
 }
 
-// ---- Qubicle, KVX
+// ---- Qubicle, Voxlap
 
 std::string qb(bool packed, const std::string& voxels, std::int32_t x = 0) {
   return little(0x101, 4) + little(0, 4) + little(1, 4) + little(packed ? 1 : 0, 4) + little(0, 4) +
@@ -107,6 +108,99 @@ std::string kvx() {
   palette[15] = 63;
   palette[18 + 2] = 63;
   return little(model.size(), 4) + model + palette;
+}
+
+/// Nodes as Qubicle's projects have them.
+std::string qbcl(const std::string& nodes) {
+  std::string out = "QBCL" + little(0, 4) + little(2, 4) + little(1, 4) + little(2, 4) + std::string(8, 'p');
+  for (const std::string text : {"title", "", "", "author", "", "", ""}) {
+    out += little(text.size(), 4) + text;
+  }
+  return out + std::string(16, 't') + nodes;
+}
+std::string qbcl_node(unsigned kind, const std::string& content, bool visible = true) {
+  return little(kind, 4) + little(1, 4) + little(4, 4) + "name" + std::string(1, visible ? '\1' : '\0') +
+         std::string(2, '\1') + content;
+}
+std::string qbcl_model(unsigned children) {
+  return std::string(36, '\0') + little(children, 4);
+}
+/// Of 2 x 3 x 1 voxels.
+std::string qbcl_matrix(std::int32_t x, const std::string& columns) {
+  const std::string packed = deflated(columns, 15);
+  return little(2, 4) + little(3, 4) + little(1, 4) + little(static_cast<std::uint32_t>(x), 4) +
+         little(0, 8) + little(0, 12) + little(packed.size(), 4) + packed;
+}
+
+std::string kv6(unsigned count, const std::vector<unsigned>& lengths) {
+  // 2 x 1 columns of 300 voxels: two in the first, one in the second.
+  std::string file = "Kvxl" + little(2, 4) + little(1, 4) + little(300, 4) + little(0, 12) + little(count, 4);
+  file += std::string("\x01\x02\x03\x80", 4) + little(0, 4) + std::string("\x04\x05\x06\x80", 4) +
+          little(299, 4) + std::string("\x07\x08\x09\x80", 4) + little(7, 4) + little(2, 4) + little(1, 4);
+  for (const unsigned length : lengths) {
+    file += little(length, 2);
+  }
+  return file;
+}
+
+/// A map of Voxlap with one row of columns.
+std::string vxl(const std::vector<std::string>& columns) {
+  std::string file = little(0x09072000, 4) + little(columns.size(), 4) + little(1, 4) + std::string(96, 'c');
+  for (const std::string& column : columns) {
+    file += column;
+  }
+  return file;
+}
+std::string span(unsigned words, unsigned top, unsigned bottom, unsigned air, const std::string& colors) {
+  return little(words, 1) + little(top, 1) + little(bottom, 1) + little(air, 1) + colors;
+}
+
+// ---- Goxel
+
+std::string gox_chunk(const std::string& kind, const std::string& content) {
+  return kind + little(content.size(), 4) + content + little(0, 4);
+}
+std::string gox_entry(const std::string& key, const std::string& value) {
+  return little(key.size(), 4) + key + little(value.size(), 4) + value;
+}
+/// A block whose voxels at 1,2,3 and 4,0,0 have these bytes: r, g, b, alpha.
+std::string gox_block(const std::string& first, const std::string& second, unsigned side = 64) {
+  std::string rows;
+  for (unsigned row = 0; row < side; ++row) {
+    rows += '\0' + std::string(std::size_t{4} * side, '\0');
+  }
+  const auto put = [&](std::size_t voxel, const std::string& rgba) {
+    rows.replace(voxel / side * (4 * side + 1) + 1 + voxel % side * 4, 4, rgba);
+  };
+  put(1 + 2 * 16 + 3 * 256, first);
+  put(4, second);
+  const auto chunk = [](const std::string& kind, const std::string& content) {
+    const std::string both = kind + content;
+    return big(content.size(), 4) + both + big(0, 4);  // nobody looks at the check sum
+  };
+  return gox_chunk("BL16", "\x89PNG\r\n\x1a\n" +
+                               chunk("IHDR", big(side, 4) + big(side, 4) + std::string("\x08\x06\0\0\0", 5)) +
+                               chunk("IDAT", deflated(rows, 15)) + chunk("IEND", ""));
+}
+std::string gox_place(unsigned block, std::int32_t x) {
+  return little(block, 4) + little(static_cast<std::uint32_t>(x), 4) + little(0, 12);
+}
+std::string gox_layer(const std::string& places, const std::string& entries) {
+  return gox_chunk("LAYR", little(places.size() / 20, 4) + places + entries);
+}
+std::string gox_mat(float scale, float x) {
+  std::string out;
+  for (int i = 0; i < 16; ++i) {
+    out += little(i == 0 ? scale : i % 5 == 0 ? 1.0F : i == 12 ? x : 0.0F);
+  }
+  return gox_entry("mat", out);
+}
+std::string gox(const std::string& chunks, unsigned version = 2) {
+  return "GOX " + little(version, 4) + gox_chunk("IMG ", "") + chunks;
+}
+
+Notes notes_of_file(Reader reader, const std::string& file) {
+  return notes_of(reader(SharedBytes::own(file), {}, {}));
 }
 
 }  // namespace
@@ -372,4 +466,167 @@ TEST_CASE("kvx: slabs -> voxels with z up and six-bit colours") {
   file = kvx();
   file[4] = '\0';
   CHECK(contains(error_of(read_kvx, file), "a side of 0"));
+}
+
+TEST_CASE("qbcl: matrices of models and compounds -> voxels with y up; what is hidden -> none") {
+  // Columns of y: red, nothing, green; three times blue.
+  const std::string columns = little(3, 2) + std::string("\xff\0\0\xff", 4) + little(0, 4) +
+                              std::string("\0\xff\0\xff", 4) + little(2, 2) + std::string("\x03\0\0\x02", 4) +
+                              std::string("\0\0\xff\x01", 4);
+  const std::string file = qbcl(qbcl_node(0, qbcl_matrix(-5, columns)));
+  CHECK(looks_like_qbcl(SharedBytes::own(file).bytes));
+  const std::vector<GridVoxel> one{{0, 0, 0, {255, 0, 0}},
+                                   {0, 0, 2, {0, 255, 0}},
+                                   {1, 0, 0, {0, 0, 255}},
+                                   {1, 0, 1, {0, 0, 255}},
+                                   {1, 0, 2, {0, 0, 255}}};
+  CHECK(read_voxels(read_qbcl, file) == one);
+  CHECK(accepted_lengths(read_qbcl, file).empty());
+  const std::string matrix = qbcl_node(0, qbcl_matrix(0, columns));
+  const std::string far = qbcl_matrix(100, columns);
+  CHECK(read_voxels(read_qbcl, qbcl(qbcl_node(1, qbcl_model(3) + qbcl_node(0, far, false) +
+                                                     qbcl_node(1, qbcl_model(1) + qbcl_node(0, far), false) +
+                                                     matrix))) == one);
+  CHECK(read_voxels(read_qbcl,
+                    qbcl(qbcl_node(2, qbcl_matrix(0, columns) + little(1, 4) + qbcl_node(0, far)))) == one);
+  CHECK(read_voxels(read_qbcl, qbcl(qbcl_node(1, qbcl_model(2) + matrix + qbcl_node(0, far)))).size() == 10);
+}
+
+TEST_CASE("qbcl: damage -> a sentence, and nothing is believed") {
+  const auto one = [](const std::string& columns) { return qbcl(qbcl_node(0, qbcl_matrix(0, columns))); };
+  CHECK(contains(error_of(read_qbcl, "text"), "QBCL"));
+  CHECK(contains(error_of(read_qbcl, "QBCL" + little(0, 4) + little(3, 4)), "version 3"));
+  CHECK(contains(error_of(read_qbcl, one(little(1, 2) + std::string("\x04\0\0\x02", 4))), "unpacked"));
+  CHECK(contains(error_of(read_qbcl, one(little(2, 2) + std::string("\x04\0\0\x02\x01\x01\x01\x01", 8))),
+                 "more than its 3"));
+  CHECK(contains(error_of(read_qbcl, one(std::string(4, '\0'))), "no voxels"));
+  CHECK(contains(error_of(read_qbcl, one(std::string(60, '\0'))), "limit of 53 bytes"));
+  CHECK(contains(error_of(read_qbcl, qbcl(qbcl_node(3, ""))), "kind of node 3"));
+  CHECK(contains(error_of(read_qbcl, qbcl(qbcl_node(1, qbcl_model(0xFFFFFFFF)))), "the header"));
+  CHECK(contains(error_of(read_qbcl, qbcl(qbcl_node(0, little(5000, 4)))), "5000"));
+  CHECK(
+      contains(error_of(read_qbcl, "QBCL" + little(0, 4) + little(2, 4) + std::string(8, '\xff')), "bytes"));
+  std::string deep;
+  for (int i = 0; i < 100000; ++i) {
+    deep += qbcl_node(1, qbcl_model(1));
+  }
+  CHECK(contains(error_of(read_qbcl, qbcl(deep)), "the header"));
+}
+
+TEST_CASE("kv6: columns -> voxels with z up; damage -> a sentence") {
+  const std::string file = kv6(3, {2, 1});
+  CHECK(looks_like_kv6(SharedBytes::own(file).bytes));
+  CHECK(read_voxels(read_kv6, file) ==
+        std::vector<GridVoxel>{{0, 0, 299, {3, 2, 1}}, {0, 0, 0, {6, 5, 4}}, {1, 0, 292, {9, 8, 7}}});
+  CHECK(accepted_lengths(read_kv6, file).empty());
+  CHECK(contains(error_of(read_kv6, kv6(3, {2, 2})), "the voxels"));
+  CHECK(contains(error_of(read_kv6, kv6(3, {2, 0})), "3 of them, and the columns have 2"));
+  CHECK(contains(error_of(read_kv6, kv6(0xFFFFFFFF, {2, 1})), "34359738360"));
+  CHECK(contains(error_of(read_kv6, kvx()), "Kvxl"));
+  std::string changed = file;
+  changed[13] = '\0';  // 44 voxels deep
+  CHECK(contains(error_of(read_kv6, changed), "column 0,0 lies at 299"));
+  changed[4] = '\0';
+  CHECK(contains(error_of(read_kv6, changed), "a side of 0"));
+}
+
+TEST_CASE("vxl: spans -> coloured voxels, earth between them, solid to the bottom") {
+  const std::string red = std::string("\0\0\xff\x80", 4);
+  const std::string blue = std::string("\xff\0\0\x80", 4);
+  // Red at 10, earth, blue at 13 under it; air; blue at 60, earth.
+  const std::string bridge = span(3, 10, 10, 0, red + blue) + span(0, 60, 60, 14, blue);
+  const std::string plain = span(0, 63, 63, 0, red);
+  const auto voxels = read_voxels(read_vxl, vxl({bridge, plain}));
+  const Rgb earth{103, 64, 40};
+  CHECK(looks_like_vxl(SharedBytes::own(vxl({plain})).bytes));
+  REQUIRE(voxels.size() == 9);
+  for (const GridVoxel& voxel : std::vector<GridVoxel>{{0, 0, 53, {255, 0, 0}},
+                                                       {0, 0, 52, earth},
+                                                       {0, 0, 51, earth},
+                                                       {0, 0, 50, {0, 0, 255}},
+                                                       {0, 0, 3, {0, 0, 255}},
+                                                       {0, 0, 2, earth},
+                                                       {0, 0, 0, earth},
+                                                       {1, 0, 0, {255, 0, 0}}}) {
+    CHECK(has_voxel(voxels, voxel));
+  }
+  CHECK(accepted_lengths(read_vxl, vxl({bridge, plain})).empty());
+  // One that reaches below 64 makes all 256 deep.
+  CHECK(read_voxels(read_vxl, vxl({plain, span(0, 64, 64, 0, red)})).size() == 193 + 192);
+  CHECK(notes_of_file(read_vxl, vxl({plain})).empty());
+  CHECK(contains(notes_of_file(read_vxl, vxl({plain}) + "more").at(0), "4 bytes behind the last of 1 x 1"));
+}
+
+TEST_CASE("vxl: without a header -> 512 x 512 columns, the first row farthest; damage -> a sentence") {
+  std::string map;
+  for (int i = 0; i < 512 * 512; ++i) {
+    map += span(0, 63, 63, 0, i == 513 ? "\x01\x02\x03\x80" : "\x01\x01\x01\x80");
+  }
+  const auto voxels = read_voxels(read_vxl, map);
+  CHECK(voxels.size() == 512 * 512);
+  CHECK(has_voxel(voxels, {1, 510, 0, {3, 2, 1}}));
+  CHECK(contains(error_of(read_vxl, map.substr(0, map.size() - 1)), "the columns"));
+  const std::string color(4, '\x01');
+  for (const std::string& column : {span(0, 64, 62, 0, ""), span(1, 60, 60, 0, color),
+                                    span(2, 10, 10, 0, color) + span(0, 20, 20, 10, color),
+                                    span(3, 10, 10, 0, color + color) + span(0, 20, 20, 11, color),
+                                    span(2, 10, 10, 0, color) + span(0, 20, 20, 21, color)}) {
+    CHECK(contains(error_of(read_vxl, vxl({column})), "column 0,0"));
+  }
+  CHECK(contains(error_of(read_vxl, vxl({})), "a side of 0"));
+  CHECK(contains(error_of(read_vxl, "Voxel Animation"), "Command & Conquer"));
+}
+
+TEST_CASE("gox: layers -> voxels, the later over the earlier; copies moved; hidden ones none") {
+  const std::string red = std::string("\xff\0\0\xff", 4);
+  const std::string green = std::string("\0\xff\0\x7f", 4);
+  const std::string thin = std::string("\0\0\xff\x7e", 4);
+  const std::string blocks = gox_block(red, green) + gox_block(green, thin) + gox_chunk("MATE", "any");
+  const std::string visible = gox_entry("visible", std::string(1, '\1'));
+  const std::string hidden = gox_entry("visible", std::string(1, '\0'));
+  const std::string first = gox_layer(gox_place(0, 0), gox_entry("id", little(7, 4)) + visible);
+  const std::string file = gox(blocks + first);
+  CHECK(looks_like_gox(SharedBytes::own(file).bytes));
+  const std::vector<GridVoxel> one{{3, 0, 0, {0, 255, 0}}, {0, 2, 3, {255, 0, 0}}};
+  CHECK(read_voxels(read_gox, file) == one);
+  CHECK(accepted_lengths(read_gox, file).empty());
+  CHECK(read_voxels(read_gox, gox(blocks + first, 1)) == one);
+  CHECK(read_voxels(read_gox, gox(blocks + first + gox_layer(gox_place(1, -100), hidden))) == one);
+  CHECK(read_voxels(read_gox, gox(blocks + first + gox_layer(gox_place(1, 0), ""))).back() ==
+        GridVoxel{0, 2, 3, {0, 255, 0}});
+  const auto copy = [&](const std::string& mat, unsigned id, unsigned of) {
+    return gox_layer("", mat + gox_entry("id", little(id, 4)) + gox_entry("base_id", little(of, 4)));
+  };
+  // A copy of what is hidden is seen, and so is a copy of a copy.
+  const std::string base = gox_layer(gox_place(0, 0), gox_entry("id", little(7, 4)) + hidden);
+  CHECK(read_voxels(read_gox, gox(blocks + base + copy(gox_mat(1, 5), 8, 7))) == one);
+  CHECK(has_voxel(
+      read_voxels(read_gox, gox(blocks + first + copy(gox_mat(1, -5), 8, 7) + copy(gox_mat(1, -5), 9, 8))),
+      {10, 2, 3, {255, 0, 0}}));
+  CHECK(notes_of_file(read_gox, file).empty());
+  for (const std::string& layer : {copy(gox_mat(2, 0), 8, 7), copy(gox_mat(1, 0.5F), 8, 7), copy("", 8, 8),
+                                   copy("", 8, 9), gox_layer("", gox_entry("shape", "cube"))}) {
+    CHECK(read_voxels(read_gox, gox(blocks + first + layer)) == one);
+    CHECK(contains(notes_of_file(read_gox, gox(blocks + first + layer)).at(0), "1 layer is not drawn"));
+  }
+}
+
+TEST_CASE("gox: damage -> a sentence with its place") {
+  const std::string red = std::string("\xff\0\0\xff", 4);
+  const auto scene = [&](const std::string& blocks, const std::string& places) {
+    return error_of(read_gox, gox(blocks + gox_layer(places, "")));
+  };
+  CHECK(contains(error_of(read_gox, "text"), "GOX"));
+  CHECK(contains(error_of(read_gox, gox("", 3)), "version 3"));
+  CHECK(contains(scene("", ""), "no voxels"));
+  CHECK(contains(scene(gox_block(red, red), gox_place(1, 0)), "block 1 is not among the 1"));
+  CHECK(contains(scene(gox_block(red, red, 32), gox_place(0, 0)),
+                 "byte offset 20: the block is no picture of 64 x 64"));
+  CHECK(contains(scene(gox_chunk("BL16", "no"), gox_place(0, 0)), "no picture"));
+  std::string damaged = gox_block(red, red);
+  damaged[damaged.find("IDAT") + 10] = '\x7f';
+  CHECK(contains(scene(damaged, gox_place(0, 0)), "the block is damaged"));
+  CHECK(contains(scene(gox_block(red, red), gox_place(0, INT32_MIN) + gox_place(0, INT32_MAX)), "4294967"));
+  CHECK(contains(error_of(read_gox, gox(gox_chunk("LAYR", little(0xFFFFFFFF, 4)))), "85899345900"));
+  CHECK(contains(error_of(read_gox, "GOX " + little(2, 4) + "LAYR" + little(0xFFFFFFFF, 4)), "4294967295"));
 }

@@ -556,7 +556,7 @@ async function mistakes() {
     } catch (error) {
       said = error.message;
     }
-    holds(`"${said}" names what is read`, /^is a glTF scene, which takes the thimble command; this page reads \.vox, .*\.npy, .*\.kvx$/.test(said));
+    holds(`"${said}" names what is read`, /^is a glTF scene, which takes the thimble command; this page reads \.vox, .*\.npy, .*\.gox$/.test(said));
     holds('and not what is not', !/gl(b|tf),/.test(said));
   });
   await test('of a file that is nothing known it is said what this page reads', () => {

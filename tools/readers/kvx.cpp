@@ -1,11 +1,10 @@
-// `.kvx` models (Ken Silverman's Build engine).
+// `.kvx` and `.kv6` models (Ken Silverman's Build and Voxlap engines).
 //
-// What is read: the first, finest of the models in the file, and the palette of six bits a channel at its
-// end. The file holds the visible voxels only, so the model is hollow. In the file z is down; here it is up,
-// and y turns with it, which keeps the hand.
+// What is read: of a `.kvx` the first, finest of the models in the file, and the palette of six bits a channel at
+// its end; of a `.kv6` its voxels, which have 24 bits of colour each. Both hold the visible voxels only, so the model
+// is hollow. In the file z is down; here it is up, and y turns with it, which keeps the hand.
 //
-// From the specification alone: no file of another program was at hand. Source of the format: Ken Silverman,
-// "SLAB6.TXT".
+// Source of the formats: Ken Silverman, "SLAB6.TXT".
 #include "readers/formats.h"
 
 #include <memory>
@@ -19,11 +18,21 @@ namespace {
 constexpr std::size_t kPaletteBytes = 768;
 constexpr std::size_t kKvxHeaderBytes = 28;  // bytes of the model, three sides, three pivots
 
-class KvxGrid final : public VoxelGrid {
+constexpr std::size_t kKv6HeaderBytes = 32;  // magic, three sides, three pivots, number of voxels
+constexpr std::size_t kKv6VoxelBytes = 8;    // blue, green, red, 0, two of z, visible sides, slope
+
+/// Columns of voxels, z down.
+class ColumnGrid : public VoxelGrid {
  public:
-  explicit KvxGrid(const SharedBytes& file) : file_(file) {
-    ByteReader reader(file.bytes, "the header");
-    const std::uint32_t model_bytes = reader.u32();
+  std::array<std::int32_t, 3> size() const override {
+    return {static_cast<std::int32_t>(size_[0]), static_cast<std::int32_t>(size_[1]),
+            static_cast<std::int32_t>(size_[2])};
+  }
+  bool has_color() const override { return true; }
+
+ protected:
+  explicit ColumnGrid(const SharedBytes& file) : file_(file) {}
+  void read_size(ByteReader& reader) {
     for (std::uint32_t& side : size_) {
       side = reader.u32();
       if (side < 1 || side > kGridSideLimit) {
@@ -31,6 +40,22 @@ class KvxGrid final : public VoxelGrid {
                     std::to_string(kGridSideLimit));
       }
     }
+  }
+  void put(const Visit& visit, std::uint32_t x, std::uint32_t y, std::uint32_t z, Rgb color) const {
+    visit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(size_[1] - 1 - y),
+          static_cast<std::int32_t>(size_[2] - 1 - z), color);
+  }
+
+  SharedBytes file_;
+  std::array<std::uint32_t, 3> size_{};
+};
+
+class KvxGrid final : public ColumnGrid {
+ public:
+  explicit KvxGrid(const SharedBytes& file) : ColumnGrid(file) {
+    ByteReader reader(file.bytes, "the header");
+    const std::uint32_t model_bytes = reader.u32();
+    read_size(reader);
     const std::uint64_t end = std::uint64_t{model_bytes} + 4;
     if (file.bytes.size() < kPaletteBytes || end > file.bytes.size() - kPaletteBytes) {
       throw InputError("the model announces " + std::to_string(model_bytes) +
@@ -63,18 +88,12 @@ class KvxGrid final : public VoxelGrid {
           }
           for (std::uint32_t z = top; z < top + length; ++z) {
             const std::uint8_t* color = palette + 3 * std::size_t{slabs.u8()};
-            visit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(size_[1] - 1 - y),
-                  static_cast<std::int32_t>(size_[2] - 1 - z), {up(color[0]), up(color[1]), up(color[2])});
+            put(visit, x, y, z, {up(color[0]), up(color[1]), up(color[2])});
           }
         }
       }
     }
   }
-  std::array<std::int32_t, 3> size() const override {
-    return {static_cast<std::int32_t>(size_[0]), static_cast<std::int32_t>(size_[1]),
-            static_cast<std::int32_t>(size_[2])};
-  }
-  bool has_color() const override { return true; }
 
  private:
   /// The slabs of a column. Offsets count from the table of them on; a row of columns has one, each column
@@ -97,17 +116,70 @@ class KvxGrid final : public VoxelGrid {
         first);
   }
 
-  SharedBytes file_;
-  std::array<std::uint32_t, 3> size_{};
   std::size_t end_ = 0;
 };
 
+class Kv6Grid final : public ColumnGrid {
+ public:
+  explicit Kv6Grid(const SharedBytes& file) : ColumnGrid(file) {
+    if (!looks_like_kv6(file.bytes)) {
+      throw InputError("is no KV6 model: it does not begin with \"Kvxl\"");
+    }
+    ByteReader reader(file.bytes);
+    reader.skip(4);
+    read_size(reader);
+    reader.skip(12);  // the pivot
+    count_ = reader.u32();
+    voxels_ = reader.take(kKv6VoxelBytes * std::uint64_t{count_});
+    reader.skip(4 * std::uint64_t{size_[0]});  // voxels of each row of columns
+    lengths_ = reader.take(2 * std::uint64_t{size_[0]} * size_[1]);
+    check_solid("the model holds no voxels");
+  }
+
+  void for_each(const Visit& visit) const override {
+    ByteReader voxels(voxels_, "the voxels", kKv6HeaderBytes);
+    ByteReader lengths(lengths_, "the columns");
+    for (std::uint32_t x = 0; x < size_[0]; ++x) {
+      for (std::uint32_t y = 0; y < size_[1]; ++y) {
+        for (std::uint32_t left = lengths.u16(); left > 0; --left) {
+          const auto color = voxels.take(4);
+          const std::uint32_t z = voxels.u16();
+          voxels.skip(2);
+          if (z >= size_[2]) {
+            voxels.fail("a voxel of column " + std::to_string(x) + "," + std::to_string(y) + " lies at " +
+                        std::to_string(z) + ", below the model's " + std::to_string(size_[2]) + " voxels");
+          }
+          put(visit, x, y, z, {color[2], color[1], color[0]});
+        }
+      }
+    }
+    if (voxels.remaining() != 0) {
+      voxels.fail("there are " + std::to_string(count_) + " of them, and the columns have " +
+                  std::to_string(count_ - voxels.remaining() / kKv6VoxelBytes));
+    }
+  }
+
+ private:
+  std::uint32_t count_ = 0;
+  std::span<const std::uint8_t> voxels_, lengths_;
+};
+
 }  // namespace
+
+bool looks_like_kv6(std::span<const std::uint8_t> bytes) {
+  return SharedBytes{bytes, nullptr}.text().starts_with("Kvxl");
+}
 
 /// @throws InputError  a size of 0 or over `kGridSideLimit`, columns or slabs that leave their place, no
 ///   palette, no voxel
 Source read_kvx(const SharedBytes& file, const ReadOptions&, const Progress&) {
   return std::make_unique<KvxGrid>(file);
+}
+
+/// @throws InputError  another beginning, a size of 0 or over `kGridSideLimit`, fewer bytes than voxels and columns
+///   take, columns with more or fewer voxels than there are, a voxel below the model, no voxel
+Source read_kv6(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<Kv6Grid>(file);
 }
 
 }  // namespace thimble::tools

@@ -1,11 +1,12 @@
-// `.qb` models (Qubicle Binary), version 1.1.0.0, packed or not.
+// `.qb` models (Qubicle Binary), version 1.1.0.0, packed or not, and `.qbcl` projects of Qubicle, version 2.
 //
-// What is read: all matrices at their positions, colours as RGBA or BGRA; a voxel whose alpha (or mask of
-// visible sides) is 0 is empty. In the file y is up and z to the left or to the right; here z is up,
-// (x, y, z) -> (x, -z, y), and the lowest corner of all matrices is 0,0,0.
+// What is read: all matrices at their positions, colours as RGBA or (`.qb`) BGRA; a voxel whose alpha (or mask of
+// visible sides) is 0 is empty. What a project hides stays hidden; a compound is its matrix, in which the file has put
+// its parts together. In the file y is up and z to the left or to the right; here z is up, (x, y, z) -> (x, -z, y),
+// and the lowest corner of all matrices is 0,0,0. Pivots, and 36 bytes of a model whose meaning is not known, are
+// passed over.
 //
-// From the specification alone: no file of another program was at hand. Source of the format: Minddesk,
-// "Qubicle Binary File Format".
+// Sources of the formats: Minddesk, "Qubicle Binary File Format"; tostc, "Qubicle's proprietary format QBCL v2.0".
 #include "readers/formats.h"
 
 #include <algorithm>
@@ -21,6 +22,10 @@ namespace {
 constexpr std::uint32_t kVersion = 0x00000101;  // bytes 1, 1, 0, 0
 constexpr std::uint32_t kRunFlag = 2;
 constexpr std::uint32_t kNextSliceFlag = 6;
+constexpr std::uint32_t kProjectVersion = 2;
+constexpr std::uint32_t kMatrixNode = 0;
+constexpr std::uint32_t kModelNode = 1;
+constexpr std::uint32_t kCompoundNode = 2;
 
 struct Matrix {
   std::array<std::uint32_t, 3> size{};
@@ -28,42 +33,15 @@ struct Matrix {
   std::size_t data_offset = 0;
 };
 
-class QbGrid final : public VoxelGrid {
+class QubicleGrid final : public VoxelGrid {
  public:
-  explicit QbGrid(const SharedBytes& file) : file_(file) {
+  QubicleGrid(const SharedBytes& file, bool is_project)
+      : file_(file), is_project_(is_project), is_packed_(is_project) {
     ByteReader reader(file.bytes, "the header");
-    if (file.bytes.size() < 4 || reader.u32() != kVersion) {
-      throw InputError("is not a Qubicle file of version 1.1: it does not begin with the bytes 1, 1, 0, 0");
-    }
-    is_bgra_ = flag(reader, "color format");
-    is_left_handed_ = !flag(reader, "z axis");
-    is_packed_ = flag(reader, "compression");
-    flag(reader, "visibility mask");
-    const std::uint32_t count = reader.u32();
-    std::uint64_t voxels = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      Matrix matrix;
-      reader.skip(reader.u8());
-      for (std::uint32_t& side : matrix.size) {
-        side = reader.u32();
-        if (side > kGridSideLimit) {
-          reader.fail("matrix " + std::to_string(i) + " has a side of " + std::to_string(side) +
-                      " voxels, the limit is " + std::to_string(kGridSideLimit));
-        }
-      }
-      for (std::int64_t& coordinate : matrix.position) {
-        coordinate = reader.i32();
-      }
-      matrix.data_offset = static_cast<std::size_t>(reader.offset());
-      if (is_packed_) {
-        // What a run repeats costs no byte, but time.
-        voxels += std::uint64_t{matrix.size[0]} * matrix.size[1] * matrix.size[2];
-        if (voxels > kMostCells) {
-          reader.fail("the matrices have more cells than the limit of " + std::to_string(kMostCells));
-        }
-      }
-      walk(matrix, reader, [](auto, auto, auto, auto) {});
-      matrices_.push_back(matrix);
+    if (is_project) {
+      read_project(reader);
+    } else {
+      read_binary(reader);
     }
     place();
   }
@@ -89,6 +67,101 @@ class QbGrid final : public VoxelGrid {
  private:
   static constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31;
 
+  void read_binary(ByteReader& reader) {
+    if (file_.bytes.size() < 4 || reader.u32() != kVersion) {
+      throw InputError("is not a Qubicle file of version 1.1: it does not begin with the bytes 1, 1, 0, 0");
+    }
+    is_bgra_ = flag(reader, "color format");
+    is_left_handed_ = !flag(reader, "z axis");
+    is_packed_ = flag(reader, "compression");
+    flag(reader, "visibility mask");
+    const std::uint32_t count = reader.u32();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      reader.skip(reader.u8());  // the name
+      add_matrix(reader, true);
+    }
+  }
+
+  void read_project(ByteReader& reader) {
+    if (!looks_like_qbcl(file_.bytes)) {
+      throw InputError("is no Qubicle project: it does not begin with \"QBCL\"");
+    }
+    reader.skip(8);  // and the program's version
+    if (const std::uint32_t version = reader.u32(); version != kProjectVersion) {
+      reader.fail("version " + std::to_string(version) + " of Qubicle's projects is not read, only 2 is");
+    }
+    const std::uint64_t thumbnail_width = reader.u32();
+    reader.skip(4 * thumbnail_width * reader.u32());
+    for (int i = 0; i < 7; ++i) {
+      reader.skip(reader.u32());  // title, author and the like
+    }
+    reader.skip(16);  // two times
+    read_nodes(reader);
+  }
+
+  /// Nodes come as the tree is walked, each before its children.
+  void read_nodes(ByteReader& reader) {
+    struct Level {
+      std::uint32_t nodes_left;
+      bool is_drawn;
+    };
+    std::vector<Level> levels{{1, true}};
+    while (!levels.empty()) {
+      if (levels.back().nodes_left == 0) {
+        levels.pop_back();
+        continue;
+      }
+      --levels.back().nodes_left;
+      const std::uint32_t kind = reader.u32();
+      reader.skip(4);
+      reader.skip(reader.u32());  // the name
+      const bool is_shown = reader.u8() != 0;
+      const bool is_drawn = is_shown && levels.back().is_drawn;
+      reader.skip(2);
+      if (kind == kModelNode) {
+        reader.skip(36);
+        levels.push_back({reader.u32(), is_drawn});
+      } else if (kind == kMatrixNode || kind == kCompoundNode) {
+        add_matrix(reader, is_drawn);
+        if (kind == kCompoundNode) {
+          levels.push_back({reader.u32(), false});
+        }
+      } else {
+        reader.fail("there is no kind of node " + std::to_string(kind) + ", before byte offset " +
+                    std::to_string(reader.offset()));
+      }
+    }
+  }
+
+  void add_matrix(ByteReader& reader, bool is_drawn) {
+    Matrix matrix;
+    for (std::uint32_t& side : matrix.size) {
+      side = reader.u32();
+      if (side > kGridSideLimit) {
+        reader.fail("matrix " + std::to_string(matrices_.size()) + " has a side of " + std::to_string(side) +
+                    " voxels, the limit is " + std::to_string(kGridSideLimit));
+      }
+    }
+    for (std::int64_t& coordinate : matrix.position) {
+      coordinate = reader.i32();
+    }
+    reader.skip(is_project_ ? 12 : 0);  // the pivot
+    if (!is_drawn) {
+      reader.skip(reader.u32());
+      return;
+    }
+    matrix.data_offset = static_cast<std::size_t>(reader.offset());
+    if (is_packed_) {
+      // What a run repeats costs no byte, but time.
+      cells_ += std::uint64_t{matrix.size[0]} * matrix.size[1] * matrix.size[2];
+      if (cells_ > kMostCells) {
+        reader.fail("the matrices have more cells than the limit of " + std::to_string(kMostCells));
+      }
+    }
+    walk(matrix, reader, [](auto, auto, auto, auto) {});
+    matrices_.push_back(matrix);
+  }
+
   static bool flag(ByteReader& reader, const char* what) {
     const std::uint32_t value = reader.u32();
     if (value > 1) {
@@ -97,9 +170,53 @@ class QbGrid final : public VoxelGrid {
     return value == 1;
   }
 
-  /// Reads a matrix's voxels, slice by slice of z, rows of y of x. `take` sees those that are there.
+  /// Reads a matrix's voxels. `take` sees those that are there.
   template <class Take>
   void walk(const Matrix& matrix, ByteReader& reader, const Take& take) const {
+    if (is_project_) {
+      walk_columns(matrix, reader, take);
+    } else {
+      walk_slices(matrix, reader, take);
+    }
+  }
+
+  /// Columns of y, z by z of each x, deflated together: how many groups of four bytes, then these.
+  template <class Take>
+  void walk_columns(const Matrix& matrix, ByteReader& reader, const Take& take) const {
+    constexpr std::uint64_t kMostVoxelBytes = 8;  // a run of one
+    const std::uint64_t columns = std::uint64_t{matrix.size[0]} * matrix.size[2];
+    const std::string place = "the matrix at byte offset " + std::to_string(reader.offset());
+    const FileBytes unpacked = inflate_bytes(reader.take(reader.u32()), Deflated::kZlib,
+                                             columns * (2 + kMostVoxelBytes * matrix.size[1]) + 1, place);
+    ByteReader groups(unpacked.bytes(), place + ", unpacked");
+    for (std::uint64_t column = 0; column < columns; ++column) {
+      const auto x = static_cast<std::uint32_t>(column / matrix.size[2]);
+      const auto z = static_cast<std::uint32_t>(column % matrix.size[2]);
+      std::uint32_t y = 0;
+      for (std::uint32_t left = groups.u16(); left > 0; --left) {
+        std::uint32_t bits = groups.u32();
+        std::uint32_t times = 1;
+        if (bits >> 24 == kRunFlag && left > 1) {
+          times = bits & 0xFF;
+          bits = groups.u32();
+          --left;
+        }
+        if (times > matrix.size[1] - y) {
+          groups.fail("column " + std::to_string(x) + "," + std::to_string(z) + " holds more than its " +
+                      std::to_string(matrix.size[1]) + " voxels");
+        }
+        for (const std::uint32_t end = y + times; y < end; ++y) {
+          if (bits >> 24 != 0) {
+            take(x, y, z, bits);
+          }
+        }
+      }
+    }
+  }
+
+  /// Slice by slice of z, rows of y of x.
+  template <class Take>
+  void walk_slices(const Matrix& matrix, ByteReader& reader, const Take& take) const {
     const std::uint64_t slice = std::uint64_t{matrix.size[0]} * matrix.size[1];
     const auto put = [&](std::uint64_t index, std::uint32_t z, std::uint32_t bits) {
       if ((bits >> 24) != 0) {
@@ -166,15 +283,26 @@ class QbGrid final : public VoxelGrid {
   std::vector<Matrix> matrices_;
   std::array<std::int64_t, 3> low_{};   ///< in the file's axes
   std::array<std::int32_t, 3> size_{};  ///< z up
-  bool is_bgra_ = false, is_left_handed_ = false, is_packed_ = false;
+  std::uint64_t cells_ = 0;
+  bool is_project_ = false, is_packed_ = false, is_bgra_ = false, is_left_handed_ = false;
 };
 
 }  // namespace
 
+bool looks_like_qbcl(std::span<const std::uint8_t> bytes) {
+  return SharedBytes{bytes, nullptr}.text().starts_with("QBCL");
+}
+
 /// @throws InputError  another version, a code that there is not, matrices or slices that the bytes do not
 ///   hold, a scene over `kGridSideLimit` on a side, no voxel
 Source read_qb(const SharedBytes& file, const ReadOptions&, const Progress&) {
-  return std::make_unique<QbGrid>(file);
+  return std::make_unique<QubicleGrid>(file, false);
+}
+
+/// Memory while reading and streaming: the bytes of one matrix, unpacked.
+/// @throws InputError  the same, and damaged deflated data, a kind of node that there is not
+Source read_qbcl(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<QubicleGrid>(file, true);
 }
 
 }  // namespace thimble::tools

@@ -56,7 +56,7 @@ Source read_zip(const SharedBytes& file, const ReadOptions& options, const Progr
 }
 
 // The one place that knows all formats. Where two recognise the same bytes, the first one counts.
-constexpr std::array<ReaderRow, 23> kRows{{
+constexpr std::array<ReaderRow, 27> kRows{{
     {".vox", "MagicaVoxel model", read_vox, looks_like_vox, Beginning::kMagic},
     {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic},
     {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText},
@@ -79,7 +79,11 @@ constexpr std::array<ReaderRow, 23> kRows{{
     {".schematic", "Minecraft schematic", read_schematic, looks_like_schematic, Beginning::kMagic},
     {".schem", "Sponge schematic", read_schematic, nullptr, Beginning::kMagic},
     {".qb", "Qubicle model", read_qb, nullptr},
+    {".qbcl", "Qubicle project", read_qbcl, looks_like_qbcl, Beginning::kMagic},
     {".kvx", "KVX model", read_kvx, nullptr},
+    {".kv6", "KV6 model", read_kv6, looks_like_kv6, Beginning::kMagic},
+    {".vxl", "Voxlap map", read_vxl, looks_like_vxl},
+    {".gox", "Goxel scene", read_gox, looks_like_gox, Beginning::kMagic},
 }};
 
 bool has_ending(std::string_view path, std::string_view ending) {

@@ -1,18 +1,18 @@
 // What readers inflate inside a file (readers/file_bytes.h), by stb's decoder in place of zlib, which Debian has
-// compiled for the host alone. It does not compare check sums.
+// compiled for the host alone. It does not compare check sums. And the blocks of `.gox`, which are PNGs.
 #include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "readers/file_bytes.h"
+#include "readers/picture.h"
 
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Weverything"
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_JPEG
-#define STBI_NO_PNG
 #define STBI_NO_BMP
 #define STBI_NO_PSD
 #define STBI_NO_TGA
@@ -82,6 +82,30 @@ FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, st
 
 FileBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count) {
   return file_of(inflate(packed, frame, static_cast<std::size_t>(count), false));
+}
+
+std::array<int, 2> picture_size(std::span<const std::uint8_t> encoded) {
+  std::array<int, 2> size{};
+  int channels = 0;
+  const bool is_known =
+      encoded.size() <= INT32_MAX && stbi_info_from_memory(encoded.data(), static_cast<int>(encoded.size()),
+                                                           &size[0], &size[1], &channels) != 0;
+  return is_known ? size : std::array<int, 2>{};
+}
+
+std::shared_ptr<std::uint8_t> decode_picture(std::span<const std::uint8_t> encoded, int channels,
+                                             const std::string& place) {
+  int width = 0;
+  int height = 0;
+  int in_file = 0;
+  std::shared_ptr<std::uint8_t> decoded(
+      stbi_load_from_memory(encoded.data(), static_cast<int>(encoded.size()), &width, &height, &in_file,
+                            channels),
+      std::free);
+  if (decoded == nullptr) {
+    throw InputError(place + "is damaged");
+  }
+  return decoded;
 }
 
 }  // namespace thimble::tools

@@ -1,0 +1,239 @@
+// `.gox` scenes of Goxel, versions 1 and 2.
+//
+// What is read: the layers that are visible, each over those before it, and layers that are copies of others, moved by
+// whole voxels. A voxel is solid where its alpha is at least a half, as Goxel draws it. Layers that are shapes, and
+// copies that are turned, scaled, moved by less than a voxel or of a later layer, are left out with a note. Materials, cameras, lights
+// and the picture of the whole are passed over. z is up in the file, too; the lowest corner of what is solid is 0,0,0.
+//
+// A file holds blocks of 16 x 16 x 16 voxels as pictures of 64 x 64 pixels, x the fastest, then y; layers say which
+// block lies where. Blocks are decoded each time that they are streamed: constant ones take a hundredth of their
+// bytes in the file, which memory is not to take.
+//
+// Source of the format: Guillaume Chereau, the head of Goxel's "gox.c".
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "readers/file_bytes.h"
+#include "readers/formats.h"
+#include "readers/picture.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::uint32_t kNewestVersion = 2;
+constexpr int kPictureSide = 64;
+constexpr std::int64_t kBlockSide = 16;
+constexpr std::int64_t kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
+constexpr std::uint64_t kBlockPlaceBytes = 20;  // picture, x, y, z, 0
+constexpr std::uint8_t kSolidAlpha = 127;
+constexpr std::size_t kMostBlocks = std::size_t{1} << 17;  // of what is kept, and for one call of `for_each`
+
+class GoxGrid final : public VoxelGrid {
+ public:
+  explicit GoxGrid(const SharedBytes& file) : file_(file) {
+    read_chunks();
+    if (left_out_ != 0) {
+      notes.push_back(std::to_string(left_out_) + (left_out_ == 1 ? " layer is" : " layers are") +
+                      " not drawn: a shape, or a copy of another that is more than moved by whole voxels");
+    }
+    measure();
+  }
+
+  void for_each(const Visit& visit) const override {
+    stream([&](const Corner& at, Rgb color) {
+      visit(static_cast<std::int32_t>(at[0] - low_[0]), static_cast<std::int32_t>(at[1] - low_[1]),
+            static_cast<std::int32_t>(at[2] - low_[2]), color);
+    });
+  }
+  std::array<std::int32_t, 3> size() const override { return size_; }
+  bool has_color() const override { return true; }
+
+ private:
+  using Corner = std::array<std::int64_t, 3>;
+  struct Layer {
+    ByteReader blocks;
+    Corner moved_by{};
+    bool is_drawn = true;
+  };
+
+  void read_chunks() {
+    if (!looks_like_gox(file_.bytes)) {
+      throw InputError("is no Goxel scene: it does not begin with \"GOX \"");
+    }
+    ByteReader reader(file_.bytes);
+    reader.skip(4);
+    const std::uint32_t version = reader.u32();
+    if (version < 1 || version > kNewestVersion) {
+      throw InputError("version " + std::to_string(version) +
+                       " of Goxel's scenes is not read, only 1 and 2 are");
+    }
+    for (std::size_t chunks = 0; reader.remaining() > 0;) {
+      const std::string place = "the chunk at byte offset " + std::to_string(reader.offset());
+      const std::string_view kind = reader.text(4);
+      ByteReader chunk = reader.sub(reader.u32(), place);
+      reader.skip(4);  // a check sum, which Goxel leaves 0
+      if (kind == "BL16") {
+        pictures_.push_back(chunk);
+        ++chunks;
+      } else if (kind == "LAYR") {
+        read_layer(chunk);
+        ++chunks;
+      }
+      if (chunks > kMostBlocks || blocks_ > kMostBlocks) {
+        chunk.fail("there are more than the limit of " + std::to_string(kMostBlocks) + " blocks");
+      }
+    }
+  }
+
+  void read_layer(ByteReader& chunk) {
+    Layer layer{chunk.sub(kBlockPlaceBytes * chunk.u32(), chunk.place())};
+    Corner moved_by{};
+    std::uint32_t id = 0;
+    std::uint32_t copy_of = 0;
+    bool is_visible = true;
+    bool is_only_moved = true;
+    while (chunk.remaining() > 0) {
+      const std::string_view key = chunk.text(chunk.u32());
+      if (key.empty()) {
+        break;
+      }
+      ByteReader value = chunk.sub(chunk.u32(), chunk.place());
+      if (key == "id") {
+        id = value.u32();
+      } else if (key == "base_id") {
+        copy_of = value.u32();
+      } else if (key == "visible") {
+        is_visible = value.u8() != 0;
+      } else if (key == "shape") {
+        layer.is_drawn = false;
+      } else if (key == "mat") {
+        is_only_moved = read_move(value, moved_by);
+      }
+    }
+    if (copy_of != 0) {  // what is no copy lies where its blocks do
+      const auto original = by_id_.find(copy_of);
+      layer.is_drawn = original != by_id_.end() && original->second.is_drawn && is_only_moved;
+      if (layer.is_drawn) {
+        layer = original->second;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          layer.moved_by[axis] += moved_by[axis];
+        }
+      }
+    }
+    if (id != 0) {
+      by_id_.emplace(id, layer);
+    }
+    if (is_visible) {
+      left_out_ += layer.is_drawn ? 0 : 1;
+      blocks_ += layer.blocks.remaining() / kBlockPlaceBytes;
+      layers_.push_back(std::move(layer));
+    }
+  }
+
+  /// Of four columns of four numbers the last says where to; true where they do no more, and move by whole voxels.
+  static bool read_move(ByteReader& value, Corner& moved_by) {
+    bool is_only_moved = true;
+    for (std::size_t i = 0; i < 16; ++i) {
+      const float number = value.f32();
+      if (i >= 12 && i < 15) {
+        is_only_moved &= std::abs(number) < 1 << 24 && std::round(number) == number;
+        moved_by[i - 12] = is_only_moved ? static_cast<std::int64_t>(number) : 0;
+      } else {
+        is_only_moved &= number == (i % 5 == 0 ? 1.0F : 0.0F);
+      }
+    }
+    return is_only_moved;
+  }
+
+  template <class Take>
+  void stream(const Take& take) const {
+    std::shared_ptr<const std::uint8_t> rgba;
+    std::uint32_t decoded = 0;
+    for (const Layer& layer : layers_) {
+      for (ByteReader reader = layer.blocks; reader.remaining() > 0;) {
+        const std::uint32_t number = reader.u32();
+        Corner corner = layer.moved_by;
+        for (std::int64_t& coordinate : corner) {
+          coordinate +=
+              reader.i32();  // version 1 counts from the middle, which moving to 0,0,0 makes the same
+        }
+        reader.skip(4);
+        if (number >= pictures_.size()) {
+          reader.fail("block " + std::to_string(number) + " is not among the " +
+                      std::to_string(pictures_.size()) + " of the file");
+        }
+        if (rgba == nullptr || decoded != number) {
+          rgba = decode(pictures_[number]);
+          decoded = number;
+        }
+        for (std::int64_t i = 0; i < kBlockVoxels; ++i) {
+          const std::uint8_t* pixel = rgba.get() + 4 * i;
+          if (pixel[3] >= kSolidAlpha) {
+            take(Corner{corner[0] + i % kBlockSide, corner[1] + i / kBlockSide % kBlockSide,
+                        corner[2] + i / kBlockSide / kBlockSide},
+                 Rgb{pixel[0], pixel[1], pixel[2]});
+          }
+        }
+      }
+    }
+  }
+
+  static std::shared_ptr<const std::uint8_t> decode(ByteReader picture) {
+    const auto encoded = picture.take(picture.remaining());
+    if (picture_size(encoded) != std::array<int, 2>{kPictureSide, kPictureSide}) {
+      picture.fail("the block is no picture of 64 x 64 pixels");
+    }
+    return decode_picture(encoded, 4, picture.place() + ": the block ");
+  }
+
+  void measure() {
+    Corner high{};
+    bool is_solid = false;
+    stream([&](const Corner& at, Rgb) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low_[axis] = is_solid ? std::min(low_[axis], at[axis]) : at[axis];
+        high[axis] = is_solid ? std::max(high[axis], at[axis]) : at[axis];
+      }
+      is_solid = true;
+    });
+    if (!is_solid) {
+      throw InputError("the file holds no voxels that are drawn");
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t side = high[axis] - low_[axis] + 1;
+      if (side > std::int64_t{kGridSideLimit}) {
+        throw InputError("the layers reach over " + std::to_string(side) + " voxels, the limit is " +
+                         std::to_string(kGridSideLimit));
+      }
+      size_[axis] = static_cast<std::int32_t>(side);
+    }
+  }
+
+  SharedBytes file_;
+  std::vector<ByteReader> pictures_;
+  std::map<std::uint32_t, Layer> by_id_;
+  std::vector<Layer> layers_;  ///< those that are visible
+  std::uint64_t blocks_ = 0, left_out_ = 0;
+  Corner low_{};
+  std::array<std::int32_t, 3> size_{};
+};
+
+}  // namespace
+
+bool looks_like_gox(std::span<const std::uint8_t> bytes) {
+  return SharedBytes{bytes, nullptr}.text().starts_with("GOX ");
+}
+
+/// Memory: some 100 bytes a block and layer of the file.
+/// @throws InputError  another beginning or version, chunks that end early, a block that the file does not have or
+///   that is no picture of 64 x 64 pixels, more than 2^17 blocks, a scene over `kGridSideLimit` on a side, no voxel
+Source read_gox(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<GoxGrid>(file);
+}
+
+}  // namespace thimble::tools
