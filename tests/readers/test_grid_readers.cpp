@@ -499,6 +499,9 @@ TEST_CASE("qbcl: damage -> a sentence, and nothing is believed") {
   CHECK(contains(error_of(read_qbcl, one(little(1, 2) + std::string("\x04\0\0\x02", 4))), "unpacked"));
   CHECK(contains(error_of(read_qbcl, one(little(2, 2) + std::string("\x04\0\0\x02\x01\x01\x01\x01", 8))),
                  "more than its 3"));
+  // With nothing behind it, it is no run.
+  CHECK(read_voxels(read_qbcl, one(little(1, 2) + std::string("\x04\0\0\x02\0\0", 6))) ==
+        std::vector<GridVoxel>{{0, 0, 0, {4, 0, 0}}});
   CHECK(contains(error_of(read_qbcl, one(std::string(4, '\0'))), "no voxels"));
   CHECK(contains(error_of(read_qbcl, one(std::string(60, '\0'))), "limit of 53 bytes"));
   CHECK(contains(error_of(read_qbcl, qbcl(qbcl_node(3, ""))), "kind of node 3"));
