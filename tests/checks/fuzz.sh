@@ -13,7 +13,9 @@ case $topic in
   off) endings='off' ;;
   points | text_points | xyz | csv) endings='xyz csv txt' ;;
   gadget | nbody) endings='dat' ;;
-  binvox | mts | schematic | pcd | las | stl | qb | qbcl | kvx | kv6 | vxl | gox) endings=$topic ;;
+  schematic) endings='schematic schem litematic nbt' ;;
+  octomap) endings='bt ot' ;;
+  binvox | mts | pcd | las | stl | qb | qbcl | kvx | kv6 | vxl | gox) endings=$topic ;;
   npy) endings='npy npz' ;;
   gltf) endings='gltf glb' ;;
   gz | gzip | file_bytes) endings='gz' ;;

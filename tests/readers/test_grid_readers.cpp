@@ -1,5 +1,5 @@
-// Readers of voxel grids: .binvox, .mts, .schematic and .schem, .qb and .qbcl, .kvx and .kv6, .vxl, .gox, NumPy arrays,
-// grids of heights.
+// Readers of voxel grids: .binvox, .mts, Minecraft's four, .bt and .ot, .qb and .qbcl, .kvx and .kv6, .vxl, .gox,
+// NumPy arrays, grids of heights.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -55,6 +55,50 @@ std::string schematic(const std::string& more) {
                                    sides(2, 1, 3) + more);
 }
 
+std::string ints(const std::string& name, const std::vector<int>& values, bool as_list) {
+  std::string list;
+  std::string entries;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string value = big(static_cast<std::uint32_t>(values[i]), 4);
+    list += value;
+    entries += tag(3, std::string(1, static_cast<char>('x' + i)), value);
+  }
+  return as_list ? tag(9, name, "\x03" + big(values.size(), 4) + list) : compound(name, entries);
+}
+/// A list of compounds.
+std::string list_tag(const std::string& name, const std::vector<std::string>& entries) {
+  std::string all;
+  for (const std::string& entry : entries) {
+    all += entry + std::string(1, '\0');
+  }
+  return tag(9, name, "\x0A" + big(entries.size(), 4) + all);
+}
+std::string block_name(const std::string& name) {
+  return compound("Properties", tag(8, "axis", big(1, 2) + "y")) + tag(8, "Name", big(name.size(), 2) + name);
+}
+std::string region(const std::string& name, const std::vector<int>& position, const std::vector<int>& size,
+                   const std::vector<std::string>& palette, const std::vector<std::uint64_t>& words) {
+  std::string longs;
+  for (const std::uint64_t word : words) {
+    longs += big(word, 8);
+  }
+  return compound(name, tag(12, "BlockStates", big(words.size(), 4) + longs) + list_tag("TileEntities", {}) +
+                            ints("Position", position, false) + list_tag("BlockStatePalette", palette) +
+                            ints("Size", size, false));
+}
+std::string litematic(const std::string& regions) {
+  return compound("", compound("Metadata", ints("EnclosingSize", {1, 2, 3}, false)) +
+                          tag(3, "Version", big(6, 4)) + compound("Regions", regions));
+}
+std::string structure(const std::string& palettes, const std::vector<std::string>& blocks) {
+  return compound("", list_tag("blocks", blocks) + palettes + ints("size", {2, 3, 4}, true) +
+                          tag(3, "DataVersion", big(3953, 4)));
+}
+std::string listed(const std::vector<int>& pos, unsigned state) {
+  return tag(3, "state", big(state, 4)) + compound("nbt", tag(8, "id", big(1, 2) + "a")) +
+         ints("pos", pos, true);
+}
+
 std::string mts(unsigned version, const std::vector<unsigned>& numbers, const std::string& chances) {
   std::string nodes;
   for (const unsigned number : numbers) {
@@ -88,6 +132,25 @@ std::string zip(const std::vector<std::pair<std::string, std::string>>& members,
   const std::size_t start = out.size();
   return out + directory + "PK\x05\x06" + little(0, 4) + little(members.size(), 2) +
          little(members.size(), 2) + little(directory.size(), 4) + little(start, 4) + little(0, 2);
+}
+
+// ---- OctoMap
+
+/// A map whose nodes are these; those of an .ot of colours where `colors` says so.
+std::string octomap(const std::string& nodes, bool is_binary, const std::string& id = "OcTree") {
+  return std::string("# Octomap OcTree ") + (is_binary ? "binary " : "") + "file\n# a comment\nid " + id +
+         "\nsize 17\nres 0.05\ndata\n" + nodes;
+}
+/// A node of an .ot.
+std::string map_node(float log_odds, unsigned children, const std::string& color = "") {
+  return little(std::bit_cast<std::uint32_t>(log_odds), 4) + color + little(children, 1);
+}
+std::string repeated(const std::string& part, int times) {
+  std::string out;
+  for (int i = 0; i < times; ++i) {
+    out += part;
+  }
+  return out;
 }
 
 // ---- Qubicle, Voxlap
@@ -306,6 +369,128 @@ TEST_CASE("schematic: damage -> a sentence, and no deep or long nothing") {
     deep += std::string("\x09", 1) + big(1, 4);
   }
   CHECK(contains(error_of(read_schematic, schematic(tag(9, "x", deep))), "512"));
+}
+
+TEST_CASE("litematic: regions, packed across words, sizes below zero -> voxels where they lie") {
+  // 3 x 5 x 1 (x, y, z) of 17 kinds: five bits each. Block 12 lies in both words: its number 16 has its highest bit
+  // alone in the second. Blocks 0 and 14 are of kind 1.
+  std::vector<std::string> palette{block_name("minecraft:air"), block_name("minecraft:stone")};
+  palette.resize(17, block_name("minecraft:oak_log"));
+  const std::vector<std::uint64_t> words{1, 1 | std::uint64_t{1} << 6};
+  const std::string wall = region("wall", {10, -3, 7}, {3, 5, 1}, palette, words);
+  const std::string file = litematic(wall);
+  const Rgb stone = *block_color("stone");
+  CHECK(looks_like_schematic(SharedBytes::own(file).bytes));
+  CHECK(read_voxels(read_schematic, file) ==
+        std::vector<GridVoxel>{{0, 0, 0, stone}, {0, 0, 4, *block_color("oak_log")}, {2, 0, 4, stone}});
+  // The same box from its other corner, and one block of another palette beside it.
+  const std::string turned = region("turned", {12, 1, 7}, {-3, -5, -1}, palette, words);
+  CHECK(read_voxels(read_schematic, litematic(turned)) == read_voxels(read_schematic, file));
+  const auto two = read_voxels(
+      read_schematic,
+      litematic(turned + region("b", {8, 1, 9}, {1, -1, 1}, {block_name("sand"), block_name("dirt")}, {1})));
+  REQUIRE(two.size() == 4);
+  CHECK(two[0] == GridVoxel{2, 2, 0, stone});
+  CHECK(two[3] == GridVoxel{0, 0, 4, *block_color("dirt")});
+  CHECK(accepted_lengths(read_schematic, file).empty());
+  const auto refusal = [&](const std::vector<int>& position, const std::vector<int>& size,
+                           const std::vector<std::string>& names, std::uint64_t word) {
+    return error_of(read_schematic, litematic(wall + region("b", position, size, names, {word})));
+  };
+  const std::vector<std::string> one{block_name("stone")};
+  CHECK(contains(refusal({0, 0, 0}, {0, 1, 1}, one, 0), "Size of region 'b' is 0"));
+  CHECK(contains(refusal({0, 0, 0}, {1, INT32_MIN, 1}, one, 0), "Size of region 'b' is 2147483648"));
+  CHECK(contains(refusal({5000, 0, 0}, {1, 1, 1}, one, 0), "all regions is 4991"));
+  CHECK(contains(refusal({INT32_MIN, 0, 0}, {-1, 1, 1}, one, 0), "all regions is 2147483661"));
+  CHECK(
+      contains(refusal({0, 0, 0}, {4096, 4096, 4096}, one, 0), "no room for 68719476736 blocks of 1 kinds"));
+  CHECK(contains(refusal({0, 0, 0}, {33, 1, 1}, one, 0), "no room for 33"));
+  CHECK(contains(refusal({0, 0, 0}, {1, 1, 1}, {}, 0), "of 0 kinds"));
+  CHECK(contains(refusal({0, 0, 0}, {1, 1, 1}, one, 3), "number 3, which is not among the 1"));
+  CHECK(
+      contains(refusal({0, 0, 0}, {1, 1, 1}, {block_name("a"), ""}, 0), "entry 1 of a palette has no Name"));
+  CHECK(contains(error_of(read_schematic, litematic(compound("b", tag(3, "Size", big(1, 4))))), "no three"));
+  CHECK(contains(error_of(read_schematic, litematic("")), "not all there, nor are Regions"));
+}
+
+TEST_CASE("structure: pos and state of a list -> voxels; of several palettes the first") {
+  const std::string names =
+      list_tag("palette", {block_name("air"), block_name("stone"), block_name("gold_block")});
+  const std::vector<std::string> blocks{listed({0, 0, 0}, 0), listed({1, 2, 0}, 1), listed({0, 1, 3}, 2)};
+  const std::string file = structure(names, blocks);
+  CHECK(looks_like_schematic(SharedBytes::own(file).bytes));
+  const std::vector<GridVoxel> wanted{{1, 3, 2, *block_color("stone")},
+                                      {0, 0, 1, *block_color("gold_block")}};
+  CHECK(read_voxels(read_schematic, file) == wanted);
+  CHECK(accepted_lengths(read_schematic, file).empty());
+  // Lists of a list are nameless: what follows the name "palette", twice.
+  const std::string list = names.substr(3 + 7);
+  const Source several = read_schematic(
+      SharedBytes::own(structure(tag(9, "palettes", "\x09" + big(2, 4) + list + list), blocks)), {}, {});
+  CHECK(notes_of(several) == Notes{"of its 2 palettes the first is shown"});
+  CHECK(std::get<std::unique_ptr<VoxelGrid>>(several)->size() == std::array<std::int32_t, 3>{2, 4, 3});
+  const auto refusal = [&](const std::string& block) {
+    return error_of(read_schematic, structure(names, {listed({0, 0, 0}, 1), block}));
+  };
+  CHECK(contains(refusal(listed({0, 3, 0}, 1)), "block 1 of the list is not within the size"));
+  CHECK(contains(refusal(listed({0, 0, -1}, 1)), "not within"));
+  CHECK(contains(refusal(listed({0, 0, 0}, 3)), "number 3, which is not among the 3"));
+  CHECK(contains(refusal(tag(3, "state", big(1, 4))), "not within"));
+  CHECK(contains(refusal(ints("pos", {0, 0, 0}, true)), "not among the 3"));
+  CHECK(contains(refusal(ints("pos", {0, 0}, true)), "no three numbers"));
+  CHECK(contains(error_of(read_schematic, structure(names, {listed({0, 0, 0}, 0)})), "nothing but air"));
+  CHECK(contains(error_of(read_schematic, compound("", ints("size", {1, 4097, 1}, true))), "size is 4097"));
+  const std::string many =
+      tag(9, "palette", "\x0A" + big(INT32_MAX, 4) + block_name("stone") + std::string(1, '\0'));
+  CHECK(contains(error_of(read_schematic, compound("", many)), "entry 1 of a palette has no Name"));
+  CHECK(contains(error_of(read_schematic, compound("", tag(9, "palette", "\x03" + big(1, 4) + "name"))),
+                 "no Name"));
+}
+
+TEST_CASE("octomap: occupied leaves of every level -> cubes") {
+  // Down to a node of four voxels a side: octant 0 a cube of two, 1 free, 2 a node whose octant 5 is one voxel.
+  const std::string binary =
+      little(0xC000, 2) + repeated(little(3, 2), 13) + little(0x36, 2) + little(0x840, 2);
+  const std::string file = octomap(binary, true);
+  CHECK(looks_like_octomap(SharedBytes::own(file).bytes));
+  auto voxels = read_voxels(read_octomap, file);
+  REQUIRE(voxels.size() == 9);
+  CHECK(voxels[7] == GridVoxel{1, 1, 1, {}});
+  CHECK(voxels[8] == GridVoxel{1, 2, 1, {}});
+  CHECK(accepted_lengths(read_octomap, file).empty());
+  // The same with log-odds, and with colours.
+  const auto full = [](const std::string& blue, const std::string& red) {
+    return map_node(-1, 0x80, blue) + repeated(map_node(-1, 1, blue), 13) + map_node(-1, 7, blue) +
+           map_node(0, 0, blue) + map_node(-0.001F, 0, red) + map_node(-1, 0x28, blue) +
+           map_node(std::bit_cast<float>(0x7FC00000U), 0, blue) + map_node(3.5F, 0, red);
+  };
+  for (const char* const id : {"OcTree", "1", "OcTreeStamped"}) {
+    CHECK(read_voxels(read_octomap, octomap(full("", ""), false, id)) == voxels);
+  }
+  for (GridVoxel& voxel : voxels) {
+    voxel.color = {0, 1, 255};
+  }
+  voxels[8].color = {255, 2, 3};
+  const std::string colored =
+      octomap(full(std::string("\0\x01\xff", 3), "\xff\x02\x03"), false, "ColorOcTree");
+  CHECK(read_voxels(read_octomap, colored) == voxels);
+  CHECK(accepted_lengths(read_octomap, colored).empty());
+}
+
+TEST_CASE("octomap: damage -> a sentence; large cubes and deep nodes -> no long or deep nothing") {
+  const auto binary = [](const std::string& nodes) { return error_of(read_octomap, octomap(nodes, true)); };
+  CHECK(contains(error_of(read_octomap, "# Octree"), "it does not begin with \"# Octomap OcTree file\""));
+  CHECK(contains(error_of(read_octomap, "# Octomap OcTree file\nid OcTree\n"), "no line 'data'"));
+  CHECK(contains(error_of(read_octomap, octomap("", false, "RoughOcTree")), "of class 'RoughOcTree'"));
+  CHECK(contains(binary(""), "no occupied leaf"));
+  CHECK(contains(binary(little(0x5555, 2)), "no occupied leaf"));
+  CHECK(contains(binary(little(2, 2)), "35184372088832 voxels and 32768 long"));
+  CHECK(contains(binary(repeated(little(3, 2), 5) + little(2, 2)), "1073741824 voxels and 1024 long"));
+  CHECK(contains(binary(little(0xC003, 2) + repeated(repeated(little(3, 2), 14) + little(2, 2), 2)),
+                 "32769 long"));
+  CHECK(contains(binary(repeated(little(3, 2), 100000)), "below the last of 16 levels"));
+  CHECK(contains(error_of(read_octomap, octomap(repeated(map_node(0, 1), 100000), false)), "below the last"));
+  CHECK(contains(error_of(read_octomap, octomap(map_node(0, 0), false)), "65536 long"));
 }
 
 TEST_CASE("blocks: names -> colours by what they are") {

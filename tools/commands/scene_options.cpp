@@ -27,9 +27,11 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
   Option scene = add_argument(
       app, "scene", "SCENE", &arguments.scene,
       "a file (.vox .scene .oct .ply .obj .off .stl .glb .gltf .xyz .csv .txt .tsv .pts .pcd .las .npy "
-      ".npz .asc .binvox .qb .qbcl .kvx .kv6 .vxl .gox .schematic .schem .mts, a Gadget-1 snapshot, .gz .zst "
-      ".xz of any, a .zip of one) or a generator: points:N, cluster:N, spheres, water or demo, each with "
-      ",seed=S,depth=L; or the name of a scene that comes with Thimble, such as castle");
+      ".npz .asc .binvox .qb .qbcl .kvx .kv6 .vxl .gox .schematic .schem .litematic .nbt .mts .bt .ot, a "
+      "Gadget-1 "
+      "snapshot, .gz .zst .xz of any, a .zip of one) or a generator: points:N, cluster:N, spheres, water or "
+      "demo, each "
+      "with ,seed=S,depth=L; or the name of a scene that comes with Thimble, such as castle");
   if (required) {
     scene.required();
   }

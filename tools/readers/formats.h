@@ -27,15 +27,15 @@ struct ReadOptions {
 /// @throws InputError  what is wrong, and where
 using FormatReader = Source(const SharedBytes& file, const ReadOptions& options, const Progress& progress);
 FormatReader read_binvox, read_gadget, read_gltf, read_gox, read_height_grid, read_kv6, read_kvx, read_las,
-    read_mts, read_npy, read_obj, read_oct, read_off, read_pcd, read_ply, read_qb, read_qbcl, read_scene_text,
-    read_schematic, read_stl, read_vox, read_vxl, read_xyz;
+    read_mts, read_npy, read_obj, read_oct, read_octomap, read_off, read_pcd, read_ply, read_qb, read_qbcl,
+    read_scene_text, read_schematic, read_stl, read_vox, read_vxl, read_xyz;
 
 /// Whether a file that begins so is of the format.
 using FormatLook = bool(std::span<const std::uint8_t> bytes);
 FormatLook looks_like_binvox, looks_like_gadget, looks_like_gltf, looks_like_gox, looks_like_height_grid,
-    looks_like_kv6, looks_like_las, looks_like_mts, looks_like_npy, looks_like_oct, looks_like_off,
-    looks_like_pcd, looks_like_ply, looks_like_qbcl, looks_like_schematic, looks_like_stl, looks_like_vox,
-    looks_like_vxl;
+    looks_like_kv6, looks_like_las, looks_like_mts, looks_like_npy, looks_like_oct, looks_like_octomap,
+    looks_like_off, looks_like_pcd, looks_like_ply, looks_like_qbcl, looks_like_schematic, looks_like_stl,
+    looks_like_vox, looks_like_vxl;
 
 /// Whether this program reads glTF: the page does without (tools/web/left_out.cpp).
 bool has_gltf_reader();

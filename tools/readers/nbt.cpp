@@ -1,5 +1,6 @@
 #include "readers/nbt.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -47,25 +48,15 @@ void nbt_skip(ByteReader& reader, NbtKind kind) {
     } else if (what == NbtKind::kCompound) {
       open.push_back({NbtKind::kEnd, 0});
     } else if (what == NbtKind::kList) {
-      const NbtKind of = kind_of(reader);
-      const std::int32_t count = reader.i32_be();
-      if (count > 0 && of == NbtKind::kEnd) {
-        reader.fail("a list of " + std::to_string(count) + " nothings, before byte offset " +
-                    std::to_string(reader.offset()));
-      }
+      NbtKind of = NbtKind::kEnd;
+      const std::uint32_t count = nbt_list(reader, &of);
       if (fixed_bytes(of) != 0) {
-        reader.skip(fixed_bytes(of) * (count > 0 ? static_cast<std::uint64_t>(count) : 0));
+        reader.skip(fixed_bytes(of) * count);
       } else if (count > 0) {
-        open.push_back({of, static_cast<std::uint32_t>(count)});
+        open.push_back({of, count});
       }
     } else {
-      const std::int32_t count = reader.i32_be();
-      const std::uint64_t each = what == NbtKind::kBytes ? 1 : (what == NbtKind::kInts ? 4 : 8);
-      if (count < 0) {
-        reader.fail("an array of " + std::to_string(count) + " numbers, before byte offset " +
-                    std::to_string(reader.offset()));
-      }
-      reader.skip(each * static_cast<std::uint64_t>(count));
+      nbt_array(reader, what);
     }
     if (open.size() > kDeepest) {
       reader.fail("tags are nested deeper than the limit of " + std::to_string(kDeepest));
@@ -98,13 +89,24 @@ void nbt_compound(ByteReader& reader, const std::function<void(NbtKind kind, std
   }
 }
 
-std::span<const std::uint8_t> nbt_bytes(ByteReader& reader) {
+std::span<const std::uint8_t> nbt_array(ByteReader& reader, NbtKind kind) {
   const std::int32_t count = reader.i32_be();
+  const std::uint64_t each = kind == NbtKind::kBytes ? 1 : (kind == NbtKind::kInts ? 4 : 8);
   if (count < 0) {
-    reader.fail("an array of " + std::to_string(count) + " bytes, before byte offset " +
+    reader.fail("an array of " + std::to_string(count) + " numbers, before byte offset " +
                 std::to_string(reader.offset()));
   }
-  return reader.take(static_cast<std::uint64_t>(count));
+  return reader.take(each * static_cast<std::uint64_t>(count));
+}
+
+std::uint32_t nbt_list(ByteReader& reader, NbtKind* of) {
+  *of = kind_of(reader);
+  const std::int32_t count = reader.i32_be();
+  if (count > 0 && *of == NbtKind::kEnd) {
+    reader.fail("a list of " + std::to_string(count) + " nothings, before byte offset " +
+                std::to_string(reader.offset()));
+  }
+  return static_cast<std::uint32_t>(std::max(count, 0));
 }
 
 std::int64_t nbt_integer(ByteReader& reader, NbtKind kind) {

@@ -41,8 +41,11 @@ void nbt_compound(ByteReader& reader, const std::function<void(NbtKind kind, std
 /// A kind, and a name; `kEnd` has none.
 NbtKind nbt_head(ByteReader& reader, std::string_view* name);
 
-/// The bytes of a byte array.
-std::span<const std::uint8_t> nbt_bytes(ByteReader& reader);
+/// The bytes of an array of `kind`; its numbers begin with their highest byte.
+std::span<const std::uint8_t> nbt_array(ByteReader& reader, NbtKind kind);
+
+/// How many values of the kind `of` a list holds; they follow.
+std::uint32_t nbt_list(ByteReader& reader, NbtKind* of);
 
 /// A value of a kind that is a whole number.
 std::int64_t nbt_integer(ByteReader& reader, NbtKind kind);

@@ -1,16 +1,19 @@
-// Minecraft schematics: `.schematic` (MCEdit) and `.schem` (Sponge, versions 1 to 3).
+// Minecraft's blocks: `.schematic` (MCEdit), `.schem` (Sponge, versions 1 to 3), `.litematic` (Litematica) and
+// `.nbt` (structures). Their tags tell which of them a file is, not its name.
 //
 // What is read: Width (x), Height (y, up) and Length (z) and the blocks. Of a `.schematic`: Blocks,
 // AddBlocks (four more bits each) and the colour in Data. Of a `.schem`: Palette and BlockData, on the first
-// level or, as version 3 has it, within Schematic and Blocks. Blocks have the colours of block_colors.h and
-// all are whole cubes; entities, biomes and what chests hold are passed over. Here z is up: (x, y, z) -> (x,
-// -z, y).
+// level or, as version 3 has it, within Schematic and Blocks. Of a `.litematic`: all Regions where they lie, with
+// their palettes; the numbers lie in words of 64 bits and cross them. Of a structure: size, the listed blocks and the
+// palette, or the first of several. Blocks have the colours of block_colors.h and all are whole cubes; entities,
+// biomes and what chests hold are passed over. Here z is up: (x, y, z) -> (x, -z, y).
 //
-// Sources of the formats: Minecraft Wiki, "Schematic file format"; SpongePowered, "Sponge Schematic
-// Specification" 1 to 3.
+// Sources of the formats: Minecraft Wiki, "Schematic file format", "Structure file"; SpongePowered, "Sponge Schematic
+// Specification" 1 to 3; masa, Litematica, `LitematicaSchematic` and `LitematicaBitArray`.
 #include "readers/formats.h"
 
 #include <algorithm>
+#include <bit>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,11 +27,86 @@
 namespace thimble::tools {
 namespace {
 
+/// How the numbers of blocks are written.
+enum class BlockCode : std::uint8_t {
+  kBytes,    ///< one each, and no palette
+  kVarints,  ///< seven bits a byte, lowest first; the eighth says that more follow
+  kWords,    ///< just the bits that the palette takes, in big-endian words from their lowest bits on
+  kList      ///< compounds of pos and state
+};
+
+/// Blocks of a box: x runs fastest, then z, then y.
+struct BlockBox {
+  std::array<std::int64_t, 3> corner{};  ///< lowest x, y, z
+  std::array<std::uint32_t, 3> size{};
+  std::span<const std::uint8_t> blocks;
+  std::vector<std::optional<Rgb>> palette;
+
+  std::uint64_t cells() const { return std::uint64_t{size[0]} * size[1] * size[2]; }
+  /// Litematica's bits of a block.
+  unsigned bits() const { return std::max(2U, static_cast<unsigned>(std::bit_width(palette.size() - 1))); }
+};
+
+std::uint32_t checked_side(std::string_view name, std::int64_t value) {
+  if (value < 1 || value > std::int64_t{kGridSideLimit}) {
+    throw InputError(std::string(name) + " is " + std::to_string(value) + "; a side has 1 to " +
+                     std::to_string(kGridSideLimit) + " blocks");
+  }
+  return static_cast<std::uint32_t>(value);
+}
+
+/// Three whole numbers: a list, or a compound of x, y and z.
+std::array<std::int32_t, 3> read_triple(ByteReader& reader, NbtKind kind) {
+  std::array<std::int32_t, 3> out{};
+  NbtKind of = NbtKind::kEnd;
+  if (kind == NbtKind::kCompound) {
+    nbt_compound(reader, [&](NbtKind entry_kind, std::string_view name) {
+      if (name == "x" || name == "y" || name == "z") {
+        out[static_cast<std::size_t>(name[0] - 'x')] =
+            static_cast<std::int32_t>(nbt_integer(reader, entry_kind));
+      } else {
+        nbt_skip(reader, entry_kind);
+      }
+    });
+  } else if (kind != NbtKind::kList || nbt_list(reader, &of) != 3) {
+    reader.fail("no three numbers before byte offset " + std::to_string(reader.offset()));
+  } else {
+    for (std::int32_t& number : out) {
+      number = static_cast<std::int32_t>(nbt_integer(reader, of));
+    }
+  }
+  return out;
+}
+
+/// A list of blocks' names with their properties.
+std::vector<std::optional<Rgb>> read_palette(ByteReader& reader) {
+  std::vector<std::optional<Rgb>> palette;
+  NbtKind of = NbtKind::kEnd;
+  for (std::uint32_t left = nbt_list(reader, &of); left > 0; --left) {
+    std::string_view block;
+    if (of == NbtKind::kCompound) {
+      nbt_compound(reader, [&](NbtKind kind, std::string_view name) {
+        if (kind == NbtKind::kText && name == "Name") {
+          block = reader.text(reader.u16_be());
+        } else {
+          nbt_skip(reader, kind);
+        }
+      });
+    }
+    if (block.empty()) {
+      reader.fail("entry " + std::to_string(palette.size()) +
+                  " of a palette has no Name, before byte offset " + std::to_string(reader.offset()));
+    }
+    palette.push_back(block_color(block));
+  }
+  return palette;
+}
+
 class SchematicGrid final : public VoxelGrid {
  public:
   explicit SchematicGrid(const SharedBytes& file) : file_(file) {
     if (!looks_like_schematic(file.bytes)) {
-      throw InputError("is no schematic: it does not begin with a compound tag named Schematic");
+      throw InputError("is no schematic: it does not begin with a compound tag, nameless or named Schematic");
     }
     ByteReader reader(file.bytes, "the tags");
     std::string_view name;
@@ -38,19 +116,20 @@ class SchematicGrid final : public VoxelGrid {
   }
 
   void for_each(const Visit& visit) const override {
-    walk([&](std::uint64_t index, const std::optional<Rgb>& color) {
-      if (color) {
-        const auto x = static_cast<std::int32_t>(index % size_[0]);
-        const auto z = static_cast<std::int32_t>(index / size_[0] % size_[2]);
-        const auto y = static_cast<std::int32_t>(index / size_[0] / size_[2]);
-        visit(x, static_cast<std::int32_t>(size_[2]) - 1 - z, y, *color);
-      }
-    });
+    for (const BlockBox& box : boxes_) {
+      walk(box, [&](std::uint64_t index, const std::optional<Rgb>& color) {
+        if (color) {
+          const auto at = [&](std::size_t axis, std::uint64_t local) {
+            return static_cast<std::int32_t>(box.corner[axis] - low_[axis] +
+                                             static_cast<std::int64_t>(local));
+          };
+          visit(at(0, index % box.size[0]), size_[1] - 1 - at(2, index / box.size[0] % box.size[2]),
+                at(1, index / box.size[0] / box.size[2]), *color);
+        }
+      });
+    }
   }
-  std::array<std::int32_t, 3> size() const override {
-    return {static_cast<std::int32_t>(size_[0]), static_cast<std::int32_t>(size_[2]),
-            static_cast<std::int32_t>(size_[1])};
-  }
+  std::array<std::int32_t, 3> size() const override { return size_; }
   bool has_color() const override { return true; }
 
  private:
@@ -75,26 +154,94 @@ class SchematicGrid final : public VoxelGrid {
     const auto* side = std::find(kSides.begin(), kSides.end(), name);
     if (side != kSides.end()) {
       // Sponge counts to 65535 in a short.
-      const std::int64_t value = nbt_integer(reader, kind) & 0xFFFF;
-      if (value < 1 || value > std::int64_t{kGridSideLimit}) {
-        throw InputError(std::string(name) + " is " + std::to_string(value) + "; a side has 1 to " +
-                         std::to_string(kGridSideLimit) + " blocks");
-      }
-      size_[static_cast<std::size_t>(side - kSides.begin())] = static_cast<std::uint32_t>(value);
+      box_.size[static_cast<std::size_t>(side - kSides.begin())] =
+          checked_side(name, nbt_integer(reader, kind) & 0xFFFF);
     } else if (kind == NbtKind::kCompound && name == "Palette") {
-      has_palette_ = true;
+      code_ = BlockCode::kVarints;
       nbt_compound(reader, [&](NbtKind entry_kind, std::string_view block) {
         add_to_palette(nbt_integer(reader, entry_kind), block);
       });
     } else if (kind == NbtKind::kBytes && (name == "Blocks" || name == "BlockData")) {
-      blocks_ = nbt_bytes(reader);
+      box_.blocks = nbt_array(reader, kind);
     } else if (kind == NbtKind::kBytes && name == "Data") {
-      data_ = nbt_bytes(reader);
+      data_ = nbt_array(reader, kind);
     } else if (kind == NbtKind::kBytes && name == "AddBlocks") {
-      add_ = nbt_bytes(reader);
+      add_ = nbt_array(reader, kind);
+    } else if (kind == NbtKind::kCompound && name == "Regions") {
+      nbt_compound(reader, [&](NbtKind entry_kind, std::string_view region) {
+        if (entry_kind == NbtKind::kCompound) {
+          read_region(reader, region);
+        } else {
+          nbt_skip(reader, entry_kind);
+        }
+      });
+    } else if (kind == NbtKind::kList) {
+      read_structure_list(reader, name);
     } else {
       nbt_skip(reader, kind);
     }
+  }
+
+  void read_structure_list(ByteReader& reader, std::string_view name) {
+    if (name == "size") {
+      const std::array<std::int32_t, 3> size = read_triple(reader, NbtKind::kList);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        box_.size[axis] = checked_side("size", size[axis]);
+      }
+    } else if (name == "palette") {
+      box_.palette = read_palette(reader);
+    } else if (name == "palettes") {
+      NbtKind of = NbtKind::kEnd;
+      const std::uint32_t count = nbt_list(reader, &of);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (i == 0 && of == NbtKind::kList) {
+          box_.palette = read_palette(reader);
+        } else {
+          nbt_skip(reader, of);
+        }
+      }
+      if (count > 1) {
+        notes.push_back("of its " + std::to_string(count) + " palettes the first is shown");
+      }
+    } else {
+      const std::size_t from = static_cast<std::size_t>(reader.offset());
+      nbt_skip(reader, NbtKind::kList);
+      if (name == "blocks") {
+        code_ = BlockCode::kList;
+        box_.blocks = file_.bytes.subspan(from, static_cast<std::size_t>(reader.offset()) - from);
+      }
+    }
+  }
+
+  /// A negative size reaches from the position down.
+  void read_region(ByteReader& reader, std::string_view name) {
+    BlockBox box;
+    std::array<std::int32_t, 3> position{};
+    std::array<std::int32_t, 3> size{};
+    nbt_compound(reader, [&](NbtKind kind, std::string_view entry) {
+      if (entry == "Position") {
+        position = read_triple(reader, kind);
+      } else if (entry == "Size") {
+        size = read_triple(reader, kind);
+      } else if (kind == NbtKind::kList && entry == "BlockStatePalette") {
+        box.palette = read_palette(reader);
+      } else if (kind == NbtKind::kLongs && entry == "BlockStates") {
+        box.blocks = nbt_array(reader, kind);
+      } else {
+        nbt_skip(reader, kind);
+      }
+    });
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t side = size[axis];
+      box.corner[axis] = position[axis] + std::min<std::int64_t>(side + 1, 0);
+      box.size[axis] = checked_side("Size of region " + quoted(name), side < 0 ? -side : side);
+    }
+    if (box.palette.empty() || box.blocks.size() / 8 < (box.cells() * box.bits() + 63) / 64) {
+      throw InputError("region " + quoted(name) + " has no room for " + std::to_string(box.cells()) +
+                       " blocks of " + std::to_string(box.palette.size()) + " kinds in " +
+                       std::to_string(box.blocks.size()) + " bytes");
+    }
+    boxes_.push_back(std::move(box));
   }
 
   void add_to_palette(std::int64_t index, std::string_view block) {
@@ -103,90 +250,167 @@ class SchematicGrid final : public VoxelGrid {
       throw InputError("the palette has the number " + std::to_string(index) + " for " + quoted(block) +
                        ", more than the file has entries");
     }
-    palette_.resize(std::max(palette_.size(), static_cast<std::size_t>(index) + 1));
-    palette_[static_cast<std::size_t>(index)] = block_color(block);
+    box_.palette.resize(std::max(box_.palette.size(), static_cast<std::size_t>(index) + 1));
+    box_.palette[static_cast<std::size_t>(index)] = block_color(block);
   }
 
   void check() {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (size_[axis] == 0) {
-        throw InputError("Width, Height and Length are not all there");
+    if (boxes_.empty()) {
+      check_box();
+      boxes_.push_back(std::move(box_));
+    } else {
+      code_ = BlockCode::kWords;
+    }
+    low_ = boxes_[0].corner;
+    for (const BlockBox& box : boxes_) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low_[axis] = std::min(low_[axis], box.corner[axis]);
       }
     }
-    // Version 3 calls the numbers of its palette Data.
-    if (has_palette_ && blocks_.empty()) {
-      blocks_ = std::exchange(data_, {});
-    }
-    const std::uint64_t cells = std::uint64_t{size_[0]} * size_[1] * size_[2];
-    if (has_palette_ ? blocks_.size() < cells : blocks_.size() != cells) {
-      throw InputError("the blocks take " + std::to_string(blocks_.size()) + " bytes, but " +
-                       std::to_string(size_[0]) + " x " + std::to_string(size_[1]) + " x " +
-                       std::to_string(size_[2]) + " of them are announced");
+    // Here z is up.
+    constexpr std::array<std::size_t, 3> kAxes{0, 2, 1};
+    for (const BlockBox& box : boxes_) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t theirs = kAxes[axis];
+        const std::int64_t end = box.corner[theirs] + box.size[theirs] - low_[theirs];
+        size_[axis] =
+            std::max(size_[axis], static_cast<std::int32_t>(checked_side("a side of all regions", end)));
+      }
     }
     check_solid("the schematic holds nothing but air");
   }
 
-  template <class Take>
-  void walk(const Take& take) const {
-    const std::uint64_t cells = std::uint64_t{size_[0]} * size_[1] * size_[2];
-    if (has_palette_) {
-      walk_palette(cells, take);
-      return;
+  void check_box() {
+    const std::uint64_t cells = box_.cells();
+    if (cells == 0) {
+      throw InputError("Width, Height and Length are not all there, nor are Regions or a structure's size");
     }
-    for (std::size_t i = 0; i < cells; ++i) {
-      unsigned number = blocks_[i];
-      if (i / 2 < add_.size()) {
-        number |= (unsigned{add_[i / 2]} >> (i % 2 == 0 ? 4U : 0U) & 0xFU) << 8;
-      }
-      take(i, block_color(number, i < data_.size() ? data_[i] : 0U));
+    // Version 3 calls the numbers of its palette Data.
+    if (code_ == BlockCode::kVarints && box_.blocks.empty()) {
+      box_.blocks = std::exchange(data_, {});
+    }
+    if (code_ == BlockCode::kBytes ? box_.blocks.size() != cells
+                                   : code_ == BlockCode::kVarints && box_.blocks.size() < cells) {
+      throw InputError("the blocks take " + std::to_string(box_.blocks.size()) + " bytes, but " +
+                       std::to_string(box_.size[0]) + " x " + std::to_string(box_.size[1]) + " x " +
+                       std::to_string(box_.size[2]) + " of them are announced");
     }
   }
 
-  /// Numbers of seven bits a byte, lowest first; the eighth says that more follow.
   template <class Take>
-  void walk_palette(std::uint64_t cells, const Take& take) const {
+  void walk(const BlockBox& box, const Take& take) const {
+    if (code_ == BlockCode::kList) {
+      walk_list(box, take);
+      return;
+    }
+    const std::uint64_t cells = box.cells();
     std::size_t at = 0;
     for (std::uint64_t i = 0; i < cells; ++i) {
-      std::uint64_t number = 0;
-      for (unsigned shift = 0;; shift += 7) {
-        if (at == blocks_.size() || shift > 28) {
-          throw InputError("block " + std::to_string(i) + " of " + std::to_string(cells) +
-                           " is cut off or too long");
-        }
-        number |= std::uint64_t{blocks_[at] & 0x7FU} << shift;
-        if ((blocks_[at++] & 0x80U) == 0) {
-          break;
+      if (code_ == BlockCode::kBytes) {
+        take(i, numbered_color(box, static_cast<std::size_t>(i)));
+      } else {
+        take(i, palette_color(box, i, code_ == BlockCode::kWords ? packed(box, i) : varint(box, i, &at)));
+      }
+    }
+  }
+
+  std::optional<Rgb> numbered_color(const BlockBox& box, std::size_t i) const {
+    unsigned number = box.blocks[i];
+    if (i / 2 < add_.size()) {
+      number |= (unsigned{add_[i / 2]} >> (i % 2 == 0 ? 4U : 0U) & 0xFU) << 8;
+    }
+    return block_color(number, i < data_.size() ? data_[i] : 0U);
+  }
+
+  static const std::optional<Rgb>& palette_color(const BlockBox& box, std::uint64_t i, std::uint64_t number) {
+    if (number >= box.palette.size()) {
+      throw InputError("block " + std::to_string(i) + " has the number " + std::to_string(number) +
+                       ", which is not among the " + std::to_string(box.palette.size()) + " of the palette");
+    }
+    return box.palette[static_cast<std::size_t>(number)];
+  }
+
+  static std::uint64_t varint(const BlockBox& box, std::uint64_t i, std::size_t* at) {
+    std::uint64_t number = 0;
+    for (unsigned shift = 0;; shift += 7) {
+      if (*at == box.blocks.size() || shift > 28) {
+        throw InputError("block " + std::to_string(i) + " of " + std::to_string(box.cells()) +
+                         " is cut off or too long");
+      }
+      const std::uint8_t byte = box.blocks[(*at)++];
+      number |= std::uint64_t{byte & 0x7FU} << shift;
+      if ((byte & 0x80U) == 0) {
+        return number;
+      }
+    }
+  }
+
+  static std::uint64_t packed(const BlockBox& box, std::uint64_t i) {
+    const unsigned bits = box.bits();
+    const std::uint8_t* const word = box.blocks.data() + i * bits / 64 * 8;
+    const unsigned first = static_cast<unsigned>(i * bits % 64);
+    std::uint64_t number = load_bits(word, 8, true) >> first;
+    if (first + bits > 64) {
+      number |= load_bits(word + 8, 8, true) << (64 - first);
+    }
+    return number & ((std::uint64_t{1} << bits) - 1);
+  }
+
+  template <class Take>
+  void walk_list(const BlockBox& box, const Take& take) const {
+    ByteReader reader(box.blocks, "the blocks");
+    NbtKind of = NbtKind::kEnd;
+    const std::uint32_t count = nbt_list(reader, &of);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::array<std::int32_t, 3> at{-1, -1, -1};
+      std::int64_t state = -1;
+      if (of == NbtKind::kCompound) {
+        nbt_compound(reader, [&](NbtKind kind, std::string_view name) {
+          if (name == "pos") {
+            at = read_triple(reader, kind);
+          } else if (name == "state") {
+            state = nbt_integer(reader, kind);
+          } else {
+            nbt_skip(reader, kind);
+          }
+        });
+      }
+      std::array<std::uint64_t, 3> place{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        place[axis] = static_cast<std::uint64_t>(at[axis]);
+        if (place[axis] >= box.size[axis]) {
+          throw InputError("block " + std::to_string(i) + " of the list is not within the size");
         }
       }
-      if (number >= palette_.size()) {
-        throw InputError("block " + std::to_string(i) + " has the number " + std::to_string(number) +
-                         ", which is not among the " + std::to_string(palette_.size()) + " of the palette");
-      }
-      take(i, palette_[static_cast<std::size_t>(number)]);
+      take((place[1] * box.size[2] + place[2]) * box.size[0] + place[0],
+           palette_color(box, i, static_cast<std::uint64_t>(state)));
     }
   }
 
   SharedBytes file_;
-  std::array<std::uint32_t, 3> size_{};  ///< x, y, z of the file
-  std::span<const std::uint8_t> blocks_, data_, add_;
-  std::vector<std::optional<Rgb>> palette_;
-  bool has_palette_ = false;
+  BlockBox box_;  ///< until it is the only one of `boxes_`
+  std::vector<BlockBox> boxes_;
+  std::array<std::int64_t, 3> low_{};   ///< x, y, z of the file
+  std::array<std::int32_t, 3> size_{};  ///< z is up
+  std::span<const std::uint8_t> data_, add_;
+  BlockCode code_ = BlockCode::kBytes;
 };
 
 }  // namespace
 
-/// True for a compound of the names that such files begin with, unpacked.
+/// True for a compound named Schematic, or a nameless one whose first tag has a name, unpacked.
 bool looks_like_schematic(std::span<const std::uint8_t> bytes) {
   const std::string_view text = SharedBytes{bytes, nullptr}.text();
   constexpr std::string_view kNamed("\x0A\x00\x09Schematic", 12);
-  // Version 3: a nameless compound around it.
-  constexpr std::string_view kNested("\x0A\x00\x00\x0A\x00\x09Schematic", 15);
-  return text.starts_with(kNamed) || text.starts_with(kNested);
+  constexpr std::string_view kNameless("\x0A\x00\x00", 3);
+  return text.starts_with(kNamed) || (text.starts_with(kNameless) && text.size() > 6 && bytes[3] > 0 &&
+                                      bytes[3] <= static_cast<std::uint8_t>(NbtKind::kLongs) &&
+                                      bytes[4] == 0 && bytes[5] > 0 && bytes[6] > ' ');
 }
 
-/// Memory: 4 bytes a palette entry.
-/// @throws InputError  broken tags; a size that is missing, 0 or over `kGridSideLimit`; not as many blocks as
-///   the size says; a block that the palette does not have; nothing but air
+/// Memory: 4 bytes a palette entry, 80 a region.
+/// @throws InputError  broken tags; a size that is missing, 0 or over `kGridSideLimit`, of all regions together, too;
+///   not as many blocks as the size says; a block outside of it, or that the palette does not have; nothing but air
 Source read_schematic(const SharedBytes& file, const ReadOptions&, const Progress&) {
   return std::make_unique<SchematicGrid>(file);
 }
