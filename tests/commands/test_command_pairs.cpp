@@ -69,6 +69,7 @@ const std::multimap<std::string, std::string>& values() {
                                                              {"--json", "@t.json"},
                                                              {"--plot", "@t.svg"},
                                                              {"--frames", "1"},
+                                                             {"--frames", "0:1"},
                                                              {"--bounces", "2"},
                                                              {"--camera-path", "@path.csv"},
                                                              {"--clip", "0,0,0,9,9,9"},
@@ -101,6 +102,7 @@ const std::multimap<std::string, std::string>& values() {
                                                              {"--rows", "2:4"},
                                                              {"--samples", "4"},
                                                              {"--samples", "auto"},
+                                                             {"--seconds", "0.1"},
                                                              {"--shade", "color"},
                                                              {"--shade", "depth"},
                                                              {"--size", "24x18"},
@@ -123,7 +125,7 @@ const std::multimap<std::string, std::string>& values() {
 // What only a look at the scene, the rays or the budget tells: status 1.
 bool depends_on_input(const std::string& text) {
   for (const char* phrase :
-       {"for point files", "are for .npy and .npz", "is for .vox files", "parallel to the direction of view",
+       {"for point files", "are for .npy and .npz", "are for .vox files", "parallel to the direction of view",
         "no room for", "does not take this ray", "more than", "budget", "--memory", "there is no terminal",
         "the terminal cannot show", "pixels differ", "does not take the rays"}) {
     if (text.find(phrase) != std::string::npos) {
@@ -205,7 +207,9 @@ std::map<int, int> try_pairs(const TemporaryFolder& folder, const Command& comma
         add("--display", "none");
       }
       add("--bench", "2");
-      add("--frames", "1");
+      if (command.name != "render") {
+        add("--frames", "1");
+      }
       add("--steps", "2");
       add("--points", "1");
       add("--rounds", "1");

@@ -456,7 +456,7 @@ TEST_CASE("particles: wrong usage -> status 2 and a sentence that quotes what is
                                  {"--display", "hologram"},
                                  {"--eps", "0"},
                                  {"--fps", "0"},
-                                 {"-o", "frame.jpg"},
+                                 {"-o", "frame.tga"},
                                  {"--record", "a.mp4"},
                                  {"--input", ""},
                                  {"--min-size", "5", "--max-size", "4"}};

@@ -148,7 +148,7 @@ TEST_CASE("sim: wrong usage -> status 2 and a sentence that quotes what is wrong
   check_sim_refused({"--scale", "0"}, 2, {"\"0\""});
   check_sim_refused({"--frames", "0"}, 2, {"\"0\""});
   check_sim_refused({"--frames", "many"}, 2, {"\"many\""});
-  check_sim_refused({"--shot", "a.jpg"}, 2, {"\"a.jpg\"", ".png"});
+  check_sim_refused({"--shot", "a.tga"}, 2, {"\"a.tga\"", ".png"});
   check_sim_refused({"--shot", "-"}, 2, {"\"-\""});
   check_sim_refused({"--record", "a.mp4"}, 2, {"\"a.mp4\"", ".y4m"});
   check_sim_refused({kSimScene, "more"}, 2, {"\"more\""});

@@ -590,6 +590,17 @@ TEST_CASE("vox: --frame -> what its keys say, in a box that holds all frames") {
   CHECK(voxels_of(*at(scene, 4)) == Voxels{{0, 0, 0, 1}});
   CHECK(voxels_of(*at(scene, 6)) == Voxels{{10, 0, 0, 1}});
   CHECK(voxels_of(*at(scene, 7)) == Voxels{{11, 0, 0, 2}});
+  // All of it in one, each model once where it stands, whichever frame is taken.
+  const auto in_frames = [](const VoxelModel& model) {
+    Voxels voxels;
+    model.for_each_in_frames([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+      voxels.push_back({x, y, z, material});
+    });
+    return voxels;
+  };
+  CHECK(in_frames(*read(film)) == Voxels{{1, 0, 0, 1}, {2, 0, 0, 2}});
+  CHECK(in_frames(*read(scene)) == Voxels{{0, 0, 0, 1}, {10, 0, 0, 1}, {11, 0, 0, 2}});
+  CHECK(in_frames(*at(scene, 7)) == in_frames(*read(scene)));
   CHECK_THROWS_WITH_AS(at(scene, 8), "there is no frame 8; the file has frames 0 to 7", InputError);
   CHECK_THROWS_WITH_AS(at(file(kOneModel), 1), "there is no frame 1; the file has only frame 0", InputError);
   // Hidden layers stay hidden in every frame.

@@ -263,13 +263,13 @@ Option add_path_option(CLI::App& app, const std::string& name, const std::string
 }
 
 Option add_output_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                         std::string* path, bool (*takes)(const std::string& path), const char* endings,
-                         const std::string& help) {
+                         std::string* path, bool (*takes)(const std::string& path),
+                         const std::string& endings, const std::string& help) {
   return add_text_option(
       app, name, type_name,
       [=](const std::string& text) {
         *path = text;
-        return takes(text) ? std::string() : std::string("does not end in ") + endings;
+        return takes(text) ? std::string() : "does not end in " + endings;
       },
       help);
 }

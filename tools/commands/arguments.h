@@ -125,11 +125,10 @@ Option add_path_option(CLI::App& app, const std::string& name, const std::string
 
 /// The same of one whose name `takes` accepts, which is what ends in `endings`.
 Option add_output_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                         std::string* path, bool (*takes)(const std::string& path), const char* endings,
-                         const std::string& help);
+                         std::string* path, bool (*takes)(const std::string& path),
+                         const std::string& endings, const std::string& help);
 
-/// Those of pictures, and whether a name is one of moving pictures.
-inline constexpr const char* kPictureEndings = ".png, .ppm, .pgm or .pbm";
+/// Whether a name is one of moving pictures.
 bool names_y4m(const std::string& path);
 
 /// `name` is refused without `needed`.

@@ -128,6 +128,15 @@ class PathReader {
   CameraPath result_;
 };
 
+// Between the second and the third of four keys, at `t` of 0 .. 1.
+double on_spline(const std::array<double, 4>& keys, double t) {
+  const double squared = t * t;
+  const double cubed = squared * t;
+  return (keys[0] * (2 * squared - t - cubed) + keys[1] * (2 - 5 * squared + 3 * cubed) +
+          keys[2] * (t + 4 * squared - 3 * cubed) + keys[3] * (cubed - squared)) /
+         2;
+}
+
 }  // namespace
 
 const char* const kPathColumns =
@@ -137,6 +146,44 @@ const char* const kPathColumns =
 CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
   const FileBytes bytes = about(printable(path), [&] { return load_file(path, kMostPathBytes); });
   return PathReader(path, view).read(bytes.text());
+}
+
+CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames) {
+  const std::vector<PathCamera>& cameras = keys.cameras;
+  const std::size_t ways = cameras.size() - 1;
+  if (ways * static_cast<std::size_t>(frames) + 1 > kMostFilmFrames) {
+    throw OutputError(printable(path) + ": with --seconds this is a film of more than " +
+                      grouped(kMostFilmFrames) + " frames");
+  }
+  CameraPath result;
+  result.has_fov = keys.has_fov;
+  for (std::size_t way = 0; way < ways; ++way) {
+    const ViewWishes& from = cameras[way].view;
+    const ViewWishes& to = cameras[way + 1].view;
+    for (int frame = 0; frame < frames; ++frame) {
+      // Before the first key and behind the last one the way goes straight on.
+      const auto between = [&](const auto& value_of) {
+        const double a = value_of(from);
+        const double b = value_of(to);
+        return on_spline({way == 0 ? 2 * a - b : value_of(cameras[way - 1].view), a, b,
+                          way + 1 == ways ? 2 * b - a : value_of(cameras[way + 2].view)},
+                         static_cast<double>(frame) / frames);
+      };
+      PathCamera camera = cameras[way];
+      for (std::optional<Real3> ViewWishes::*const point :
+           {&ViewWishes::eye, &ViewWishes::target, &ViewWishes::up}) {
+        for (std::size_t axis = 0; from.*point && axis < 3; ++axis) {
+          (*(camera.view.*point))[axis] =
+              between([&](const ViewWishes& view) { return (*(view.*point))[axis]; });
+        }
+      }
+      camera.view.fov_degrees =
+          std::clamp(between([](const ViewWishes& view) { return view.fov_degrees; }), 1.0, 120.0);
+      result.cameras.push_back(camera);
+    }
+  }
+  result.cameras.push_back(cameras.back());
+  return result;
 }
 
 std::vector<Framing> frame_path(const std::string& path, const CameraPath& cameras, const SceneShape& shape) {

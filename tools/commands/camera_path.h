@@ -29,6 +29,11 @@ extern const char* const kPathColumns;
 /// that cannot be read.
 CameraPath read_camera_path(const std::string& path, const ViewWishes& view);
 
+/// So many frames from each camera of `keys` to the next: eye, target, up and angle go along Catmull-Rom splines, which
+/// pass through the keys at a speed that does not jump (E. Catmull, R. Rom, "A class of local interpolating splines",
+/// 1974), and a frame at the last one. Throws OutputError for more than kMostFilmFrames.
+CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames);
+
 /// A camera each, in the world of `shape`. Throws OutputError, which names the line of a camera that cannot be set.
 std::vector<Framing> frame_path(const std::string& path, const CameraPath& cameras, const SceneShape& shape);
 

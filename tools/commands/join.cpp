@@ -58,6 +58,7 @@ class Whole {
       const auto name = [](PartKind kind) {
         return kind == PartKind::kRows        ? "a picture"
                : kind == PartKind::kTurntable ? "a film by --turntable"
+               : kind == PartKind::kAnimation ? "a film by --frames"
                                               : "a film by --camera-path";
       };
       fail(std::string("it is a part of ") + name(other.kind) + ", not of " + name(one.kind));
@@ -165,12 +166,11 @@ void join_picture(const JoinCommand& command, const Whole& whole, OutputFile* fi
 // What kind of file these parts can become.
 void check_kind(const JoinCommand& command, const PartHeader& header) {
   const bool is_picture = header.kind == PartKind::kRows;
-  if (is_picture != image_kind(command.output).has_value()) {
+  if (is_picture ? is_film(command.output) : !is_film(command.output) && !is_sequence(command.output)) {
     refuse_usage("--output",
-                 in_quotes(command.output) + (is_picture ? " is no picture, of which these parts are: "
-                                                           ".png, .ppm, .pgm, .pbm"
-                                                         : " is no film, of which these parts are: .gif "
-                                                           "or .y4m"));
+                 in_quotes(command.output) +
+                     (is_picture ? std::string(" is no picture, of which these parts are: ") + kImageEndings
+                                 : std::string(" is no film, of which these parts are: ") + kFilmEndings));
   }
   const auto kind = image_kind(command.output);
   if (header.pixels == PartPixels::kRgba && kind != ImageKind::kPng) {
@@ -186,10 +186,11 @@ void check_kind(const JoinCommand& command, const PartHeader& header) {
 }
 
 void run(const JoinCommand& command) {
-  OutputSet outputs({command.output}, command.parts);
   const Whole whole(command.parts);
   check_kind(command, whole.header());
-  if (whole.header().kind == PartKind::kRows) {
+  const bool is_picture = whole.header().kind == PartKind::kRows;
+  OutputSet outputs({is_picture || !is_sequence(command.output) ? command.output : ""}, command.parts);
+  if (is_picture) {
     join_picture(command, whole, outputs[0]);
   } else {
     join_film(command, whole, outputs[0]);
@@ -210,10 +211,9 @@ void add_join(CLI::App& app) {
   add_output_option(
       *sub, "-o,--output", "FILE", &command->output,
       [](const std::string& text) { return image_kind(text) || is_film(text); },
-      ".ppm, .pgm, .pbm, .png, .gif or .y4m",
-      "the picture (.ppm, .pgm, .pbm, .png; - is a PPM on standard output) or film (.gif, .y4m), byte for "
-      "byte what "
-      "one process would have written")
+      std::string(".gif, .y4m, ") + kImageEndings,
+      std::string("the picture (") + kImageEndings + "; - is a PPM on standard output) or film (" +
+          kFilmEndings + "), byte for byte what one process would have written")
       .required();
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar on standard error");
   when_chosen(*sub, [command] { run(*command); });

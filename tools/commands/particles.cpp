@@ -284,7 +284,7 @@ void add_file_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
                   "write the collision field at the end as P4: 1 where a ball or a wall is");
   add_output_option(
       sub, "-o,--output", "FILE", &command->frame_path,
-      [](const std::string& text) { return image_kind(text).has_value(); }, kPictureEndings,
+      [](const std::string& text) { return image_kind(text).has_value(); }, kImageEndings,
       "write the last picture; - is standard output, as PPM");
   add_output_option(
       sub, "--record", "FILE.y4m", &command->recording_path, names_y4m, ".y4m",

@@ -18,6 +18,7 @@
 #include "output/output_set.h"
 #include "output/progress.h"
 #include "output/units.h"
+#include "scene/animation.h"
 #include "scene/framing.h"
 #include "scene/gpu_engine.h"
 #include "scene/lit_description.h"
@@ -49,14 +50,13 @@ void check_look(const RenderCommand& command) {
         "--structure, --engine, --cutoff, --max-depth and --board");
   }
   command.output.check(command.look.wishes.background.kind == BackgroundKind::kNone);
-  const bool is_turned = command.output.turntable != 0;
-  if (command.output.is_film() && (!look || !command.output.hits_path.empty() ||
-                                   !command.output.depth_path.empty() || (is_turned && command.view.eye))) {
-    refuse_usage(std::string(is_turned ? "--turntable shows the scene's own look from all sides"
-                                       : "--camera-path shows the scene's own look") +
-                 ", without --shade, --effects, --structure, --engine, --cutoff, --max-depth, --board, "
-                 "--eye, --hits and "
-                 "--depth-image");
+  if (command.output.is_film() &&
+      (!look || !command.output.hits_path.empty() || !command.output.depth_path.empty() ||
+       (command.output.turntable != 0 && command.view.eye))) {
+    refuse_usage(std::string(command.output.film_option()) +
+                 " shows the scene's own look, without --shade, --effects, --structure, --engine, --cutoff, "
+                 "--max-depth, --board, --hits and --depth-image" +
+                 (command.output.turntable != 0 ? ", and from all sides, without --eye" : ""));
   }
   if (command.look.wishes.background.kind == BackgroundKind::kNone && !command.output.rows &&
       image_kind(command.output.path) != ImageKind::kPng) {
@@ -174,7 +174,7 @@ Subject subject_of(const RenderCommand& command, const SceneSource& source, Buil
       !command.view.eye) {
     compact.emplace(source, BuildOptions{});
   }
-  const SceneShape shape = shape_of(compact ? *compact : *built);
+  const SceneShape shape = shape_of(source, compact ? *compact : *built);
   subject.framing = frame_scene(command.view, source, shape);
   subject.fine = command.quality.across == 1
                      ? subject.framing.camera
@@ -318,14 +318,17 @@ void run(const RenderCommand& given) {
   command.output.read_sizes(command.view, command.fov_given);
   command.engine.check_budget(command.scene.budget_bytes().has_value());
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
-  OutputSet outputs(
-      {command.output.path, command.output.hits_path, command.output.depth_path, command.scene.stats_path},
-      {command.scene.arguments.scene, command.output.camera_path});
+  OutputSet outputs({command.output.whole_path(), command.output.hits_path, command.output.depth_path,
+                     command.scene.stats_path},
+                    {command.scene.arguments.scene, command.output.camera_path});
   const ImageKind kind = command.output.kind(ImageKind::kPpm);
   // A board's picture is drawn as its display takes it.
   const PixelFormat format =
       command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
 
+  if (command.output.played) {
+    command.scene.arguments.frame = static_cast<std::uint32_t>(command.output.played->first);
+  }
   const auto source = command.scene.open();
   command.scene.build_threads = command.engine.threads;
   if (takes_look(command)) {
@@ -409,15 +412,7 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
       app, "--ground", {{"auto", std::nullopt}, {"on", true}, {"off", false}}, &command->look.wishes.ground,
       "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light")
       .default_str("auto");
-  add_whole_option(app, "--turntable", "N", 2, 1000, &command->output.turntable,
-                   "a film of N frames once around the scene, six seconds long");
-  add_path_option(
-      app, "--camera-path", "FILE.csv", &command->output.camera_path,
-      std::string("a film of a frame a line, 25 a second; a header line is allowed; ") + kPathColumns);
-  for (const char* const place : {"--eye", "--target", "--up", "--view", "--turn", "--tilt", "--turntable"}) {
-    exclude_each_other(app, "--camera-path", place);
-  }
-  command->output.add_parts(app);
+  command->output.add_films(app);
   add_flag(app, "--verbose", &command->look.verbose, "say on standard error what the scene's look came to");
 }
 
@@ -498,8 +493,9 @@ void add_render(CLI::App& app) {
   command->scene.add_to(*sub);
   add_path_option(
       *sub, "-o,--output", "FILE", &command->output.path,
-      "the picture, .ppm, .pgm, .pbm or .png by its ending; - is a PPM on standard output; with --turntable "
-      "or --camera-path a .gif or .y4m")
+      std::string("the picture, ") + kImageEndings +
+          " by its ending; - is a PPM on standard output; with --turntable, --camera-path or --frames a " +
+          kFilmEndings)
       .required();
   add_picture_view(*sub, &command->view);
   add_shade(*sub, &command->look.shade,

@@ -55,7 +55,7 @@ void finish(const RenderCommand& command, const Stats& stats, const std::string&
 
 /// Whether the scene's own look is drawn: nobody said how to shade, and nothing that was said forbids light.
 bool takes_look(const RenderCommand& command);
-/// Draws that: a picture, or a film with --turntable or --camera-path; or a part of one.
+/// Draws that: a picture, or a film; or a part of one.
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs);
 
 }  // namespace thimble::tools

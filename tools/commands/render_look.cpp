@@ -1,4 +1,4 @@
-// thimble render without a word on how: the scene's own look, as a picture or all around it as a film.
+// thimble render without a word on how: the scene's own look, as a picture or a film.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -23,14 +23,16 @@ constexpr std::int32_t kMostRowsAtOnce = 64;
 // A scene, and pictures of it in its own look.
 class LookStudio {
  public:
-  LookStudio(const RenderCommand& command, const SceneSource& source)
+  /// `first`: that of the film's first frame, where another is to look like it.
+  LookStudio(const RenderCommand& command, const SceneSource& source, const LookStudio* first = nullptr)
       : command_(command),
         source_(source),
         lighting_(command.effects.lighting(source.lighting())),
         wishes_(command.look.wishes),
         built_(build()),
-        shape_(shape_of(built_)),
-        facts_(facts_of(source, glowing(), shape_)) {}
+        shape_(first != nullptr ? first->shape_ : shape_of(source, built_)),
+        facts_(facts_of(source, glowing(), shape_)),
+        exposure_(first != nullptr ? first->exposure_ : 0) {}
 
   BuiltScene& built() { return built_; }
   const SceneShape& shape() const { return shape_; }
@@ -148,7 +150,7 @@ class LookStudio {
   Look look_;
   LookCanvas canvas_;
   std::unique_ptr<LitStreams> streams_;
-  std::uint32_t exposure_ = 0;
+  std::uint32_t exposure_;  // 0 before the first view
 };
 
 void print_look(const RenderCommand& command, const SceneSource& source, const LookStudio& studio) {
@@ -181,7 +183,8 @@ Stats stats_of(const RenderCommand& command, const SceneSource& source, LookStud
 
 // The part of a picture or of a film that is drawn, but for what it holds. The look and the exposure are those of the
 // first picture of the whole.
-PartHeader part_of(const SceneSource& source, LookStudio& studio, const std::vector<Framing>& framings) {
+PartHeader part_of(const SceneSource& source, LookStudio& studio, const std::vector<Framing>& framings,
+                   std::int32_t first_frame = 0) {
   PartHeader part;
   part.scene_crc32 = scene_crc32(source, studio.built());
   CrcSum camera;
@@ -191,6 +194,7 @@ PartHeader part_of(const SceneSource& source, LookStudio& studio, const std::vec
   part.camera_crc32 = camera.value();
   CrcSum options;
   add_look(studio.look(), studio.built().level(), &options);
+  options.add_all(first_frame);
   options.add_all(studio.exposure());
   part.options_crc32 = options.value();
   return part;
@@ -223,15 +227,25 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
 // A film's frames, each drawn on demand.
 class Filming {
  public:
-  Filming(LookStudio& studio, std::vector<Framing> framings, bool quiet)
-      : studio_(studio), framings_(std::move(framings)), bar_("filming", quiet) {
+  Filming(const RenderCommand& command, LookStudio& studio, std::vector<Framing> framings)
+      : command_(command),
+        studio_(studio),
+        framings_(std::move(framings)),
+        bar_("filming", command.scene.quiet) {
     studio_.look_from(framings_[0]);  // the exposure of all
   }
   const std::vector<Framing>& framings() const { return framings_; }
   const Image& draw(std::size_t number) {
-    studio_.look_from(framings_[number]);
     bar_.update(static_cast<double>(number) / static_cast<double>(framings_.size()));
-    last_ = studio_.paint({});
+    if (command_.output.played && number != 0) {
+      SceneArguments arguments = command_.scene.arguments;
+      *arguments.frame += static_cast<std::uint32_t>(number);
+      const auto source = open_scene(arguments);
+      LookStudio studio(command_, *source, &studio_);
+      paint(studio, number);
+    } else {
+      paint(studio_, number);
+    }
     return last_.image;
   }
   // The same for one that counts.
@@ -251,6 +265,12 @@ class Filming {
   }
 
  private:
+  void paint(LookStudio& studio, std::size_t number) {
+    studio.look_from(framings_[number]);
+    last_ = studio.paint({});
+  }
+
+  const RenderCommand& command_;
   LookStudio& studio_;
   std::vector<Framing> framings_;
   ProgressBar bar_;
@@ -274,16 +294,32 @@ void write_part(const RenderCommand& command, PartHeader header, Filming& filmin
   part.end();
 }
 
+// The camera of each frame.
+std::vector<Framing> film_framings(const RenderCommand& command, const SceneSource& source,
+                                   const SceneShape& shape) {
+  const RenderOutput& output = command.output;
+  if (!output.played) {
+    return output.turntable != 0 ? frame_turns(command.view, shape, output.turntable)
+                                 : frame_path(output.camera_path, output.cameras, shape);
+  }
+  const std::int64_t last = output.played->first + output.played->count - 1;
+  if (source.frames() == 1 || last >= std::int64_t{source.frames()}) {
+    throw InputError(
+        "there is no frame " + std::to_string(last) + " for --frames; " +
+        (source.frames() == 1 ? "it holds still" : "the last is " + std::to_string(source.frames() - 1)));
+  }
+  return std::vector<Framing>(static_cast<std::size_t>(output.played->count),
+                              frame_scene(command.view, source, shape));
+}
+
 void render_film(const RenderCommand& command, const SceneSource& source, LookStudio& studio,
                  OutputSet& outputs) {
-  Filming filming(studio,
-                  command.output.turntable != 0
-                      ? frame_turns(command.view, studio.shape(), command.output.turntable)
-                      : frame_path(command.output.camera_path, command.output.cameras, studio.shape()),
-                  command.scene.quiet);
+  Filming filming(command, studio, film_framings(command, source, studio.shape()));
   const std::string note = filming.framings().front().note;
   if (command.output.frames) {
-    write_part(command, part_of(source, studio, filming.framings()), filming, outputs[kPicture]);
+    write_part(command,
+               part_of(source, studio, filming.framings(), command.output.played.value_or(RowRange{}).first),
+               filming, outputs[kPicture]);
   } else {
     Film film(outputs[kPicture], command.output.path, command.output.film_kind(), filming.framings().size(),
               [&](std::size_t number) { return filming.draw(number); });

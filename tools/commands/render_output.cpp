@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@
 
 namespace thimble::tools {
 namespace {
+
+constexpr const char* kFilmOptions = "--turntable, --camera-path or --frames";
 
 // Whether a part of that name is drawn in one bit a pixel.
 bool is_mono_part(const std::string& output) {
@@ -42,11 +45,12 @@ void add_range(CLI::App& app, const std::string& name, std::optional<RowRange>* 
 
 void check_part(const RenderOutput& output, bool is_transparent) {
   if (output.rows && output.is_film()) {
-    refuse_usage("--rows is a part of a picture; of a film with --turntable or --camera-path take --part");
+    refuse_usage(std::string("--rows is a part of a picture; of a film with ") + output.film_option() +
+                 " take --part");
   }
   if (output.frames && !output.is_film()) {
-    refuse_usage(
-        "--part is a part of a film, which wants --turntable or --camera-path; of a picture take --rows");
+    refuse_usage(std::string("--part is a part of a film, which wants ") + kFilmOptions +
+                 "; of a picture take --rows");
   }
   if (!output.hits_path.empty() || !output.depth_path.empty()) {
     refuse_usage("--hits and --depth-image are of whole pictures, without --rows and --part");
@@ -66,15 +70,49 @@ void check_part(const RenderOutput& output, bool is_transparent) {
 
 }  // namespace
 
-void RenderOutput::add_parts(CLI::App& app) {
+void RenderOutput::add_films(CLI::App& app) {
+  add_whole_option(app, "--turntable", "N", 2, 1000, &turntable,
+                   "a film of N frames once around the scene, six seconds long");
+  add_path_option(
+      app, "--camera-path", "FILE.csv", &camera_path,
+      std::string("a film of a frame a line, 25 a second; a header line is allowed; ") + kPathColumns);
+  add_real_option(
+      app, "--seconds", "S", 0.04, 3600, [this](double given) { seconds = given; },
+      "with --camera-path: S seconds from each line to the next, on a smooth way through them all");
+  make_need(app, "--seconds", "--camera-path");
+  add_text_option(
+      app, "--frames", "A:B",
+      [this](const std::string& text) {
+        const std::size_t colon = std::min(text.find(':'), text.size());
+        const auto first = parse_whole(text.substr(0, colon), 0, INT32_MAX - 1);
+        const auto last = parse_whole(text.substr(std::min(colon + 1, text.size())), 0, INT32_MAX - 1);
+        const bool is_known = first && last && *first <= *last && *last - *first < kMostFilmFrames;
+        played.reset();
+        if (is_known) {
+          played = {static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*last - *first + 1)};
+        }
+        return is_known ? "" : "is not A:B, the first and the last of at most 100,000 frames";
+      },
+      "a film of the frames A to B of a .vox animation, counted from 0, ten a second");
+  for (const char* const place : {"--eye", "--target", "--up", "--view", "--turn", "--tilt", "--turntable"}) {
+    exclude_each_other(app, "--camera-path", place);
+  }
+  for (const char* const other : {"--frame", "--turntable", "--camera-path"}) {
+    exclude_each_other(app, "--frames", other);
+  }
   add_range(
       app, "--rows", &rows,
       "draw only COUNT rows of the picture from row FIRST on, counted from 0 at the top, and write them as a "
       "part for thimble join; name it F.part, and with --effects for a .pbm F.pbm.part");
-  add_range(
-      app, "--part", &frames,
-      "with --turntable or --camera-path: draw only COUNT frames from frame FIRST on, counted from 0, and "
-      "write them as a part for thimble join");
+  add_range(app, "--part", &frames,
+            std::string("with ") + kFilmOptions +
+                ": draw only COUNT frames of the film from its frame FIRST on, counted from 0, and write "
+                "them as a part "
+                "for thimble join");
+}
+
+std::string RenderOutput::whole_path() const {
+  return is_film() && is_sequence(path) ? "" : path;
 }
 
 ImageKind RenderOutput::kind(ImageKind of_rows) const {
@@ -91,11 +129,12 @@ void RenderOutput::check(bool is_transparent) const {
   }
   const bool named_film = tools::is_film(path);
   if (!named_film && !image_kind(path)) {
-    refuse_usage("--output", in_quotes(path) + " does not end in .ppm, .pgm, .pbm or .png");
+    refuse_usage("--output", in_quotes(path) + " does not end in " + kImageEndings +
+                                 ", as pictures do, nor in .gif or .y4m, as films");
   }
-  if (named_film != is_film()) {
-    refuse_usage(named_film ? "a .gif and a .y4m are films, which want --turntable or --camera-path"
-                            : "--turntable and --camera-path make a film: -o wants a .gif or .y4m");
+  if (named_film ? !is_film() : is_film() && !is_sequence(path)) {
+    refuse_usage(named_film ? std::string("a .gif and a .y4m are films, which want ") + kFilmOptions
+                            : std::string(film_option()) + " makes a film: -o wants a " + kFilmEndings);
   }
 }
 
@@ -111,8 +150,14 @@ void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
                                               : "its fov is the angle of --projection perspective");
     }
   }
+  if (seconds) {
+    const int rate = FilmTimes(PartKind::kCameraPath, 1).rate;
+    cameras = smoothed(camera_path, cameras, static_cast<int>(rate * *seconds + 0.5));
+  }
   if (frames) {
-    const std::int64_t all = turntable != 0 ? turntable : static_cast<std::int64_t>(cameras.cameras.size());
+    const std::int64_t all = turntable != 0 ? turntable
+                             : played       ? played->count
+                                            : static_cast<std::int64_t>(cameras.cameras.size());
     check_range("--part", *frames, all, "the film of " + std::to_string(all) + " frames");
   }
 }

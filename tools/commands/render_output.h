@@ -30,17 +30,27 @@ struct RenderOutput {
   std::string depth_path;
   int turntable = 0;               ///< frames of a film; 0: none
   std::string camera_path;         ///< a file of a film's cameras; empty: none
-  CameraPath cameras;              ///< what it holds, once it is read
+  std::optional<double> seconds;   ///< from one of them to the next; else each is a frame
+  CameraPath cameras;              ///< of the film's frames, once they are read
+  std::optional<RowRange> played;  ///< frames of an animated scene, which the film shows
   std::optional<RowRange> rows;    ///< a part of a picture
   std::optional<RowRange> frames;  ///< a part of a film
 
-  /// --rows and --part.
-  void add_parts(CLI::App& app);
-  bool is_film() const { return turntable != 0 || !camera_path.empty(); }
-  PartKind film_kind() const { return turntable != 0 ? PartKind::kTurntable : PartKind::kCameraPath; }
+  /// What makes a film, --rows and --part.
+  void add_films(CLI::App& app);
+  bool is_film() const { return turntable != 0 || !camera_path.empty() || played; }
+  PartKind film_kind() const {
+    return turntable != 0 ? PartKind::kTurntable : played ? PartKind::kAnimation : PartKind::kCameraPath;
+  }
+  /// The option that makes it one.
+  const char* film_option() const {
+    return turntable != 0 ? "--turntable" : played ? "--frames" : "--camera-path";
+  }
+  /// The one file that holds it all; empty for a picture a frame.
+  std::string whole_path() const;
   /// How the picture is kept: `of_rows` for a part of one, unless it is to be rows of a .pbm.
   ImageKind kind(ImageKind of_rows) const;
-  /// Ends the command as wrong usage where --output, --rows, --part, --turntable and --camera-path do not go together,
+  /// Ends the command as wrong usage where --output, --rows, --part and what makes a film do not go together,
   /// or with what is transparent.
   void check(bool is_transparent) const;
   /// Reads the cameras, and refuses rows and frames that there are not. Throws OutputError.

@@ -360,7 +360,7 @@ void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command)
       "pressed)");
   add_output_option(
       sub, "--shot", "FILE", &command->shot_path,
-      [](const std::string& text) { return image_kind(text) && text != "-"; }, kPictureEndings,
+      [](const std::string& text) { return image_kind(text) && text != "-"; }, kImageEndings,
       "write the last frame: the display's exact pixels, with 8 bits");
   add_path_option(
       sub, "--check", "REF", &command->check_path,

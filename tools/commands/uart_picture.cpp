@@ -68,7 +68,7 @@ void add_uart_picture(CLI::App& app) {
   add_argument(*sub, "scene", "LOG", &command->log, "the bytes that it sent").required();
   add_output_option(
       *sub, "-o,--output", "FILE", &command->output,
-      [](const std::string& text) { return image_kind(text).has_value(); }, kPictureEndings,
+      [](const std::string& text) { return image_kind(text).has_value(); }, kImageEndings,
       "the picture, .png, .ppm, .pgm or .pbm by its ending")
       .required();
   hide_command(*sub);

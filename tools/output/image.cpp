@@ -29,10 +29,10 @@ std::string ending_of(const std::string& path) {
 }  // namespace
 
 std::optional<ImageKind> image_kind(const std::string& path) {
-  constexpr std::array<std::string_view, 4> kEndings{".ppm", ".pgm", ".pbm",
-                                                     ".png"};  // in the order of `ImageKind`
-  const auto* const found =
-      std::find(kEndings.begin(), kEndings.end(), path == "-" ? ".ppm" : ending_of(path));
+  // In the order of `ImageKind`.
+  constexpr std::array<std::string_view, 5> kEndings{".ppm", ".pgm", ".pbm", ".png", ".jpg"};
+  const std::string ending = path == "-" ? ".ppm" : ending_of(path);
+  const auto* const found = std::find(kEndings.begin(), kEndings.end(), ending == ".jpeg" ? ".jpg" : ending);
   return found == kEndings.end() ? std::nullopt
                                  : std::optional(static_cast<ImageKind>(found - kEndings.begin()));
 }
@@ -102,6 +102,9 @@ void write_image(OutputFile* file, ImageKind kind, const Image& image) {
     case ImageKind::kPng:
       file->write(std::span<const unsigned char>(
           png_file(image.width_px, image.height_px, image.alpha.empty() ? 3 : 4, pixels)));
+      return;
+    case ImageKind::kJpeg:
+      file->write(std::span<const unsigned char>(jpeg_file(image.width_px, image.height_px, pixels)));
       return;
   }
   file->write(std::span<const unsigned char>(pixels));

@@ -1,5 +1,5 @@
 /// @file image.h
-/// Pictures as files: PPM (P6), PGM (P5), PBM (P4), PNG, and PFM for distances.
+/// Pictures as files: PPM (P6), PGM (P5), PBM (P4), PNG, JPEG, and PFM for distances.
 #ifndef THIMBLE_TOOLS_OUTPUT_IMAGE_H
 #define THIMBLE_TOOLS_OUTPUT_IMAGE_H
 
@@ -14,7 +14,10 @@ namespace thimble::tools {
 
 class OutputFile;
 
-enum class ImageKind : std::uint8_t { kPpm, kPgm, kPbm, kPng };
+enum class ImageKind : std::uint8_t { kPpm, kPgm, kPbm, kPng, kJpeg };
+
+/// Their endings, for errors and help.
+inline constexpr const char* kImageEndings = ".png, .jpg, .ppm, .pgm or .pbm";
 
 /// By the ending of `path`; `-` (standard output) is a PPM. Nothing for an ending that is not known.
 std::optional<ImageKind> image_kind(const std::string& path);
@@ -44,7 +47,7 @@ struct RowRange {
 /// stores that colour.
 Image converted(const Image& image, PixelFormat format);
 
-/// The pixel bytes as the file holds them (a PNG's before compression): the core's, except that a PBM has 1
+/// The pixel bytes as the file holds them (a PNG's and a JPEG's before compression): the core's, except that a PBM has 1
 /// for black.
 std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind);
 

@@ -57,7 +57,7 @@ HeaderBytes bytes_of(const PartHeader& header) {
 
 // What bytes with the right checksum say; false where no writer would say so.
 bool parse(const HeaderBytes& bytes, PartHeader* header) {
-  if (bytes[8] > static_cast<std::uint8_t>(PartKind::kCameraPath) ||
+  if (bytes[8] > static_cast<std::uint8_t>(PartKind::kAnimation) ||
       bytes[9] > static_cast<std::uint8_t>(PartPixels::kMono) || bytes[10] > 1 || bytes[11] != 0) {
     return false;
   }

@@ -5,7 +5,7 @@
 /// before it. Numbers are little-endian, of 32 bits but for the bytes 8 .. 11:
 ///
 ///    0  "thmPART1"
-///    8  kind: 0 rows of a picture, 1 frames of a turntable, 2 frames of a camera's path
+///    8  kind: 0 rows of a picture, 1 frames of a turntable, 2 frames of a camera's path, 3 of an animation
 ///    9  pixels: 0 r, g, b; 1 r, g, b and how much is covered; 2 a bit each, the leftmost the highest, 1 white
 ///   10  1: a .pbm of it would be dithered from finer shades than these
 ///   11  0
@@ -35,7 +35,7 @@ class OutputFile;
 /// Most frames of a film.
 inline constexpr std::uint32_t kMostFilmFrames = 100'000;
 
-enum class PartKind : std::uint8_t { kRows, kTurntable, kCameraPath };
+enum class PartKind : std::uint8_t { kRows, kTurntable, kCameraPath, kAnimation };
 enum class PartPixels : std::uint8_t { kRgb, kRgba, kMono };
 
 struct PartHeader {

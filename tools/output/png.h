@@ -1,5 +1,5 @@
 /// @file png.h
-/// Pictures as PNG (ISO/IEC 15948), 8 bits a channel.
+/// Pictures as PNG (ISO/IEC 15948), 8 bits a channel, and as JPEG (ISO/IEC 10918-1).
 #ifndef THIMBLE_TOOLS_OUTPUT_PNG_H
 #define THIMBLE_TOOLS_OUTPUT_PNG_H
 
@@ -13,6 +13,10 @@ namespace thimble::tools {
 /// alpha). Sides are 1 or more. Throws std::bad_alloc.
 std::vector<unsigned char> png_file(std::int32_t width_px, std::int32_t height_px, int channels,
                                     std::span<const std::uint8_t> pixels);
+
+/// The same for a baseline JPEG of 3 channels with a quality of 90 of 100, colours at half the resolution.
+std::vector<unsigned char> jpeg_file(std::int32_t width_px, std::int32_t height_px,
+                                     std::span<const std::uint8_t> pixels);
 
 }  // namespace thimble::tools
 

@@ -171,7 +171,8 @@ void check_beginning(std::string_view path, std::span<const std::uint8_t> first)
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress) {
   const ReaderRow& row = row_for(options.path, file.bytes);
   if (options.frame && row.read != read_vox && row.read != read_zip) {
-    throw InputError("--frame is for .vox files with frames, and this is a " + std::string(row.name));
+    throw InputError("--frame and --frames are for .vox files with frames, and this is a " +
+                     std::string(row.name));
   }
   if (options.as != ArrayAs::kByShape && row.read != read_npy && row.read != read_zip) {
     throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a " +

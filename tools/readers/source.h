@@ -70,6 +70,8 @@ class VoxelModel {
   virtual const Palette& palette() const = 0;
   /// Frames of the animation that this is one of; 1 where it is none.
   virtual std::uint32_t frames() const { return 1; }
+  /// As `for_each`, for what all its frames show, models that stand still once.
+  virtual void for_each_in_frames(const Visit& visit) const { for_each(visit); }
 };
 
 /// Voxels with whole-number positions and a colour of their own each: `.binvox`, `.qb`, `.schematic` ...

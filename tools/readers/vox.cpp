@@ -23,6 +23,7 @@
 #include <deque>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -62,6 +63,8 @@ struct Instance {
   std::array<std::int32_t, 3> offset{};
   std::array<std::uint8_t, 3> axis{};
   std::array<std::int8_t, 3> sign{};
+
+  friend auto operator<=>(const Instance&, const Instance&) = default;
 };
 
 /// Folds the model's pivot into the transform. The centre of voxel v lies at v + 1/2 - pivot; turned to the
@@ -82,11 +85,19 @@ class VoxFile final : public VoxelModel {
     ProgressMeter meter(progress, file_.bytes.size());
     read_chunks(meter);
     place_models();
-    move_to_origin();
+    set_size();
   }
 
-  void for_each(const Visit& visit) const override {
-    for (const Instance& instance : instances_) {
+  void for_each(const Visit& visit) const override { visit_placed(instances_, visit); }
+  void for_each_in_frames(const Visit& visit) const override { visit_placed(in_frames_, visit); }
+  std::array<std::int32_t, 3> size() const override { return size_; }
+  const Palette& palette() const override { return palette_; }
+  std::uint32_t frames() const override { return frames_; }
+
+ private:
+  template <class Instances>
+  void visit_placed(const Instances& instances, const Visit& visit) const {
+    for (const Instance& instance : instances) {
       const std::span<const std::uint8_t> voxels = models_[instance.model].voxels;
       for (std::size_t at = 0; at < voxels.size(); at += kVoxelBytes) {
         const std::uint8_t* voxel = voxels.data() + at;
@@ -94,17 +105,12 @@ class VoxFile final : public VoxelModel {
           continue;
         }
         const auto world = [&](std::size_t i) {
-          return instance.sign[i] * voxel[instance.axis[i]] + instance.offset[i];
+          return instance.sign[i] * voxel[instance.axis[i]] + instance.offset[i] - low_[i];
         };
         visit(world(0), world(1), world(2), voxel[3]);
       }
     }
   }
-  std::array<std::int32_t, 3> size() const override { return size_; }
-  const Palette& palette() const override { return palette_; }
-  std::uint32_t frames() const override { return frames_; }
-
- private:
   void read_chunks(ProgressMeter& meter);
   void read_size(ByteReader& chunk);
   void read_voxels(ByteReader& chunk, ProgressMeter& meter);
@@ -114,22 +120,24 @@ class VoxFile final : public VoxelModel {
   void place_models();
   void place_frames();
   void place_scene();
-  void add_box(const Instance& instance);
-  void move_to_origin();
+  void add_to_frames(const Instance& instance);
+  void set_size();
 
   SharedBytes file_;
   Palette palette_ = vox_default_palette();
   std::deque<std::vector<std::uint8_t>> unpacked_;  // voxels of models that were packed
   std::vector<Model> models_;
   std::vector<Instance> instances_;
+  std::set<Instance> in_frames_;  // those of all frames, each once
   std::array<std::int32_t, 3> size_{};
+  std::array<std::int32_t, 3> low_{};  // of all frames' boxes: what lies there is at 0,0,0
   std::uint32_t frames_ = 1;
 
   // Only while reading.
   VoxScene scene_;
   std::optional<std::uint32_t> frame_;
-  std::array<std::int32_t, 3> low_{};  // of all frames' boxes
   std::array<std::int32_t, 3> high_{};
+  std::uint64_t voxels_in_frames_ = 0;
   bool has_box_ = false;
   std::uint64_t unpacked_bytes_ = 0;  // of all packed models
   bool size_pending_ = false;         // a SIZE waits for its XYZI
@@ -327,7 +335,7 @@ void VoxFile::place_frames() {
     if (number == frame_.value_or(0)) {
       instances_.push_back(instance);
     }
-    add_box(instance);
+    add_to_frames(instance);
   }
 }
 
@@ -351,14 +359,14 @@ void VoxFile::place_scene() {
                            std::to_string(kVoxPlacedVoxelLimit) + " voxels");
         }
         instances_.push_back(make_instance(number, model, transform));
-        add_box(instances_.back());
+        add_to_frames(instances_.back());
       });
   const std::vector<std::int64_t>& keys = scene_.frames();
   if (keys.size() * visits <= kVoxAnimationLimit) {
     for (const std::int64_t key : keys) {
       scene_.place_models(key, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t) {
         if (keys.size() > 1 && number < models_.size()) {
-          add_box(make_instance(number, models_[number], transform));
+          add_to_frames(make_instance(number, models_[number], transform));
         }
       });
     }
@@ -369,10 +377,15 @@ void VoxFile::place_scene() {
 
 /// The boxes that the file declares count, not only what is solid in them, so that the voxels of a single
 /// model keep their indices.
-void VoxFile::add_box(const Instance& instance) {
+void VoxFile::add_to_frames(const Instance& instance) {
   const Model& model = models_[instance.model];
   if (model.empty) {
     return;
+  }
+  const std::uint64_t voxels = model.voxels.size() / kVoxelBytes;
+  if (in_frames_.size() < kVoxInstanceLimit && voxels <= kVoxPlacedVoxelLimit - voxels_in_frames_ &&
+      in_frames_.insert(instance).second) {
+    voxels_in_frames_ += voxels;
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int32_t a = instance.offset[i];
@@ -384,13 +397,10 @@ void VoxFile::add_box(const Instance& instance) {
   has_box_ = true;
 }
 
-void VoxFile::move_to_origin() {
+void VoxFile::set_size() {
   for (std::size_t i = 0; has_box_ && i < 3; ++i) {
     // At most 2^25 + 512 apart, by the limit on translations.
     size_[i] = high_[i] - low_[i] + 1;
-    for (Instance& instance : instances_) {
-      instance.offset[i] -= low_[i];
-    }
   }
 }
 
@@ -404,8 +414,8 @@ bool looks_like_vox(std::span<const std::uint8_t> bytes) {
 /// a placed model. Voxels come model by model in the scene graph's order (depth first, children as listed), each in the
 /// order of its XYZI chunk. A scene whose models are all hidden is read and holds no voxels.
 ///
-/// Of an animation of more than `kVoxAnimationLimit` nodes in all frames together, the lowest corner is that
-/// of the frame taken.
+/// Of an animation of more than `kVoxAnimationLimit` nodes in all frames together, the lowest corner, and what
+/// `for_each_in_frames` visits, is that of the frame taken; it visits as many models and voxels as a scene may place.
 ///
 /// @throws InputError  wrong magic or version; no model; a chunk, string or count that leaves its place; a
 ///   side over 256; a voxel outside its model; a scene graph without node 0, with an id used twice, a missing

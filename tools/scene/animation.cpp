@@ -1,11 +1,13 @@
 #include "scene/animation.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "host/packed_picture.h"
 #include "host/y4m.h"
 #include "output/gif.h"
 #include "output/output_file.h"
+#include "output/output_set.h"
 #include "scene/palette.h"
 
 namespace thimble::tools {
@@ -51,20 +53,60 @@ class GifColors {
   GifPalette colors_{};
 };
 
+namespace {
+
+// Where the number of a sequence's pictures stands in their names, and its least digits.
+struct NumberPlace {
+  std::size_t begin;
+  std::size_t length;
+  std::size_t digits;
+};
+
+std::optional<NumberPlace> number_place(std::string_view path) {
+  const std::size_t begin = path.find('%');
+  std::size_t end = begin + 1;
+  std::size_t digits = 0;
+  if (begin == std::string_view::npos || path.find('%', end) != std::string_view::npos) {
+    return std::nullopt;
+  }
+  if (end + 1 < path.size() && path[end] == '0' && path[end + 1] >= '1' && path[end + 1] <= '9') {
+    digits = static_cast<std::size_t>(path[end + 1] - '0');
+    end += 2;
+  }
+  return end < path.size() && path[end] == 'd' ? std::optional(NumberPlace{begin, end + 1 - begin, digits})
+                                               : std::nullopt;
+}
+
+std::string numbered(std::string path, std::size_t number) {
+  const NumberPlace place = number_place(path).value();
+  std::string text = std::to_string(number);
+  text.insert(0, place.digits - std::min(place.digits, text.size()), '0');
+  return path.replace(place.begin, place.length, text);
+}
+
+}  // namespace
+
+bool is_sequence(const std::string& path) {
+  return image_kind(path) && number_place(path);
+}
+
 bool is_film(std::string_view path) {
   return path.ends_with(".gif") || path.ends_with(".y4m");
 }
 
 FilmTimes::FilmTimes(PartKind kind, int frames) {
   constexpr int kTurnSeconds = 6;
-  constexpr int kPathRate = 25;
-  const bool is_path = kind == PartKind::kCameraPath;
-  hundredths = is_path ? 100 / kPathRate : std::clamp(100 * kTurnSeconds / frames, 2, 100);
-  rate = is_path ? kPathRate : std::clamp(frames / kTurnSeconds, 1, 60);
+  rate = kind == PartKind::kCameraPath  ? 25
+         : kind == PartKind::kAnimation ? 10
+                                        : std::clamp(frames / kTurnSeconds, 1, 60);
+  hundredths = kind == PartKind::kTurntable ? std::clamp(100 * kTurnSeconds / frames, 2, 100) : 100 / rate;
 }
 
-Film::Film(OutputFile* file, std::string_view path, PartKind kind, std::size_t frames, const Frame& frame)
-    : file_(file), times_(kind, static_cast<int>(frames)) {
+Film::Film(OutputFile* file, const std::string& path, PartKind kind, std::size_t frames, const Frame& frame)
+    : file_(file), path_(path), times_(kind, static_cast<int>(frames)) {
+  if (file_ == nullptr) {
+    return;
+  }
   Image first = frame(0);
   if (!path.ends_with(".gif")) {
     file_->write(host::y4m_header(first.width_px, first.height_px, false, times_.rate));
@@ -83,6 +125,13 @@ Film::Film(OutputFile* file, std::string_view path, PartKind kind, std::size_t f
 Film::~Film() = default;
 
 void Film::add(const Image& image) {
+  if (file_ == nullptr) {
+    const std::string path = numbered(path_, added_++);
+    OutputSet picture({path}, {});
+    write_picture(picture[0], path, image);
+    picture.commit();
+    return;
+  }
   file_->write(colors_ != nullptr
                    ? gif_frame(image.width_px, image.height_px, colors_->indices(image), times_.hundredths)
                    : host::y4m_color_frame({image.pixels.data(), image.width_px, image.height_px}));

@@ -1,11 +1,12 @@
 /// @file animation.h
-/// Films as files: pictures one after the other as a GIF of one palette, or as YUV4MPEG2.
+/// Films as files: pictures one after the other as a GIF of one palette, as YUV4MPEG2, or as a picture each.
 #ifndef THIMBLE_TOOLS_SCENE_ANIMATION_H
 #define THIMBLE_TOOLS_SCENE_ANIMATION_H
 
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,8 +20,13 @@ class GifColors;
 
 /// Whether `path` ends as films do: .gif or .y4m.
 bool is_film(std::string_view path);
+/// Whether it is one of a picture for each frame: frame_%03d.png, .jpg, .ppm ..., with one %d or %0Nd for its number.
+bool is_sequence(const std::string& path);
+/// What these two take, for errors and help.
+inline constexpr const char* kFilmEndings = ".gif, .y4m or a picture a frame, such as frame_%03d.png";
 
-/// A turntable takes about six seconds; along a path pass 25 frames a second.
+/// A turntable takes about six seconds; along a path pass 25 frames a second; an animation plays 10, as in the viewer,
+/// since no file says its speed.
 struct FilmTimes {
   FilmTimes(PartKind kind, int frames);
   int hundredths;  ///< of a second a frame, in a GIF
@@ -34,8 +40,8 @@ class Film {
   using Frame = std::function<Image(std::size_t number)>;
 
   /// Writes what stands in front of `frames` frames. The palette of a .gif comes from a few of them all over the
-  /// film, which are drawn here already.
-  Film(OutputFile* file, std::string_view path, PartKind kind, std::size_t frames, const Frame& frame);
+  /// film, which are drawn here already. Of a sequence `file` is null: each picture is there as soon as it is added.
+  Film(OutputFile* file, const std::string& path, PartKind kind, std::size_t frames, const Frame& frame);
   ~Film();
   void add(const Image& image);
   /// Writes what stands behind the last one. Committing is the caller's.
@@ -43,7 +49,9 @@ class Film {
 
  private:
   OutputFile* file_;
+  std::string path_;
   FilmTimes times_;
+  std::size_t added_ = 0;
   std::unique_ptr<GifColors> colors_;  // of a GIF
 };
 

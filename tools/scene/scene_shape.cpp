@@ -8,6 +8,7 @@
 
 #include "readers/oct.h"
 #include "scene/built_scene.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -151,6 +152,18 @@ SceneShape shape_of(const BuiltScene& built) {
   shape.level = built.level();
   shape.bounds = built.bounds();
   shape.corners = box_corners(shape.bounds);
+  return shape;
+}
+
+SceneShape shape_of(const SceneSource& source, const BuiltScene& built) {
+  if (source.in_frames() == nullptr) {
+    return shape_of(built);
+  }
+  BuildOptions options;
+  options.threads = built.threads();
+  const auto whole = std::make_shared<const BuiltScene>(*source.in_frames(), options);
+  SceneShape shape = shape_of(*whole);
+  shape.owner = whole;
   return shape;
 }
 

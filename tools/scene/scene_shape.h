@@ -3,6 +3,7 @@
 #ifndef THIMBLE_TOOLS_SCENE_SCENE_SHAPE_H
 #define THIMBLE_TOOLS_SCENE_SCENE_SHAPE_H
 
+#include <memory>
 #include <vector>
 
 #include "thimble/base/vec.h"
@@ -11,6 +12,7 @@
 namespace thimble::tools {
 
 class BuiltScene;
+class SceneSource;
 
 struct SceneShape {
   int level = 1;
@@ -20,7 +22,8 @@ struct SceneShape {
   std::vector<Vec3i> corners;
   /// Null where another structure was built.
   const CompactTree* tree = nullptr;
-  int threads = 1;  ///< that may look for a place
+  int threads = 1;                            ///< that may look for a place
+  std::shared_ptr<const BuiltScene> owner{};  ///< of `tree`, where it was built for the shape
 };
 
 /// One pass over the blocks. In worlds of more than 1,024 a side corners are rounded outwards, to a
@@ -28,6 +31,9 @@ struct SceneShape {
 /// The tree must live as long as the shape.
 SceneShape shape_of(const CompactTree& tree);
 SceneShape shape_of(const BuiltScene& built);
+/// The same for a frame of `source`: what all frames show is built once more in one, outside any budget, so that no
+/// frame is framed otherwise than another.
+SceneShape shape_of(const SceneSource& source, const BuiltScene& built);
 
 }  // namespace thimble::tools
 

@@ -85,6 +85,13 @@ std::unique_ptr<SceneSource> model_scene(std::unique_ptr<VoxelModel> read, std::
   facts.is_scalable = false;
   facts.palette = model->palette();
   const std::uint64_t voxels = facts.points;
+  if (facts.frames > 1) {
+    SourceFacts all = facts;
+    all.points = 0;
+    model->for_each_in_frames([&](auto, auto, auto, auto) { ++all.points; });
+    facts.in_frames = std::make_shared<SceneSource>(
+        std::move(all), [model](const VoxelSink& sink, const Progress&) { model->for_each_in_frames(sink); });
+  }
   return std::make_unique<SceneSource>(std::move(facts),
                                        [model, voxels](const VoxelSink& sink, const Progress& progress) {
                                          model->for_each(metered(sink, progress, voxels));
@@ -356,7 +363,7 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
       throw UsageError("--colors is for files, and this is a generator");
     }
     if (arguments.frame) {
-      throw UsageError("--frame is for .vox files with frames, and this is a generator");
+      throw UsageError("--frame and --frames are for .vox files with frames, and this is a generator");
     }
     if (arguments.depth) {
       spec->depth = *arguments.depth;

@@ -21,6 +21,8 @@
 
 namespace thimble::tools {
 
+class SceneSource;
+
 /// What a source says of itself before it streams: plain data, filled in by whoever makes the source.
 struct SourceFacts {
   std::string kind;           ///< for a person: "voxel model", "generator points", ...
@@ -42,6 +44,7 @@ struct SourceFacts {
   std::shared_ptr<const BakedFile> baked{};  ///< the baked scene that it is
   std::optional<LookNote> look_note{};       ///< what a baked scene keeps of the one that it was made from
   std::uint32_t frames = 1;                  ///< of its file; `SceneArguments::frame` takes one
+  std::shared_ptr<const SceneSource> in_frames{};  ///< where there are several: what all of them show, in one
   std::size_t placements = 0;  ///< models, boxes and balls of a .scene, those within it counted each time
 };
 
@@ -75,6 +78,8 @@ class SceneSource {
   const BakedScene* baked() const { return facts_.baked != nullptr ? &facts_.baked->scene : nullptr; }
   const std::optional<LookNote>& look_note() const { return facts_.look_note; }
   std::uint32_t frames() const { return facts_.frames; }
+  /// Null where it has one frame.
+  const SceneSource* in_frames() const { return facts_.in_frames.get(); }
   std::size_t placements() const { return facts_.placements; }
   /// The files that it was read from: its own, and those that a .scene names, each once. None for a
   /// generator.

@@ -23,7 +23,7 @@ void check(Status status) {
 }  // namespace
 
 FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWishes& wishes)
-    : scene_(std::move(scene)), shape_(shape_of(scene_->tree())), lighting_(scene_->source->lighting()) {
+    : scene_(std::move(scene)), lighting_(scene_->source->lighting()) {
   lighting_.rest.bounces = wishes.bounces.value_or(lighting_.rest.bounces);
   lighting_.find_glow(scene_->tree());
   used_ = used_materials(scene_->tree());
@@ -52,7 +52,7 @@ void FinishedLook::choose(const LookWishes& wishes) {
     words_.insert(words_.end(), {"--shade", wishes.shade_word});
   }
   if (!wishes.effects && !wishes.shade) {
-    own_ = facts_of(*scene_->source, lighting_, shape_);
+    own_ = facts_of(*scene_->source, lighting_, scene_->shape);
     own_wishes_.across = wishes.across.value_or(0);
     own_wishes_.at_edges = wishes.at_edges;
     own_wishes_.smooth = wishes.smooth;
@@ -94,7 +94,7 @@ LitStreams* FinishedLook::streams_for(EffectSet effects, const LitScene& scene, 
 FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const ViewWishes& wishes)
     : look_(std::move(look)) {
   const OpenScene& scene = *look_->scene_;
-  framing_ = frame_scene(wishes, *scene.source, look_->shape_);
+  framing_ = frame_scene(wishes, *scene.source, scene.shape);
   shading_ = scene_shading(look_->mode_, {scene.built->palette().data(), scene.built->palette().size()},
                            camera(), scene.built->bounds());
   if (look_->own_) {
@@ -102,7 +102,7 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
     return;
   }
   fine_ = across() == 1 ? framing_.camera
-                        : frame_scene(finer(wishes, across()), *scene.source, look_->shape_).camera;
+                        : frame_scene(finer(wishes, across()), *scene.source, scene.shape).camera;
   quick_shading_ = shading_;
   if (look_->effects_ != Effect::kNone) {
     quick_shading_.mode = ShadeMode::kColor;
@@ -143,7 +143,7 @@ Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, NamedView 
   whole.span.reset();
   whole.side = side;
   whole.onward = {};
-  return frame_shape(whole, shape_of(scene.tree()));
+  return frame_shape(whole, scene.shape);
 }
 
 namespace {

@@ -25,7 +25,6 @@
 #include "scene/lit_description.h"
 #include "scene/lit_streams.h"
 #include "scene/look_picture.h"
-#include "scene/scene_shape.h"
 #include "thimble/picture/render.h"
 #include "viewer/open_scene.h"
 #include "wide/threads.h"
@@ -99,7 +98,6 @@ class FinishedLook {
   void choose(const LookWishes& wishes);
 
   std::shared_ptr<const OpenScene> scene_;
-  SceneShape shape_;
   std::optional<SceneFacts> own_;  // the scene's own look
   tools::LookWishes own_wishes_;
   LitDescription lighting_;

@@ -13,8 +13,11 @@ struct Cancelled {};
 
 }  // namespace
 
-SceneReading::SceneReading(const SceneArguments& arguments, int threads)
-    : thread_([this, arguments, threads] { run(arguments, threads); }) {}
+SceneReading::SceneReading(const SceneArguments& arguments, int threads,
+                           std::shared_ptr<const OpenScene> before)
+    : thread_([this, arguments, threads, before = std::move(before)] {
+        run(arguments, threads, before.get());
+      }) {}
 
 SceneReading::~SceneReading() {
   cancel();
@@ -23,7 +26,7 @@ SceneReading::~SceneReading() {
   }
 }
 
-void SceneReading::run(const SceneArguments& arguments, int threads) {
+void SceneReading::run(const SceneArguments& arguments, int threads, const OpenScene* before) {
   const auto progress = [this](double from) {
     return [this, from](double done) {
       progress_.store(from + done / 2);
@@ -39,6 +42,9 @@ void SceneReading::run(const SceneArguments& arguments, int threads) {
     options.threads = threads;
     options.band_bytes = 1;  // rows are drawn straight into the picture
     scene->built = std::make_unique<BuiltScene>(*scene->source, options, progress(0.5));
+    scene->shape = before != nullptr && before->shape.owner != nullptr
+                       ? before->shape
+                       : shape_of(*scene->source, *scene->built);
     scene_ = std::move(scene);
   } catch (const Cancelled&) {
     // Nobody waits for it.

@@ -12,6 +12,7 @@
 
 #include "scene/built_scene.h"
 #include "scene/scene_arguments.h"
+#include "scene/scene_shape.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools::viewer {
@@ -20,6 +21,7 @@ namespace thimble::tools::viewer {
 struct OpenScene {
   std::unique_ptr<SceneSource> source;
   std::unique_ptr<BuiltScene> built;
+  SceneShape shape;  ///< of an animation that of all its frames
 
   int level() const { return built->level(); }
   const CompactTree& tree() const { return built->compact(); }
@@ -29,7 +31,9 @@ struct OpenScene {
 /// Reads and builds on a thread of its own.
 class SceneReading {
  public:
-  SceneReading(const SceneArguments& arguments, int threads);
+  /// `before`: another frame of the same animation; null for any other scene.
+  SceneReading(const SceneArguments& arguments, int threads,
+               std::shared_ptr<const OpenScene> before = nullptr);
   /// Cancels, and waits until the thread has noticed.
   ~SceneReading();
   SceneReading(const SceneReading&) = delete;
@@ -44,7 +48,7 @@ class SceneReading {
   std::shared_ptr<const OpenScene> take();
 
  private:
-  void run(const SceneArguments& arguments, int threads);
+  void run(const SceneArguments& arguments, int threads, const OpenScene* before);
 
   std::atomic<bool> cancelled_{false};
   std::atomic<bool> done_{false};

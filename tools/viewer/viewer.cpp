@@ -397,7 +397,7 @@ void Viewer::play() {
   if (next_frame_ == nullptr) {
     SceneArguments next = options_.scene;
     next.frame = (next.frame.value_or(0) + 1) % scene_->source->frames();
-    next_frame_ = std::make_unique<SceneReading>(next, options_.threads);
+    next_frame_ = std::make_unique<SceneReading>(next, options_.threads, scene_);
     return;
   }
   if (!next_frame_->is_done() || time < next_frame_at_) {
