@@ -237,7 +237,7 @@ TEST_CASE("join: every truncation and every flipped bit of a part -> refused, th
         h->kind = PartKind::kCameraPath;
         h->pixels = PartPixels::kMono;
       },
-      [](PartHeader* h) { h->kind = static_cast<PartKind>(3); },
+      [](PartHeader* h) { h->kind = static_cast<PartKind>(4); },
       [](PartHeader* h) { h->pixels = static_cast<PartPixels>(3); },
   };
   for (const auto wrong : wrongs) {

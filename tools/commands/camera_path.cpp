@@ -151,12 +151,14 @@ CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
 CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames) {
   const std::vector<PathCamera>& cameras = keys.cameras;
   const std::size_t ways = cameras.size() - 1;
-  if (ways * static_cast<std::size_t>(frames) + 1 > kMostFilmFrames) {
+  const std::size_t all = ways * static_cast<std::size_t>(frames) + 1;
+  if (all > kMostFilmFrames) {
     throw OutputError(printable(path) + ": with --seconds this is a film of more than " +
                       grouped(kMostFilmFrames) + " frames");
   }
   CameraPath result;
   result.has_fov = keys.has_fov;
+  result.cameras.reserve(all);
   for (std::size_t way = 0; way < ways; ++way) {
     const ViewWishes& from = cameras[way].view;
     const ViewWishes& to = cameras[way + 1].view;

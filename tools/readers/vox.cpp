@@ -27,6 +27,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -64,7 +65,9 @@ struct Instance {
   std::array<std::uint8_t, 3> axis{};
   std::array<std::int8_t, 3> sign{};
 
-  friend auto operator<=>(const Instance&, const Instance&) = default;
+  friend bool operator<(const Instance& a, const Instance& b) {
+    return std::tie(a.model, a.offset, a.axis, a.sign) < std::tie(b.model, b.offset, b.axis, b.sign);
+  }
 };
 
 /// Folds the model's pivot into the transform. The centre of voxel v lies at v + 1/2 - pivot; turned to the
