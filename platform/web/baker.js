@@ -74,10 +74,8 @@ class Baker {
         !options.look);
       const at = x.baked();
       const memory = new Uint8Array(x.memory.buffer);
-      const facts = x.facts();
-      const end = memory.indexOf(0, facts);
-      const found = JSON.parse(new TextDecoder().decode(memory.slice(facts, end)));
-      return [x, {...found, baked: memory.slice(at, at + size)}];
+      const text = (from) => new TextDecoder().decode(memory.slice(from, memory.indexOf(0, from)));
+      return [x, {...JSON.parse(text(x.facts())), notes: text(x.notes()), baked: memory.slice(at, at + size)}];
     } catch (error) {
       if (error instanceof BakeError) throw error;
       throw new BakeError(/memory|out of bounds/.test(error.message) ?

@@ -195,9 +195,10 @@ async function start() {
 function sentenceOf(made, board) {
   if (made === null) return `${board.title}.`;
   const others = state.dropped === null || /\.scene(\.gz)?$/i.test(state.dropped.title) ? 0 :
-    state.dropped.files.filter((file) => !/\.(mtl|png|jpe?g|bin)$/i.test(file.name)).length - 1;
+    state.dropped.files.filter((file) => !BESIDE.test(file.name)).length - 1;
   let text = `${current().title}: ${number(made.voxels)} voxels in ${number(made.bytes)} bytes, depth ${made.level}`;
   if (made.added !== 0) text += `; ${number(made.added)} voxels of solid volume added by merging`;
+  if (made.notes !== '') text += `. Note: ${made.notes.replaceAll(`${current().scene}: `, '')}`;
   return `${text}. ${board.title}.${others > 0 ? ` Of ${others + 1} files this one is shown; drop one at a time.` : ''}`;
 }
 
@@ -519,6 +520,7 @@ function goFarther(notches) {
 // ---- files
 
 const MOST_BYTES = 256 * 2 ** 20;  // of a file, inflated
+const BESIDE = /\.(mtl|png|jpe?g|webp|ktx2?|tga|bmp|bin)$/i;  // what another file names
 let takes = 0;  // what was dropped since wins
 
 // The bytes of a file, inflated; an Error with a sentence where they cannot be had.
@@ -550,9 +552,9 @@ async function take(list) {
     }
     if (own !== takes) return;
   }
-  // A scene comes with its models, a mesh with its materials.
+  // A scene comes with its models, a mesh with its materials, pictures and numbers.
   const main = files.find((file) => /\.scene(\.gz)?$/i.test(file.name)) ??
-    files.find((file) => !/\.(mtl|png|jpe?g|bin)$/i.test(file.name)) ?? files[0];
+    files.find((file) => !BESIDE.test(file.name)) ?? files[0];
   // `./`: a file, whatever generator has that name.
   Object.assign(state, {dropped: {title: main.name, scene: `./${main.name}`, files}, ...AFRESH});
   if (state.wanted?.file === main.name) grant(state.wanted);

@@ -1,7 +1,9 @@
 // Small files of formats that readers inflate, made here.
 'use strict';
 const zlib = require('zlib');
+const {crc32} = require('../../platform/web/machine.js');
 
+const u32be = (value) => { const bytes = Buffer.alloc(4); bytes.writeUInt32BE(value); return bytes; };
 const u16be = (value) => Buffer.from([value >> 8, value & 255]);
 const u32 = (value) => { const bytes = Buffer.alloc(4); bytes.writeUInt32LE(value); return bytes; };
 const u16 = (value) => Buffer.from([value & 255, value >> 8]);
@@ -62,4 +64,38 @@ function schematic(side) {
     named(7, 'Data', array(blocks.map(() => 0))), Buffer.from([0])]))]));
 }
 
-module.exports = {npy, npz, mts, schematic, vox};
+// Twice as wide as high, of colours that are others everywhere; each row begins with a byte that names no filter.
+function png(width) {
+  const chunk = (kind, bytes) => {
+    const named = Buffer.concat([Buffer.from(kind), bytes]);
+    return Buffer.concat([u32be(bytes.length), named, u32be(parseInt(crc32(named), 16))]);
+  };
+  const row = (y) => [0, ...Array.from({length: width}, (_, x) => [255 - 8 * x, 16 * y, 8 * (x ^ y)]).flat()];
+  return Buffer.concat([Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'), chunk('IHDR', Buffer.concat([u32be(width), u32be(width / 2),
+    Buffer.from([8, 2, 0, 0, 0])])), chunk('IDAT', zlib.deflateSync(Buffer.from(Array.from({length: width / 2}, (_, y) => row(y)).flat()))),
+  chunk('IEND', Buffer.alloc(0))]);
+}
+// glTF: a tent of four triangles with a picture on it. Its numbers and its picture are `tent.bin` and `tent.png`, or inside.
+const TENT = [[0, 0, 0], [4, 0, 0], [4, 0, 4], [0, 0, 4], [2, 3, 2]];
+const NUMBERS = Buffer.concat([Buffer.from(new Float32Array([...TENT.flat(), ...TENT.flatMap(([x, , z]) => [x / 4, z / 4])]).buffer),
+  Buffer.from(new Uint16Array([0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4]).buffer)]);
+const PICTURE = png(32);
+function gltf(more = {}) {
+  const parts = [[0, 60], [60, 40], [100, 24], [124, PICTURE.length]];
+  return {asset: {version: '2.0'}, nodes: [{mesh: 0}], meshes: [{primitives: [{attributes: {POSITION: 0, TEXCOORD_0: 1}, indices: 2, material: 0}]}],
+    materials: [{pbrMetallicRoughness: {baseColorTexture: {index: 0}}}], textures: [{source: 0}], images: [{uri: 'sub/tent%2Epng'}],
+    buffers: [{uri: 'tent.bin', byteLength: NUMBERS.length}],
+    bufferViews: parts.map(([byteOffset, byteLength]) => ({buffer: 0, byteOffset, byteLength})),
+    accessors: [['VEC3', 5126, 5], ['VEC2', 5126, 5], ['SCALAR', 5123, 12]]
+      .map(([type, componentType, count], bufferView) => ({bufferView, type, componentType, count})), ...more};
+}
+function glb() {
+  const content = gltf({images: [{bufferView: 3, mimeType: 'image/png'}], buffers: [{byteLength: NUMBERS.length + PICTURE.length}]});
+  const chunk = (kind, bytes) => Buffer.concat([u32(bytes.length), Buffer.from(kind), bytes]);
+  const text = JSON.stringify(content);
+  const chunks = Buffer.concat([chunk('JSON', Buffer.from(text.padEnd(text.length + (-text.length & 3)))),
+    chunk('BIN\0', Buffer.concat([NUMBERS, PICTURE]))]);
+  return Buffer.concat([Buffer.from('glTF'), u32(2), u32(12 + chunks.length), chunks]);
+}
+
+module.exports = {npy, npz, mts, schematic, vox, glb, gltf, NUMBERS, PICTURE};

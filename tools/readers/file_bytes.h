@@ -83,9 +83,11 @@ SharedBytes share(FileBytes bytes);
 FileBytes load_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes,
                     const FirstLook& look = {});
 
-/// The same of a file that another file names: nobody chose to wait for a pipe or a device there.
-/// @throws InputError  it is no regular file
-FileBytes load_regular_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes);
+/// The same of a file that another file names, into `file`: a regular one, since nobody chose to wait for a pipe or a
+/// device there.
+/// @return what is wrong with it ("is empty"), or nothing: a scene is worth having without its pictures
+/// @throws ShortageError, OutputError  as `load_file`
+std::string load_beside(const std::string& path, std::uint64_t limit_bytes, FileBytes& file);
 
 /// What `inflate_bytes` takes: deflate with zlib's frame around it, with gzip's, or bare as in a .zip.
 enum class Deflated : std::uint8_t { kZlib, kGzip, kBare };

@@ -37,9 +37,6 @@ FormatLook looks_like_binvox, looks_like_gadget, looks_like_gltf, looks_like_gox
     looks_like_off, looks_like_pcd, looks_like_ply, looks_like_qbcl, looks_like_schematic, looks_like_stl,
     looks_like_vox, looks_like_vxl;
 
-/// Whether this program reads glTF: the page does without (tools/web/left_out.cpp).
-bool has_gltf_reader();
-
 }  // namespace thimble::tools
 
 #endif

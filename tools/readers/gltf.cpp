@@ -592,14 +592,12 @@ class Scene {
       return nullptr;
     }
     const auto& link = uri->get_ref<const std::string&>();
-    try {
-      return textures_.inside(link.starts_with("data:") ? key : link, file_.link(link, key).bytes);
-    } catch (const ShortageError&) {
-      throw;
-    } catch (const InputError& error) {
-      textures_.fault(error.what());  // shapes without their pictures are worth having
+    SharedBytes bytes;
+    if (std::string fault = file_.link(link, key, bytes); !fault.empty()) {
+      textures_.fault(std::move(fault));  // shapes without their pictures are worth having
       return nullptr;
     }
+    return textures_.inside(link.starts_with("data:") ? key : link, bytes.bytes);
   }
 
   void add_notes() {
@@ -628,9 +626,6 @@ class Scene {
 
 }  // namespace
 
-bool has_gltf_reader() {
-  return true;
-}
 bool looks_like_gltf(std::span<const std::uint8_t> bytes) {
   const std::string_view text = SharedBytes{bytes, nullptr}.text();
   if (text.starts_with("glTF")) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "readers/file_bytes.h"
@@ -71,15 +70,13 @@ json parse_json(std::string_view text) {
       throw InputError("the JSON is no object");
     }
     return parsed;
-  } catch (const json::parse_error& error) {
-    throw InputError("the JSON is broken at its byte " + std::to_string(error.byte));
-  } catch (const json::exception&) {
-    throw InputError("the JSON holds a number or a text that cannot be read");
+  } catch (const json::exception& error) {
+    throw InputError(json_fault(error));
   }
 }
 
-/// Bytes that were written as letters, six bits each.
-std::string decode_base64(std::string_view text, const std::string& place) {
+/// Bytes that were written as letters, six bits each; nothing where there are others.
+std::optional<std::string> decode_base64(std::string_view text) {
   std::string out;
   out.reserve(text.size() / 4 * 3);
   std::uint32_t bits = 0;
@@ -95,7 +92,7 @@ std::string decode_base64(std::string_view text, const std::string& place) {
                       : c == '/' || c == '_' ? 63
                                              : -1;
     if (value < 0) {
-      throw InputError(place + ": its link holds something else than base64");
+      return std::nullopt;
     }
     bits = bits << 6 | static_cast<std::uint32_t>(value);
     count += 6;
@@ -127,7 +124,31 @@ std::string decode_percent(const std::string& uri) {
   return out;
 }
 
+/// Where a link leads from the file's folder, without `..`; nothing where that is not below it.
+std::optional<std::string> place_below(std::string_view link) {
+  std::string place;
+  bool is_below = !link.starts_with('/') && link.find("://") == std::string_view::npos &&
+                  link.find('\0') == std::string_view::npos;
+  while (is_below && !link.empty()) {
+    const std::string_view part = link.substr(0, link.find('/'));
+    link.remove_prefix(std::min(part.size() + 1, link.size()));
+    if (part == "..") {
+      is_below = !place.empty();
+      place.resize(is_below ? place.rfind('/') : 0);
+    } else if (!part.empty() && part != ".") {
+      place.append("/").append(part);
+    }
+  }
+  return is_below && !place.empty() ? std::optional(place.substr(1)) : std::nullopt;
+}
+
 }  // namespace
+
+std::string json_fault(const json::exception& error) {
+  const auto* const broken = dynamic_cast<const json::parse_error*>(&error);
+  return broken != nullptr ? "the JSON is broken at its byte " + std::to_string(broken->byte)
+                           : "the JSON holds a number or a text that cannot be read";
+}
 
 const json* gltf_member(const json& object, const char* name) {
   if (!object.is_object()) {
@@ -254,39 +275,38 @@ const json& GltfFile::entry(const char* name, std::uint64_t i) const {
   return found;
 }
 
-SharedBytes GltfFile::link(const std::string& uri, const std::string& place) {
+std::string GltfFile::link(const std::string& uri, const std::string& place, SharedBytes& bytes) {
   if (uri.starts_with("data:")) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string::npos || uri.substr(0, comma).find(";base64") == std::string::npos) {
-      throw InputError(place + ": its data link is not base64");
+      return place + ": its data link is not base64";
     }
-    SharedBytes bytes = SharedBytes::own(decode_base64(std::string_view(uri).substr(comma + 1), place));
+    std::optional<std::string> decoded = decode_base64(std::string_view(uri).substr(comma + 1));
+    if (!decoded) {
+      return place + ": its link holds something else than base64";
+    }
+    bytes = SharedBytes::own(std::move(*decoded));
     bytes_read_ += bytes.bytes.size();
-    return bytes;
+    return {};
   }
-  const std::filesystem::path relative = std::filesystem::path(decode_percent(uri)).lexically_normal();
-  bool leaves = relative.empty() || relative.is_absolute() || uri.find("://") != std::string::npos ||
-                path_.empty() || uri.find('\0') != std::string::npos;
-  for (const std::filesystem::path& part : relative) {
-    leaves = leaves || part == "..";
+  const std::optional<std::string> relative = place_below(decode_percent(uri));
+  if (path_.empty() || !relative) {
+    return place + ": its link " + tools::quoted(uri) + " is no file in the folder of this one";
   }
-  if (leaves) {
-    throw InputError(place + ": its link " + tools::quoted(uri) + " is no file in the folder of this one");
-  }
-  const auto found = beside_.find(relative.string());
+  const auto found = beside_.find(*relative);
   if (found != beside_.end()) {
-    return found->second;
+    bytes = found->second;
+    return {};
   }
-  try {
-    SharedBytes bytes =
-        share(load_regular_file((std::filesystem::path(path_).parent_path() / relative).string()));
-    bytes_read_ += bytes.bytes.size();
-    return beside_.emplace(relative.string(), std::move(bytes)).first->second;
-  } catch (const ShortageError& error) {
-    throw ShortageError(place + ": the file " + tools::quoted(uri) + " beside this one " + error.what());
-  } catch (const InputError& error) {
-    throw InputError(place + ": the file " + tools::quoted(uri) + " beside this one " + error.what());
+  FileBytes file;
+  const std::string fault =
+      load_beside(path_.substr(0, path_.rfind('/') + 1) + *relative, kFileLimitBytes, file);
+  if (!fault.empty()) {
+    return place + ": the file " + tools::quoted(uri) + " beside this one " + fault;
   }
+  bytes = beside_.emplace(*relative, share(std::move(file))).first->second;
+  bytes_read_ += bytes.bytes.size();
+  return {};
 }
 
 std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
@@ -306,7 +326,11 @@ std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
   if (!uri->is_string()) {
     throw InputError(place + ": its link is no text");
   }
-  return buffers_.emplace(i, link(uri->get_ref<const std::string&>(), place)).first->second.bytes;
+  SharedBytes bytes;
+  if (const std::string fault = link(uri->get_ref<const std::string&>(), place, bytes); !fault.empty()) {
+    throw InputError(fault);
+  }
+  return buffers_.emplace(i, std::move(bytes)).first->second.bytes;
 }
 
 std::span<const std::uint8_t> GltfFile::buffer_view(std::uint64_t i) {

@@ -49,6 +49,9 @@ const nlohmann::json* gltf_extension(const nlohmann::json& object, const char* n
 /// What the list `name` holds; nothing where there is none.
 const nlohmann::json::array_t& gltf_list(const nlohmann::json& object, const char* name);
 
+/// The sentence of what the JSON library throws. The page has it where it cannot catch (tools/web/runtime.cpp).
+std::string json_fault(const nlohmann::json::exception& error);
+
 /// Every member function throws an InputError that names the place: "accessor 3: ...".
 class GltfFile {
  public:
@@ -62,8 +65,9 @@ class GltfFile {
 
   GltfAccessor accessor(std::uint64_t i);
   std::span<const std::uint8_t> buffer_view(std::uint64_t i);
-  /// The bytes behind a link: `data:` or a file beside this one, which is read once however often it is named.
-  SharedBytes link(const std::string& uri, const std::string& place);
+  /// Takes the bytes behind a link: `data:` or a file beside this one, which is read once however often it is named.
+  /// @return what is wrong with it, or nothing
+  std::string link(const std::string& uri, const std::string& place, SharedBytes& bytes);
   /// Gives accessor `i`, which has no bytes in the file, its values, `value(vector, component)`, in the type that it
   /// names. Whoever was filled stays as it is.
   /// @throws InputError  it has another count, or all values made take more than `most_bytes`

@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "output/file_place.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 
@@ -419,12 +420,19 @@ SharedBytes share(FileBytes bytes) {
   return {kept->bytes(), kept};
 }
 
-FileBytes load_regular_file(const std::string& path, std::uint64_t limit_bytes) {
+std::string load_beside(const std::string& path, std::uint64_t limit_bytes, FileBytes& file) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
-    throw InputError("is no regular file");
+    return "is no regular file";
   }
-  return load_file(path, limit_bytes);
+  try {
+    file = load_file(path, limit_bytes);
+    return {};
+  } catch (const ShortageError& error) {
+    throw ShortageError("the file " + tools::quoted(path) + " that it names " + error.what());
+  } catch (const InputError& error) {
+    return error.what();
+  }
 }
 
 FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {

@@ -127,17 +127,16 @@ void ObjMaterials::read_libraries(const std::string& path, const std::string& li
   const auto read = [&](const std::string& name) {
     std::string slashed = name;
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
-    try {
-      const FileBytes file = load_regular_file(
-          slashed.starts_with('/') ? slashed : path.substr(0, path.rfind('/') + 1) + slashed);
-      read_library(file.text(), slashed.substr(0, slashed.rfind('/') + 1), numbers_, described.materials);
-      described.is_read = true;
-      return std::string();
-    } catch (const ShortageError&) {
-      throw;
-    } catch (const InputError& error) {
-      return "the materials of " + tools::quoted(name) + " beside it are not drawn: it " + error.what();
+    FileBytes file;
+    const std::string fault =
+        load_beside(slashed.starts_with('/') ? slashed : path.substr(0, path.rfind('/') + 1) + slashed,
+                    kFileLimitBytes, file);
+    if (!fault.empty()) {
+      return "the materials of " + tools::quoted(name) + " beside it are not drawn: it " + fault;
     }
+    read_library(file.text(), slashed.substr(0, slashed.rfind('/') + 1), numbers_, described.materials);
+    described.is_read = true;
+    return std::string();
   };
   constexpr std::string_view kBetween = ".mtl ";
   std::string fault = read(line);

@@ -148,9 +148,6 @@ std::string reader_endings() {
   std::string out;
   for (const ReaderRow& row : kRows) {
     std::string_view endings = row.endings;
-    if (row.looks_like == looks_like_gltf && !has_gltf_reader()) {
-      continue;
-    }
     for (std::string_view ending = take_word(endings); !ending.empty(); ending = take_word(endings)) {
       out += (out.empty() ? "" : ", ") + std::string(ending);
     }

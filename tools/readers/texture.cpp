@@ -162,7 +162,9 @@ std::shared_ptr<const Texture> Textures::inside(const std::string& key, std::spa
   const auto [width, height] = sides;
   if (width < 1 || height < 1) {
     const std::string_view begins(reinterpret_cast<const char*>(encoded.data()), encoded.size());
-    miss(key, begins.starts_with("\xABKTX") ? "is KTX, which is not read" : "is no PNG, JPEG or WebP");
+    miss(key, begins.starts_with("\xABKTX") ? "is KTX, which is not read"
+              : begins.starts_with("RIFF")  ? "is WebP that is damaged, or that this program does not read"
+                                            : "is no PNG, JPEG or WebP");
     return texture;
   }
   encoded_bytes_ += encoded.size();
@@ -212,14 +214,12 @@ std::shared_ptr<const Texture> Textures::beside(const std::string& name, bool is
   const std::string full = slashed.starts_with('/') ? slashed : folder + slashed;
   std::string reason;
   for (const std::string& place : {full, folder + slashed.substr(slashed.rfind('/') + 1)}) {
-    try {
-      const FileBytes file = load_regular_file(place, kMostFileBytes);
+    FileBytes file;
+    const std::string fault = load_beside(place, kMostFileBytes, file);
+    if (fault.empty()) {
       return inside(name, file.bytes(), is_opacity);
-    } catch (const ShortageError&) {
-      throw;
-    } catch (const InputError& error) {
-      reason = reason.empty() ? error.what() : reason;
     }
+    reason = reason.empty() ? fault : reason;
   }
   known_[{name, is_opacity}] = nullptr;
   miss(name, reason);

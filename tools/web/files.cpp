@@ -41,6 +41,21 @@ void add_file(const std::string& name, std::span<const std::uint8_t> bytes) {
 
 // ---- readers/file_bytes.h
 
+std::string load_beside(const std::string& path, std::uint64_t limit_bytes, FileBytes& file) {
+  const auto found = files().find(file_name(path));
+  if (found == files().end()) {
+    return "is not here: drop it together with the file that names it";
+  }
+  if (found->second.empty()) {
+    return "is empty";
+  }
+  if (found->second.size() > limit_bytes) {
+    return "holds more than the limit of " + std::to_string(limit_bytes) + " bytes";
+  }
+  file = FileBytes::copy_of(found->second);
+  return {};
+}
+
 FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
   const std::string name = file_name(path);
   if (own_file.empty()) {
@@ -48,25 +63,14 @@ FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const Fi
   } else if (name != own_file) {
     model = name;
   }
-  const auto found = files().find(name);
-  if (found == files().end()) {
-    throw InputError("is not here: drop it together with the file that names it");
-  }
-  const std::span<const std::uint8_t> bytes = found->second;
-  if (bytes.empty()) {
-    throw InputError("is empty");
-  }
-  if (bytes.size() > limit_bytes) {
-    throw InputError("holds more than the limit of " + std::to_string(limit_bytes) + " bytes");
+  FileBytes file;
+  if (const std::string fault = load_beside(path, limit_bytes, file); !fault.empty()) {
+    throw InputError(fault);
   }
   if (look) {
-    look(bytes.first(std::min(bytes.size(), kFirstLookBytes)));
+    look(file.bytes().first(std::min(file.size(), kFirstLookBytes)));
   }
-  return FileBytes::copy_of(bytes);
-}
-
-FileBytes load_regular_file(const std::string& path, std::uint64_t limit_bytes) {
-  return load_file(path, limit_bytes);
+  return file;
 }
 
 class FileBuffer {

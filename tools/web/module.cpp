@@ -20,6 +20,7 @@ namespace {
 
 Baked baked;
 std::string facts;  // of what was baked, as JSON
+std::string notes;  // of what its file says and is not drawn
 
 std::string number_field(const char* name, std::uint64_t value) {
   return std::string(",\"") + name + "\":" + std::to_string(value);
@@ -35,6 +36,10 @@ void tell(const SceneSource& source, const platform::BoardFacts& board) {
           number_field("ram", drawing_ram_bytes(board, baked.effects)) +
           number_field("water", (baked.effects & Effect::kWater) != 0 ? 1 : 0) + ",\"kind\":\"" +
           source.kind() + "\"}";
+  notes.clear();
+  for (const std::string& note : source.notes()) {
+    notes += (notes.empty() ? "" : "; ") + note;
+  }
 }
 
 }  // namespace
@@ -102,5 +107,8 @@ extern "C" {
 }
 [[clang::export_name("facts")]] const char* thimble_facts() {
   return thimble::tools::facts.c_str();
+}
+[[clang::export_name("notes")]] const char* thimble_notes() {
+  return thimble::tools::notes.c_str();
 }
 }

@@ -12,6 +12,7 @@
 #include <string>
 #include <typeinfo>
 
+#include "readers/gltf_file.h"
 #include "web/files.h"
 
 // ---- exceptions
@@ -33,9 +34,11 @@ void __cxa_free_exception(void* thrown) noexcept {
 
 [[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, void (* /*destroy*/)(void*)) {
   // What these sources throw is derived from std::exception and begins with it.
-  const char* const what = std::strstr(type->name(), "Shortage") != nullptr
-                               ? "does not fit the memory that the browser gives"
-                               : static_cast<const std::exception*>(thrown)->what();
+  const auto is_of = [&](const char* name) { return std::strstr(type->name(), name) != nullptr; };
+  const std::string what =
+      is_of("Shortage")   ? "does not fit the memory that the browser gives"
+      : is_of("nlohmann") ? thimble::tools::json_fault(*static_cast<const nlohmann::json::exception*>(thrown))
+                          : static_cast<const std::exception*>(thrown)->what();
   const std::string sentence = thimble::tools::model_at_fault() + what;
   page_fail(sentence.data(), sentence.size());
 }
