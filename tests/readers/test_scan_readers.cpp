@@ -516,5 +516,11 @@ TEST_CASE(
   }
   CHECK(file.bytes_read() == json.size() + 2 + 1000);
   REQUIRE(mkfifo(folder.path("pipe").c_str(), 0600) == 0);
-  CHECK_THROWS_WITH_AS(file.link("pipe", "buffer 0"), doctest::Contains("is no regular file"), InputError);
+  SharedBytes bytes;
+  CHECK(file.link("pipe", "buffer 0", bytes).ends_with(" is no regular file"));
+  CHECK(file.link("none/.././a.bin", "buffer 0", bytes).empty());
+  for (const char* const outside :
+       {"", ".", "a/..", "../x/a.bin", "a/../../x", "/a.bin", "file://a.bin", "%2e%2e/a"}) {
+    CHECK(file.link(outside, "buffer 0", bytes).ends_with(" is no file in the folder of this one"));
+  }
 }

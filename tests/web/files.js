@@ -76,8 +76,8 @@ function png(width) {
   chunk('IEND', Buffer.alloc(0))]);
 }
 // glTF: a tent of four triangles with a picture on it. Its numbers and its picture are `tent.bin` and `tent.png`, or inside.
-const TENT = [[0, 0, 0], [4, 0, 0], [4, 0, 4], [0, 0, 4], [2, 3, 2]];
-const NUMBERS = Buffer.concat([Buffer.from(new Float32Array([...TENT.flat(), ...TENT.flatMap(([x, , z]) => [x / 4, z / 4])]).buffer),
+const TENT = [[0, 0, 0], [4, 0, 0], [4, 0, 0.5], [0, 0, 0.5], [2, 0.5, 0.25]];
+const NUMBERS = Buffer.concat([Buffer.from(new Float32Array([...TENT.flat(), ...TENT.flatMap(([x, , z]) => [x / 4, 2 * z])]).buffer),
   Buffer.from(new Uint16Array([0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4]).buffer)]);
 const PICTURE = png(32);
 function gltf(more = {}) {

@@ -5,6 +5,7 @@ const http = require('http');
 const path = require('path');
 const {Chromium} = require('./chromium.js');
 const {test, is, holds} = require('./check.js');
+const made = require('./files.js');
 
 // By what test_page.js drives the page with.
 async function judgeShown(browser, {work, began, choose, showsItsFrame, reloaded}) {
@@ -78,7 +79,23 @@ async function judgeShown(browser, {work, began, choose, showsItsFrame, reloaded
   });
 }
 // Names of files, and what is saved of a board.
-async function judgeFiles(browser, {work, began, sim}) {
+async function judgeFiles(browser, {work, began, sim, showsItsFrame}) {
+  await test('glTF with its picture inside, and its numbers without their picture', async () => {
+    const file = path.join(work, 'tent.glb');
+    fs.writeFileSync(file, made.glb());
+    await browser.eval(`restart({board: 'raspi0'})`);
+    await began();
+    await browser.drop([file]);
+    await began();
+    await showsItsFrame(file, 'raspi0');
+    for (const [name, bytes] of [['alone.gltf', JSON.stringify(made.gltf())], ['tent.bin', made.NUMBERS]]) fs.writeFileSync(path.join(work, name), bytes);
+    await browser.drop(['tent.bin', 'alone.gltf'].map((name) => path.join(work, name)));
+    await began();
+    const said = await browser.text('said');
+    holds(`"${said}" notes what is missing`, /^alone\.gltf: [\d,]+ voxels .*\. Note: image 0: the file 'sub\/tent%2Epng' .* drop it together/.test(said));
+    await browser.eval(`restart({scene: 'castle', dropped: null, board: 'lm3s6965evb'})`);
+    await began();
+  });
   await test('names keep their letters: in what is said, in the link, and of what is saved', async () => {
     const name = 'Бур\u00e4g \u5bff 1.vox';
     const file = path.join(work, name);

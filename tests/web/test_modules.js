@@ -579,7 +579,7 @@ async function mistakes() {
   for (const [what, more, wanted] of [['is there', [{name: 'tent.png', bytes: made.PICTURE}], ''],
     ['is missing', [], "image 0: the file 'sub/tent%2Epng' beside this one is not here: drop it together with the file that names it"],
     ['is WebP', [{name: 'tent.png', bytes: Buffer.from('RIFF\x10\0\0\0WEBPVP8L')}],
-      "the picture 'sub/tent%2Epng' is not drawn: it is WebP that is damaged, or that this program does not read"]]) {
+      "the picture 'sub/tent%2Epng' is not drawn: it is no PNG, JPEG or WebP that this program reads"]]) {
     await test(`glTF whose picture ${what} is drawn, with a note of what is not`, () => {
       const files = [{name: 'a.gltf', bytes: Buffer.from(JSON.stringify(made.gltf()))}, {name: 'tent.bin', bytes: made.NUMBERS}, ...more];
       const {voxels, notes} = new Baker(modules.bake, files).bake('a.gltf', boardOf('raspi0'));

@@ -469,19 +469,7 @@ async function drops() {
     holds('the baked bytes', (await text('said')).startsWith('dropped.oct: 18,235 voxels in 64,588 bytes'));
     await choose('lm3s6965evb');
   });
-  await test('glTF with its picture inside, and its numbers without their picture', async () => {
-    const file = path.join(work, 'tent.glb');
-    fs.writeFileSync(file, made.glb());
-    await browser.drop([file]);
-    await began();
-    await showsItsFrame(file, 'lm3s6965evb');
-    for (const [name, bytes] of [['alone.gltf', JSON.stringify(made.gltf())], ['tent.bin', made.NUMBERS]]) fs.writeFileSync(path.join(work, name), bytes);
-    await browser.drop(['tent.bin', 'alone.gltf'].map((name) => path.join(work, name)));
-    await began();
-    const said = await text('said');
-    holds(`"${said}" notes what is missing`, /^alone\.gltf: [\d,]+ voxels .*\. Note: image 0: the file 'sub\/tent%2Epng' .* drop it together/.test(said));
-  });
-  await judgeFiles(browser, {work, began, sim});
+  await judgeFiles(browser, {work, began, sim, showsItsFrame});
   await test('what does not fit is said, with what would', async () => {
     const file = path.join(work, 'many.xyz');
     fs.writeFileSync(file, Array.from({length: 90000}, (_, i) =>

@@ -163,8 +163,7 @@ std::shared_ptr<const Texture> Textures::inside(const std::string& key, std::spa
   if (width < 1 || height < 1) {
     const std::string_view begins(reinterpret_cast<const char*>(encoded.data()), encoded.size());
     miss(key, begins.starts_with("\xABKTX") ? "is KTX, which is not read"
-              : begins.starts_with("RIFF")  ? "is WebP that is damaged, or that this program does not read"
-                                            : "is no PNG, JPEG or WebP");
+                                            : "is no PNG, JPEG or WebP that this program reads");
     return texture;
   }
   encoded_bytes_ += encoded.size();
