@@ -42,6 +42,7 @@ TEST_CASE("palette: no colours -> everything is the default material") {
   CHECK(map.colors() == 0);
   CHECK(map.index({0, 0, 0}) == 0);
   CHECK(map.index({255, 255, 255}) == 0);
+  CHECK(map.error() == 0);
   CHECK(map.palette()[0].color == default_material().color);
   CHECK(map.palette()[255].color == default_material().color);
 }
@@ -75,6 +76,8 @@ TEST_CASE("palette: a bin of several colours -> their rounded average") {
   const PaletteMap map(histogram_of({{16, 16, 16}, {16, 16, 17}, {16, 23, 17}}));
   CHECK(map.colors() == 1);
   CHECK(map.palette()[1].color == Rgb{16, 18, 17});
+  const PaletteMap rounded(histogram_of({{0, 0, 0}, {4, 4, 4}}));
+  CHECK(rounded.error() == 2);
 }
 
 TEST_CASE("palette: 255 bins -> exact; 256 -> median cut within a bin's distance") {
@@ -106,7 +109,7 @@ TEST_CASE("palette: all 32,768 bins -> 255 entries, no colour far from its own")
   for (const Rgb& color : colors) {
     worst = std::max(worst, largest_difference(color, map.palette()[map.index(color)].color));
   }
-  CHECK(worst <= 32);  // 255 boxes in 32^3 bins: about five bins a side
+  CHECK(worst <= 40);  // 255 boxes in 32^3 bins: about five bins a side
 }
 
 TEST_CASE("palette: many colours in another order -> the same palette") {
@@ -128,7 +131,7 @@ TEST_CASE("palette: many colours in another order -> the same palette") {
   }
 }
 
-TEST_CASE("palette: median cut -> the same on every machine, ties included") {
+TEST_CASE("palette: more colours than entries -> the same on every machine, ties included") {
   // Colours on a coarse lattice: most cuts sort many equal values. The hash is FNV-1a, 32 bits.
   ColorHistogram histogram;
   for (std::uint32_t bin = 0; bin < kColorBins; bin += 3) {
@@ -141,7 +144,7 @@ TEST_CASE("palette: median cut -> the same on every machine, ties included") {
       hash = (hash ^ channel) * 16777619U;
     }
   }
-  CHECK(hash == 0x7188130AU);
+  CHECK(hash == 0x30E71F5CU);
 }
 
 TEST_CASE("palette: a rare colour among many shades -> the frequent ones get the entries") {
