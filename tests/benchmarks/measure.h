@@ -1,7 +1,5 @@
-/// @file measure.h
 /// What the programs that measure share: clocks, the median of many times, a main() that names its errors.
-#ifndef THIMBLE_TESTS_BENCHMARKS_MEASURE_H
-#define THIMBLE_TESTS_BENCHMARKS_MEASURE_H
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -51,5 +49,3 @@ int run_program(const char* name, const Run& run) {
 }
 
 }  // namespace thimble::benchmarks
-
-#endif

@@ -1,4 +1,3 @@
-/// @file textbook_octree.h
 /// What one would write after reading a book: an octree of nodes with eight pointers, traversed by recursion
 /// in double precision. The baseline that the core is measured against, so it is made as fast as that allows.
 ///
@@ -6,8 +5,7 @@
 /// Parametric Algorithm for Octree Traversal" (WSCG 2000): a node is given by the ray parameters at its six
 /// planes, a child's are those and the middles between them, and the order in which children are met follows
 /// from comparing them. Not exact: ties and near ties fall as rounding has it.
-#ifndef THIMBLE_TESTS_BENCHMARKS_TEXTBOOK_OCTREE_H
-#define THIMBLE_TESTS_BENCHMARKS_TEXTBOOK_OCTREE_H
+#pragma once
 
 #include <algorithm>
 #include <array>
@@ -161,5 +159,3 @@ class TextbookOctree {
 };
 
 }  // namespace thimble::benchmarks
-
-#endif

@@ -1,8 +1,6 @@
-/// @file c_world.h
 /// A baked scene with everything that one can hold, for the tests of the C face: several materials, palette,
 /// camera, brick map, name, light of every kind.
-#ifndef THIMBLE_TESTS_C_C_WORLD_H
-#define THIMBLE_TESTS_C_C_WORLD_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -140,5 +138,3 @@ class CWorld {
 };
 
 }  // namespace thimble::tests
-
-#endif

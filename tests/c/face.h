@@ -1,6 +1,5 @@
 /* What tests/c/face.c, which is C, gives to the tests in C++. */
-#ifndef THIMBLE_TESTS_C_FACE_H
-#define THIMBLE_TESTS_C_FACE_H
+#pragma once
 
 #ifdef __cplusplus
 extern "C" {
@@ -11,6 +10,4 @@ int thimble_face_in_c(void);
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif

@@ -2,8 +2,7 @@
 // (arduino.sh adds the binary numbers B0 .. B11111111). What they stand for does not matter here, only that
 // they are macros, and whether they take arguments: a header that is included after Arduino.h must not use
 // them as names.
-#ifndef THIMBLE_TESTS_CHECKS_ARDUINO_MACROS_H
-#define THIMBLE_TESTS_CHECKS_ARDUINO_MACROS_H
+#pragma once
 
 // Pins, levels, edges, voltages.
 #define HIGH 0x1
@@ -114,5 +113,3 @@
 // These are types there, not macros.
 typedef bool boolean;
 typedef unsigned char byte;
-
-#endif

@@ -1,9 +1,7 @@
-/// @file demo_table.h
 /// The golden frames of the demonstration: the scene `demo` on 128 x 64 pixels in 16 greys, seen from
 /// apps::view_at, frame i * kGoldenStep (platform/apps/demo_view.h). Tests on the host and of the firmware
 /// share it. A change of the scene, the view or the light is a change of this table.
-#ifndef THIMBLE_TESTS_GOLDEN_DEMO_TABLE_H
-#define THIMBLE_TESTS_GOLDEN_DEMO_TABLE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -22,5 +20,3 @@ inline constexpr uint32_t kDemoLitFrameCrc32[] = {
 };
 
 }  // namespace thimble::golden
-
-#endif

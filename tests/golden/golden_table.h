@@ -1,7 +1,5 @@
-/// @file golden_table.h
 /// CRC-32 of every golden frame (scenes.h). Written by `thimble_golden_tests --print`.
-#ifndef THIMBLE_TESTS_GOLDEN_GOLDEN_TABLE_H
-#define THIMBLE_TESTS_GOLDEN_GOLDEN_TABLE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -60,5 +58,3 @@ inline constexpr GoldenEntry kGoldenTable[] = {
 };
 
 }  // namespace thimble::golden
-
-#endif

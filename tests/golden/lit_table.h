@@ -1,8 +1,6 @@
-/// @file lit_table.h
 /// CRC-32s of the lit pictures of tests/portable/cases_lit.cpp, one on every machine. They change with the
 /// picture that the effects define, and only then.
-#ifndef THIMBLE_TESTS_GOLDEN_LIT_TABLE_H
-#define THIMBLE_TESTS_GOLDEN_LIT_TABLE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -22,5 +20,3 @@ inline constexpr LitEntry kLitTable[] = {
 };
 
 }  // namespace thimble::golden
-
-#endif

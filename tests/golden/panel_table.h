@@ -1,7 +1,5 @@
-/// @file panel_table.h
 /// CRC-32 of the golden frame of each format behind kRgb888 (tests/portable/cases_panels.cpp), one on every machine.
-#ifndef THIMBLE_TESTS_GOLDEN_PANEL_TABLE_H
-#define THIMBLE_TESTS_GOLDEN_PANEL_TABLE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -18,5 +16,3 @@ inline constexpr PanelEntry kPanelTable[] = {
 };
 
 }  // namespace thimble::golden
-
-#endif

@@ -1,9 +1,7 @@
-/// @file particles_table.h
 /// The golden states of the application `particles`: what it says as its second line on every board, `steps
 /// 400 crc XXXXXXXX`. Tests on the host and of the firmware share it. A change of how balls move is a change
 /// of this table.
-#ifndef THIMBLE_TESTS_GOLDEN_PARTICLES_TABLE_H
-#define THIMBLE_TESTS_GOLDEN_PARTICLES_TABLE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -27,5 +25,3 @@ inline constexpr ParticlesState kParticlesStates[] = {
 };
 
 }  // namespace thimble::golden
-
-#endif

@@ -1,12 +1,10 @@
-/// @file scenes.h
 /// The golden frames: small scenes, cameras and formats whose pictures have one CRC-32 on every machine.
 ///
 /// Everything here is integers and the caller's bytes, so that a microcontroller runs the very same frames
 /// that a desktop does; golden_table.h holds what they must give. A frame is one picture: a scene, a view, a
 /// shade mode and a pixel format. A variant is a way to draw it: a structure, an arithmetic width and a band
 /// height. All variants of a frame give the same bytes.
-#ifndef THIMBLE_TESTS_GOLDEN_SCENES_H
-#define THIMBLE_TESTS_GOLDEN_SCENES_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -112,5 +110,3 @@ Status frame_crc32(const Frame& frame, const World& world, const Camera& camera,
                    Width width, int32_t band_rows, Bytes band, uint32_t* crc, RenderCounts* counts);
 
 }  // namespace thimble::golden
-
-#endif

@@ -1,4 +1,3 @@
-/// @file odd_values.h
 /// Arguments that nobody means: ends of what a number can say, powers of two and their neighbours, bytes
 /// that are
 /// too few, damaged views. The tests of this folder call every public function of the core with them, under
@@ -9,8 +8,7 @@
 /// Deterministic: the seed of a test is in it. A run takes seconds; THIMBLE_MISUSE_SECONDS=3600 runs
 /// with other
 /// seeds for that long in each test.
-#ifndef THIMBLE_TESTS_MISUSE_ODD_VALUES_H
-#define THIMBLE_TESTS_MISUSE_ODD_VALUES_H
+#pragma once
 
 #include <algorithm>
 #include <chrono>
@@ -147,5 +145,3 @@ void misuse(std::uint64_t seed, int rounds, Round round) {
 }
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,8 +1,6 @@
-/// @file odd_worlds.h
 /// Trees, cameras, bands and rays for the tests of this folder: sound, empty, damaged, or of any numbers at
 /// all.
-#ifndef THIMBLE_TESTS_MISUSE_ODD_WORLDS_H
-#define THIMBLE_TESTS_MISUSE_ODD_WORLDS_H
+#pragma once
 
 #include <cstdint>
 
@@ -297,5 +295,3 @@ inline Band odd_band(OddValues& odd, const Camera& camera, ExactBytes* pixels) {
 }
 
 }  // namespace thimble::tests
-
-#endif

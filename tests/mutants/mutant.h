@@ -1,7 +1,5 @@
-/// @file mutant.h
 /// How changed places of src are switched on: included before everything else in the core that mutate.py writes.
-#ifndef THIMBLE_TESTS_MUTANTS_MUTANT_H
-#define THIMBLE_TESTS_MUTANTS_MUTANT_H
+#pragma once
 
 extern "C" {
 /// The number of the change that is on; 0 is none.
@@ -12,5 +10,3 @@ extern unsigned char thimble_mutant_reached[];
 
 /// Whether change `number` is on; notes that its place was reached.
 #define THIMBLE_MUTANT(number) (thimble_mutant_reached[number] = 1, thimble_mutant == (number))
-
-#endif

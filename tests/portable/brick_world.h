@@ -1,7 +1,5 @@
-/// @file brick_world.h
 /// What frames by bricks are compared in: a small world of boxes, cameras around and in it, and bands of its frames.
-#ifndef THIMBLE_TESTS_PORTABLE_BRICK_WORLD_H
-#define THIMBLE_TESTS_PORTABLE_BRICK_WORLD_H
+#pragma once
 
 #include "portable/case.h"
 #include "thimble/tree/octree.h"
@@ -35,5 +33,3 @@ bool look(Check& check, int number, const Site& site = {});
 void set_band(Check& check, Bytes bytes, PixelFormat format, int32_t y, int32_t rows);
 
 }  // namespace thimble::portable::brick_world
-
-#endif

@@ -1,4 +1,3 @@
-/// @file case.h
 /// Test cases that run everywhere: on a desktop, in the simulator and on a board of 8 KiB.
 ///
 /// A case is a function that is handed a `Check`: the memory it may use, a few objects that are too large for
@@ -11,8 +10,7 @@
 ///
 /// A case's stack, what it calls included, is to fit in about 1,850 bytes on a Cortex-M0: a ray or a band
 /// takes most of that. So no structure of the core is a local variable of a function that traces or draws.
-#ifndef THIMBLE_TESTS_PORTABLE_CASE_H
-#define THIMBLE_TESTS_PORTABLE_CASE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -221,5 +219,3 @@ struct Random {
 };
 
 }  // namespace thimble::portable
-
-#endif

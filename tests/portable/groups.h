@@ -1,7 +1,5 @@
-/// @file groups.h
 /// All cases, topic by topic, in the order in which they are run.
-#ifndef THIMBLE_TESTS_PORTABLE_GROUPS_H
-#define THIMBLE_TESTS_PORTABLE_GROUPS_H
+#pragma once
 
 #include "portable/case.h"
 
@@ -60,5 +58,3 @@ inline constexpr const Group* kBrickGroups[] = {&kBrickGroup};
 inline constexpr const Group* kMapLightGroups[] = {&kMapLightGroup};
 
 }  // namespace thimble::portable
-
-#endif

@@ -1,9 +1,7 @@
-/// @file rays.h
 /// Rays whose answers were worked out by hand from the definition (ray.h), and the small scenes they are
 /// traced in. Plain data: every structure and width is held to them on every machine (cases_rays.cpp), and on
 /// a desktop the exact reference is (test_trace_cases.cpp).
-#ifndef THIMBLE_TESTS_PORTABLE_RAYS_H
-#define THIMBLE_TESTS_PORTABLE_RAYS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -51,5 +49,3 @@ inline constexpr int kRayCaseCount = 125;
 Span<const RayCase> ray_cases();
 
 }  // namespace thimble::portable
-
-#endif

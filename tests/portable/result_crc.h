@@ -1,7 +1,5 @@
-/// @file result_crc.h
 /// What the portable cases compute, as CRC-32s (runner.h). Written by `thimble_golden_tests --crc`.
-#ifndef THIMBLE_TESTS_PORTABLE_RESULT_CRC_H
-#define THIMBLE_TESTS_PORTABLE_RESULT_CRC_H
+#pragma once
 
 #include <stdint.h>
 
@@ -25,5 +23,3 @@ inline constexpr uint32_t kCommonBrickCrc32 = 0xB9A37F48;
 inline constexpr uint32_t kMapLightCrc32 = 0x72B3638C;
 
 }  // namespace thimble::portable
-
-#endif

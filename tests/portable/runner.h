@@ -1,7 +1,5 @@
-/// @file runner.h
 /// Runs cases and adds up what they gave; says nothing itself.
-#ifndef THIMBLE_TESTS_PORTABLE_RUNNER_H
-#define THIMBLE_TESTS_PORTABLE_RUNNER_H
+#pragma once
 
 #include "portable/groups.h"
 
@@ -49,5 +47,3 @@ constexpr uint32_t runner_bytes() {
 }
 
 }  // namespace thimble::portable
-
-#endif

@@ -1,8 +1,6 @@
-/// @file scene.h
 /// What the cases of several topics share: worlds of boxes in all three structures, and a ray traced in every
 /// way that takes it.
-#ifndef THIMBLE_TESTS_PORTABLE_SCENE_H
-#define THIMBLE_TESTS_PORTABLE_SCENE_H
+#pragma once
 
 #include "portable/case.h"
 #include "portable/rays.h"
@@ -48,5 +46,3 @@ constexpr Vec3Q8 point_q8(int32_t x, int32_t y, int32_t z) {
 }
 
 }  // namespace thimble::portable
-
-#endif

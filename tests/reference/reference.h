@@ -1,4 +1,3 @@
-/// @file reference.h
 /// The exact reference: what a ray hits, worked out the plain way, to judge every engine by. It shares no
 /// code with the core and includes none of its headers.
 ///
@@ -24,8 +23,7 @@
 ///
 /// None of them rounds, and none of them uses floating point (only `Hit::t` turns the exact answer into a
 /// double).
-#ifndef THIMBLE_TESTS_REFERENCE_REFERENCE_H
-#define THIMBLE_TESTS_REFERENCE_REFERENCE_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -172,5 +170,3 @@ Hit walk(const BitGrid& grid, const Ray& ray, Statistics* statistics = nullptr,
          EmptyBlocks empty_blocks = EmptyBlocks::kSkip);
 
 }  // namespace thimble::reference
-
-#endif

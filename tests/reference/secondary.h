@@ -1,4 +1,3 @@
-/// @file secondary.h
 /// The exact reference for secondary rays: where they start, and the first voxel from a point of
 /// a ray on that is of some kind. Worked out the plain way, a voxel at a time, in exact fractions.
 ///
@@ -10,8 +9,7 @@
 ///  - From a point of a ray on, a voxel counts when the ray spends a positive length in it after that point.
 ///  Such
 ///    voxels are disjoint in t, so one comes first.
-#ifndef THIMBLE_TESTS_REFERENCE_SECONDARY_H
-#define THIMBLE_TESTS_REFERENCE_SECONDARY_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -43,5 +41,3 @@ Hit first_voxel(const Ray& ray, const Time& from, const std::function<bool(const
                 const std::function<bool(const Voxel&)>& beyond);
 
 }  // namespace thimble::reference
-
-#endif

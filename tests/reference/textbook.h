@@ -1,11 +1,9 @@
-/// @file textbook.h
 /// Traversals as textbooks have them, in floating point with and without an epsilon: what the exact tracer is
 /// compared with. They are written plainly, to be right as far as their arithmetic lets them.
 ///
 /// Each takes the same quantised ray as the judges (reference.h) and normalises its direction, as renderers
 /// do. `Real` is float or double; each function's `epsilon` is in voxels, 0 for none.
-#ifndef THIMBLE_TESTS_REFERENCE_TEXTBOOK_H
-#define THIMBLE_TESTS_REFERENCE_TEXTBOOK_H
+#pragma once
 
 #include <vector>
 
@@ -57,5 +55,3 @@ template <class Real>
 TextbookHit octree_descent(const Pyramid& pyramid, const Ray& ray, Real epsilon);
 
 }  // namespace thimble::reference
-
-#endif

@@ -1,10 +1,8 @@
-/// @file allocation_trap.h
 /// Counts the calls of the global allocator (`operator new` and `operator delete`) between two points.
 ///
 /// That the core's objects do not know `malloc` either is read off their symbols elsewhere. One thread at a
 /// time.
-#ifndef THIMBLE_TESTS_SUPPORT_ALLOCATION_TRAP_H
-#define THIMBLE_TESTS_SUPPORT_ALLOCATION_TRAP_H
+#pragma once
 
 namespace thimble::tests {
 
@@ -14,5 +12,3 @@ void set_allocation_trap();
 int clear_allocation_trap();
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,8 +1,6 @@
-/// @file baked_damage.h
 /// What must hold for any bytes whatever that are handed over as a baked scene: used by the tests and by the
 /// fuzz target.
-#ifndef THIMBLE_TESTS_SUPPORT_BAKED_DAMAGE_H
-#define THIMBLE_TESTS_SUPPORT_BAKED_DAMAGE_H
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -223,5 +221,3 @@ inline void repair_baked_checksums(Bytes bytes) {
 }
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,7 +1,5 @@
-/// @file baked_demo.h
 /// The demonstration's scene, baked as the boards get it.
-#ifndef THIMBLE_TESTS_SUPPORT_BAKED_DEMO_H
-#define THIMBLE_TESTS_SUPPORT_BAKED_DEMO_H
+#pragma once
 
 #include <optional>
 
@@ -26,5 +24,3 @@ inline const tools::Baked& demo_scene() {
 }
 
 }  // namespace thimble::tests
-
-#endif

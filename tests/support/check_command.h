@@ -1,7 +1,5 @@
-/// @file check_command.h
 /// What tests of the command say again and again.
-#ifndef THIMBLE_TESTS_SUPPORT_CHECK_COMMAND_H
-#define THIMBLE_TESTS_SUPPORT_CHECK_COMMAND_H
+#pragma once
 
 #include <doctest/doctest.h>
 
@@ -52,5 +50,3 @@ inline void check_refused(const Words& words, int status, const Words& named) {
 }
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,8 +1,6 @@
-/// @file chip_worlds.h
 /// Small worlds of every kind with their brick maps, and cameras that make ties: what frames on a chip are held to
 /// those of the tree with.
-#ifndef THIMBLE_TESTS_SUPPORT_CHIP_WORLDS_H
-#define THIMBLE_TESTS_SUPPORT_CHIP_WORLDS_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -53,5 +51,3 @@ bool takes_31_bits(const Camera& camera);
 Camera hard_chip_camera(std::mt19937_64& random, int level);
 
 }  // namespace thimble::tests
-
-#endif

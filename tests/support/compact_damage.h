@@ -1,8 +1,6 @@
-/// @file compact_damage.h
 /// What must hold for any bytes whatever that are handed over as a compact tree: used by the tests and by the
 /// fuzz target.
-#ifndef THIMBLE_TESTS_SUPPORT_COMPACT_DAMAGE_H
-#define THIMBLE_TESTS_SUPPORT_COMPACT_DAMAGE_H
+#pragma once
 
 #include <algorithm>
 #include <cstdint>
@@ -110,5 +108,3 @@ inline void repair_checksum(Bytes bytes) {
 }
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,6 +1,5 @@
 // How many cases of a kind a test takes, and from which seed.
-#ifndef THIMBLE_TESTS_SUPPORT_COUNTS_H
-#define THIMBLE_TESTS_SUPPORT_COUNTS_H
+#pragma once
 
 #include <cstdint>
 #include <cstdlib>
@@ -35,5 +34,3 @@ inline std::uint64_t seed_or(std::uint64_t otherwise) {
 }
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,8 +1,6 @@
-/// @file deadline.h
 /// Any-time frames (thimble/picture/anytime.h) under a deadline. The core has no clock, so the loop is here:
 /// a slice of visits, a look at the time, another slice.
-#ifndef THIMBLE_TESTS_SUPPORT_DEADLINE_H
-#define THIMBLE_TESTS_SUPPORT_DEADLINE_H
+#pragma once
 
 #include <chrono>
 #include <cstdint>
@@ -34,5 +32,3 @@ Status refine_for(AnytimeFrame* frame, const Structure& structure, std::chrono::
 }
 
 }  // namespace thimble::testing
-
-#endif

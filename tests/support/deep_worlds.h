@@ -1,7 +1,5 @@
-/// @file deep_worlds.h
 /// Worlds of level 9 and 10 with their brick maps, of every kind that a directory of two levels tells apart.
-#ifndef THIMBLE_TESTS_SUPPORT_DEEP_WORLDS_H
-#define THIMBLE_TESTS_SUPPORT_DEEP_WORLDS_H
+#pragma once
 
 #include <random>
 
@@ -26,5 +24,3 @@ ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level);
 Camera hard_deep_camera(std::mt19937_64& random, const CompactTree& tree);
 
 }  // namespace thimble::tests
-
-#endif

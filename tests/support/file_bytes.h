@@ -1,7 +1,5 @@
-/// @file file_bytes.h
 /// Bytes of files that tests put together by hand.
-#ifndef THIMBLE_TESTS_SUPPORT_FILE_BYTES_H
-#define THIMBLE_TESTS_SUPPORT_FILE_BYTES_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -23,5 +21,3 @@ inline constexpr int kGzip = 15 + 16;
 std::string deflated(const std::string& bytes, int window_bits);
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,6 +1,5 @@
 // The pixel formats that every build has.
-#ifndef THIMBLE_TESTS_SUPPORT_FORMATS_H
-#define THIMBLE_TESTS_SUPPORT_FORMATS_H
+#pragma once
 
 #include "thimble/picture/pixel.h"
 
@@ -10,5 +9,3 @@ inline constexpr PixelFormat kFormats[] = {PixelFormat::kMono1, PixelFormat::kGr
                                            PixelFormat::kRgb565, PixelFormat::kRgb888};
 
 }  // namespace thimble::testing
-
-#endif

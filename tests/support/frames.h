@@ -1,8 +1,6 @@
-/// @file frames.h
 /// One harness for all that draws what `render_band` draws: an engine, a kind of world and a kind of camera are a row each,
 /// and a test says which of them meet.
-#ifndef THIMBLE_TESTS_SUPPORT_FRAMES_H
-#define THIMBLE_TESTS_SUPPORT_FRAMES_H
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -121,5 +119,3 @@ Tallies check_frames(const Trial& trial);
 void check_golden_frames(const std::vector<Engine>& engines);
 
 }  // namespace thimble::tests
-
-#endif

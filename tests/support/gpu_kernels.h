@@ -1,7 +1,5 @@
-/// @file gpu_kernels.h
 /// The GPU's kernels, compiled as C++: the same text, run pixel by pixel without a GPU.
-#ifndef THIMBLE_TESTS_SUPPORT_GPU_KERNELS_H
-#define THIMBLE_TESTS_SUPPORT_GPU_KERNELS_H
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -34,5 +32,3 @@ std::vector<Hit> trace_by_kernel(const gpu::SceneWords& scene, Span<const Ray> r
                                  std::uint64_t* outside);
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,8 +1,6 @@
-/// @file hard_frames.h
 /// Solid worlds, and cameras whose rays run along the lattice, through its points, along its diagonals and from inside
 /// what is solid: what paths through a scene never show.
-#ifndef THIMBLE_TESTS_SUPPORT_HARD_FRAMES_H
-#define THIMBLE_TESTS_SUPPORT_HARD_FRAMES_H
+#pragma once
 
 #include <random>
 
@@ -18,5 +16,3 @@ WideScene solid_scene(std::mt19937_64& random, int level, wide::ListKind kind = 
 bool hard_camera(std::mt19937_64& random, const WideScene& scene, Camera* camera);
 
 }  // namespace thimble::tests
-
-#endif

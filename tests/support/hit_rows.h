@@ -1,8 +1,6 @@
-/// @file hit_rows.h
 /// The lines of `thimble trace` and `thimble render --hits`, read back by a parser of the tests' own and
 /// judged by the exact reference.
-#ifndef THIMBLE_TESTS_SUPPORT_HIT_ROWS_H
-#define THIMBLE_TESTS_SUPPORT_HIT_ROWS_H
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -39,5 +37,3 @@ std::string judge(const reference::BitGrid& grid, const HitRow& row);
 std::string as_xyz(const std::vector<reference::Voxel>& voxels);
 
 }  // namespace thimble::tests
-
-#endif

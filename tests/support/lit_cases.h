@@ -1,7 +1,5 @@
-/// @file lit_cases.h
 /// Scenes of any light, and the same lit picture by the core and by streams of rays.
-#ifndef THIMBLE_TESTS_SUPPORT_LIT_CASES_H
-#define THIMBLE_TESTS_SUPPORT_LIT_CASES_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -42,5 +40,3 @@ LitDrawn draw_lit_streams(const WideScene& scene, const wide::RayMap& map, const
                           const LitCase& lit, std::size_t workspace_bytes, int threads);
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,7 +1,5 @@
-/// @file lit_world.h
 /// Small worlds for the tests of lit pictures: boxes and voxels, a camera, a picture as a list of colours.
-#ifndef THIMBLE_TESTS_SUPPORT_LIT_WORLD_H
-#define THIMBLE_TESTS_SUPPORT_LIT_WORLD_H
+#pragma once
 
 #include <doctest/doctest.h>
 
@@ -117,5 +115,3 @@ inline void set_ambient(LitScene* scene, int brightness) {
 }
 
 }  // namespace thimble::testing
-
-#endif

@@ -1,7 +1,5 @@
-/// @file map_world.h
 /// A small world with a brick map, and its picture in both ways: by the map and by the tree.
-#ifndef THIMBLE_TESTS_SUPPORT_MAP_WORLD_H
-#define THIMBLE_TESTS_SUPPORT_MAP_WORLD_H
+#pragma once
 
 #include <doctest/doctest.h>
 
@@ -81,5 +79,3 @@ BothCounts draw_both(const MapWorld& world, PixelFormat format = PixelFormat::kR
 }
 
 }  // namespace thimble::testing
-
-#endif

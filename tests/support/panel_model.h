@@ -1,8 +1,6 @@
-/// @file panel_model.h
 /// Models of display controllers: they take what a driver sends, hold its memory, and
 /// give back what somebody before the glass sees. What a controller does not know, or forbids, is a fault.
-#ifndef THIMBLE_TESTS_SUPPORT_PANEL_MODEL_H
-#define THIMBLE_TESTS_SUPPORT_PANEL_MODEL_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -146,5 +144,3 @@ class ColorModel final : public PanelModel {
 };
 
 }  // namespace thimble::tests
-
-#endif

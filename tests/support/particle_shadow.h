@@ -1,7 +1,6 @@
 // A particle world together with a second picture of what must be in its field, kept cell by cell without the
 // core's masks: walls as they were drawn, and who covers which cell.
-#ifndef THIMBLE_TESTS_SUPPORT_PARTICLE_SHADOW_H
-#define THIMBLE_TESTS_SUPPORT_PARTICLE_SHADOW_H
+#pragma once
 
 #include <doctest/doctest.h>
 
@@ -226,5 +225,3 @@ class ShadowedWorld {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file pty.h
 /// A program on a terminal that the test holds the other end of.
-#ifndef THIMBLE_TESTS_SUPPORT_PTY_H
-#define THIMBLE_TESTS_SUPPORT_PTY_H
+#pragma once
 
 #include <sys/types.h>
 #include <termios.h>
@@ -51,5 +49,3 @@ class Pty {
 };
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,7 +1,5 @@
-/// @file random_up.h
 /// What is up in the pictures of random cameras.
-#ifndef THIMBLE_TESTS_SUPPORT_RANDOM_UP_H
-#define THIMBLE_TESTS_SUPPORT_RANDOM_UP_H
+#pragma once
 
 #include <random>
 
@@ -22,5 +20,3 @@ inline Vec3i random_up(std::mt19937_64& random) {
 }
 
 }  // namespace thimble::tests
-
-#endif

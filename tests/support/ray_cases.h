@@ -1,10 +1,8 @@
-/// @file ray_cases.h
 /// Random rays and random worlds, chosen to be hard: what every engine is held to the reference with.
 ///
 /// The numbers come from `std::mt19937_64` alone, not from the library's distributions, so that a seed
 /// printed by one compiler's build means the same rays in another's.
-#ifndef THIMBLE_TESTS_SUPPORT_RAY_CASES_H
-#define THIMBLE_TESTS_SUPPORT_RAY_CASES_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -118,5 +116,3 @@ struct World {
 World make_world(WorldKind kind, const reference::Voxel& size, std::mt19937_64& random);
 
 }  // namespace thimble::tests
-
-#endif

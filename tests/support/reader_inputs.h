@@ -1,7 +1,5 @@
-/// @file reader_inputs.h
 /// What the tests of the readers share: files of THIMBLE_DATA, literals as files, and readable outcomes.
-#ifndef THIMBLE_TESTS_SUPPORT_READER_INPUTS_H
-#define THIMBLE_TESTS_SUPPORT_READER_INPUTS_H
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -54,5 +52,3 @@ inline bool contains(std::string_view text, std::string_view part) {
 }
 
 }  // namespace thimble::tools::test
-
-#endif

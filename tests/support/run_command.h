@@ -1,7 +1,5 @@
-/// @file run_command.h
 /// Runs the `thimble` command as a user does, and a folder of its own for the files of one test.
-#ifndef THIMBLE_TESTS_SUPPORT_RUN_COMMAND_H
-#define THIMBLE_TESTS_SUPPORT_RUN_COMMAND_H
+#pragma once
 
 #include <cstdint>
 #include <filesystem>
@@ -87,5 +85,3 @@ std::vector<std::string> split(std::string_view line, char separator = ',');
 std::vector<std::string> lines_of(std::string_view text);
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,8 +1,6 @@
-/// @file scene_under_test.h
 /// One set of voxels in every structure that the core traces, and in the reference's grid; and the comparison
 /// of an engine's answer with the reference's.
-#ifndef THIMBLE_TESTS_SUPPORT_SCENE_UNDER_TEST_H
-#define THIMBLE_TESTS_SUPPORT_SCENE_UNDER_TEST_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -135,5 +133,3 @@ class SceneUnderTest {
 };
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,7 +1,5 @@
-/// @file simulated_run.h
 /// An application on a simulated board from its start to its end, under a hand that is written down.
-#ifndef THIMBLE_TESTS_SUPPORT_SIMULATED_RUN_H
-#define THIMBLE_TESTS_SUPPORT_SIMULATED_RUN_H
+#pragma once
 
 #include <doctest/doctest.h>
 
@@ -77,5 +75,3 @@ inline SimulatedRun run_simulated(const host::SimulationOptions& options, std::u
 }
 
 }  // namespace thimble::tests
-
-#endif

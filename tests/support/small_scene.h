@@ -1,8 +1,6 @@
-/// @file small_scene.h
 /// The least scene that has all that brick maps tell apart: for tests that change each bit of it, and as what the fuzz
 /// targets start from.
-#ifndef THIMBLE_TESTS_SUPPORT_SMALL_SCENE_H
-#define THIMBLE_TESTS_SUPPORT_SMALL_SCENE_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -106,5 +104,3 @@ inline std::vector<std::uint8_t> given_or_changed(ConstBytes input, const ConstB
 }
 
 }  // namespace thimble::tests
-
-#endif

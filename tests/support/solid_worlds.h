@@ -1,8 +1,6 @@
-/// @file solid_worlds.h
 /// Large worlds that are solid through, and a crowded one: what lists of surfaces are for. Each is a compact
 /// tree's bytes, the same at every call.
-#ifndef THIMBLE_TESTS_SUPPORT_SOLID_WORLDS_H
-#define THIMBLE_TESTS_SUPPORT_SOLID_WORLDS_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -25,5 +23,3 @@ std::vector<std::uint8_t> filled(const CompactTree& tree);
 std::vector<std::uint8_t> plummer_spheres(std::uint64_t points);
 
 }  // namespace thimble::tests
-
-#endif

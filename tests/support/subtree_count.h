@@ -1,7 +1,5 @@
-/// @file subtree_count.h
 /// The nodes of an octree counted by hand, without the core: every block is written as a text.
-#ifndef THIMBLE_TESTS_SUPPORT_SUBTREE_COUNT_H
-#define THIMBLE_TESTS_SUPPORT_SUBTREE_COUNT_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -102,5 +100,3 @@ inline CountedTrees count_trees(const reference::BitGrid& grid, int level) {
 }
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,8 +1,6 @@
-/// @file trial_worlds.h
 /// Worlds and cameras on which the wide renderer's orders are compared with each other and with the core:
 /// the generators' scenes, files, and worlds made to mislead a choice that goes by means.
-#ifndef THIMBLE_TESTS_SUPPORT_TRIAL_WORLDS_H
-#define THIMBLE_TESTS_SUPPORT_TRIAL_WORLDS_H
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -74,5 +72,3 @@ std::vector<std::string> trial_view_names();
 std::vector<TrialView> trial_views(const CompactTree& tree, std::int32_t width_px, std::int32_t height_px);
 
 }  // namespace thimble::tests
-
-#endif

@@ -1,7 +1,5 @@
-/// @file virtual_display.h
 /// An X server that shows nothing to anybody, for tests of the window, and what a test does to it.
-#ifndef THIMBLE_TESTS_SUPPORT_VIRTUAL_DISPLAY_H
-#define THIMBLE_TESTS_SUPPORT_VIRTUAL_DISPLAY_H
+#pragma once
 
 #include <sys/types.h>
 
@@ -42,5 +40,3 @@ class VirtualDisplay {
 };
 
 }  // namespace thimble::tests
-
-#endif

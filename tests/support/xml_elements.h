@@ -1,7 +1,5 @@
-/// @file xml_elements.h
 /// Whether a text is XML such as a plot writes it.
-#ifndef THIMBLE_TESTS_SUPPORT_XML_ELEMENTS_H
-#define THIMBLE_TESTS_SUPPORT_XML_ELEMENTS_H
+#pragma once
 
 #include <algorithm>
 #include <string>
@@ -41,5 +39,3 @@ inline int elements_of(const std::string& xml) {
 }
 
 }  // namespace thimble::tests
-
-#endif

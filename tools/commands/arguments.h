@@ -1,10 +1,8 @@
-/// @file arguments.h
 /// Command-line options whose errors are sentences, and help that fits a terminal. The subcommands add their
 /// options through these instead of CLI11's typed ones, which accept NaN and print limits with 300 digits.
 /// Only arguments.cpp, main.cpp and what walks all options (complete.cpp, manual.cpp) see CLI11 itself, whose
 /// headers take longer to compile and to lint than any subcommand does.
-#ifndef THIMBLE_TOOLS_COMMANDS_ARGUMENTS_H
-#define THIMBLE_TOOLS_COMMANDS_ARGUMENTS_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -173,5 +171,3 @@ auto about(const std::string& path, const Read& read) {
 }
 
 }  // namespace thimble::tools
-
-#endif

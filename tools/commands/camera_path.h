@@ -1,7 +1,5 @@
-/// @file camera_path.h
 /// --camera-path: the cameras of a film, a line each.
-#ifndef THIMBLE_TOOLS_COMMANDS_CAMERA_PATH_H
-#define THIMBLE_TOOLS_COMMANDS_CAMERA_PATH_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -38,5 +36,3 @@ CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames)
 std::vector<Framing> frame_path(const std::string& path, const CameraPath& cameras, const SceneShape& shape);
 
 }  // namespace thimble::tools
-
-#endif

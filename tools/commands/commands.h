@@ -1,7 +1,5 @@
-/// @file commands.h
 /// The subcommands: one file each, and one line here.
-#ifndef THIMBLE_TOOLS_COMMANDS_COMMANDS_H
-#define THIMBLE_TOOLS_COMMANDS_COMMANDS_H
+#pragma once
 
 #include <string>
 
@@ -55,5 +53,3 @@ inline void add_all_commands(CLI::App& app) {
 }
 
 }  // namespace thimble::tools
-
-#endif

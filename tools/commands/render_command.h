@@ -1,7 +1,5 @@
-/// @file render_command.h
 /// The options of `thimble render`, and the ways to draw it.
-#ifndef THIMBLE_TOOLS_COMMANDS_RENDER_COMMAND_H
-#define THIMBLE_TOOLS_COMMANDS_RENDER_COMMAND_H
+#pragma once
 
 #include <optional>
 #include <string>
@@ -59,5 +57,3 @@ bool takes_look(const RenderCommand& command);
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs);
 
 }  // namespace thimble::tools
-
-#endif

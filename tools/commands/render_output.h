@@ -1,7 +1,5 @@
-/// @file render_output.h
 /// What `thimble render` writes: a picture, a film, or with --rows and --part a part of one, for `thimble join`.
-#ifndef THIMBLE_TOOLS_COMMANDS_RENDER_OUTPUT_H
-#define THIMBLE_TOOLS_COMMANDS_RENDER_OUTPUT_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -95,5 +93,3 @@ void add_lighting(const LitDescription& lit, const UsedMaterials& used, EffectSe
 void add_look(const Look& look, int level, CrcSum* sum);
 
 }  // namespace thimble::tools
-
-#endif

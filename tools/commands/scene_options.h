@@ -1,7 +1,5 @@
-/// @file scene_options.h
 /// SCENE and what is built of it, as most subcommands take it.
-#ifndef THIMBLE_TOOLS_COMMANDS_SCENE_OPTIONS_H
-#define THIMBLE_TOOLS_COMMANDS_SCENE_OPTIONS_H
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -126,5 +124,3 @@ struct EngineOptions {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file sim_session.h
 /// One run of an application on a simulated board, with somebody watching or nobody.
-#ifndef THIMBLE_TOOLS_COMMANDS_SIM_SESSION_H
-#define THIMBLE_TOOLS_COMMANDS_SIM_SESSION_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -54,5 +52,3 @@ SessionResult run_session(const SessionOptions& options);
 std::string memory_text(const host::MemoryUse& use, const char* separator);
 
 }  // namespace thimble::tools
-
-#endif

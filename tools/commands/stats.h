@@ -1,7 +1,5 @@
-/// @file stats.h
 /// The counts, bytes and times of one run, for people and for programs.
-#ifndef THIMBLE_TOOLS_COMMANDS_STATS_H
-#define THIMBLE_TOOLS_COMMANDS_STATS_H
+#pragma once
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -87,5 +85,3 @@ class ReportFiles {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file view_options.h
 /// --size, --projection, --eye and the rest that decides how a scene is seen; scene/framing.h makes a camera
 /// of it.
-#ifndef THIMBLE_TOOLS_COMMANDS_VIEW_OPTIONS_H
-#define THIMBLE_TOOLS_COMMANDS_VIEW_OPTIONS_H
+#pragma once
 
 #include <string>
 
@@ -42,5 +40,3 @@ void add_quality(CLI::App& app, Quality* quality);
 void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given = nullptr);
 
 }  // namespace thimble::tools
-
-#endif

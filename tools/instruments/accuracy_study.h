@@ -1,8 +1,6 @@
-/// @file accuracy_study.h
 /// One view of a scene at every setting of the knobs: what each costs, and how far its picture is
 /// from the one with every knob at its best.
-#ifndef THIMBLE_TOOLS_INSTRUMENTS_ACCURACY_STUDY_H
-#define THIMBLE_TOOLS_INSTRUMENTS_ACCURACY_STUDY_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -176,5 +174,3 @@ std::string answer_for_ms(const AccuracyStudy& study, double ms);
 std::string answer_for_error(const AccuracyStudy& study, double rms);
 
 }  // namespace thimble::tools
-
-#endif

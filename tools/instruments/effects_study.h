@@ -1,11 +1,9 @@
-/// @file effects_study.h
 /// What each effect of a scene costs: the frame with it beside the frame without it.
 ///
 /// An effect's figures are those of the scene's whole set of effects less those of the set without it. Since
 /// shadows need direct light, direct light is judged between two frames without shadows. What a scene does
 /// not call for is not drawn with, and costs 0.
-#ifndef THIMBLE_TOOLS_INSTRUMENTS_EFFECTS_STUDY_H
-#define THIMBLE_TOOLS_INSTRUMENTS_EFFECTS_STUDY_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -62,5 +60,3 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
                            const Progress& progress);
 
 }  // namespace thimble::tools
-
-#endif

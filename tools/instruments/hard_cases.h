@@ -1,8 +1,6 @@
-/// @file hard_cases.h
 /// Near-degenerate rays through this tracer and through textbook traversals in floating point, all judged by
 /// the exact reference: how many does each get wrong?
-#ifndef THIMBLE_TOOLS_INSTRUMENTS_HARD_CASES_H
-#define THIMBLE_TOOLS_INSTRUMENTS_HARD_CASES_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -61,5 +59,3 @@ std::string hard_case_tables(const HardCaseStudy& study);
 std::string hard_case_fault(const HardCaseStudy& study);
 
 }  // namespace thimble::tools
-
-#endif

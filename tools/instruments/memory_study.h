@@ -1,7 +1,5 @@
-/// @file memory_study.h
 /// What a scene takes at every depth in every structure, and what a smaller depth does to its picture.
-#ifndef THIMBLE_TOOLS_INSTRUMENTS_MEMORY_STUDY_H
-#define THIMBLE_TOOLS_INSTRUMENTS_MEMORY_STUDY_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -92,5 +90,3 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
                          const Progress& progress);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,11 +1,9 @@
-/// @file operation_errors.h
 /// The largest error of each fixed-point operation of the core against exact arithmetic, found by sweeping
 /// it, beside the bound that its public header names.
 ///
 /// One entry an operation, in operation_errors.cpp; whoever adds an operation adds an entry. An error is that
 /// of the operation on the very integers that it is given, not of what came before it.
-#ifndef THIMBLE_TOOLS_INSTRUMENTS_OPERATION_ERRORS_H
-#define THIMBLE_TOOLS_INSTRUMENTS_OPERATION_ERRORS_H
+#pragma once
 
 #include <cstdint>
 #include <random>
@@ -52,5 +50,3 @@ std::vector<OperationError> sweep_operations(std::uint64_t cases, std::uint64_t 
                                              const Progress& progress);
 
 }  // namespace thimble::tools
-
-#endif

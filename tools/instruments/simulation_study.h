@@ -1,8 +1,6 @@
-/// @file simulation_study.h
 /// The knobs of the simulations: what each costs, and how far its world is after the same time from a finer
 /// one.
-#ifndef THIMBLE_TOOLS_INSTRUMENTS_SIMULATION_STUDY_H
-#define THIMBLE_TOOLS_INSTRUMENTS_SIMULATION_STUDY_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -50,5 +48,3 @@ std::string simulation_table(SimulationWorld world, const std::vector<Simulation
 std::string simulation_plot(SimulationWorld world, const std::vector<SimulationRow>& rows);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,4 +1,3 @@
-/// @file timed_frames.h
 /// How frames of the paper's workload are seen and timed, for all tables that compare them: `thimble table`
 /// and the peers' (tests/benchmarks).
 ///
@@ -6,8 +5,7 @@
 /// camera, its depth range, clearing and all that depends on the view, and carries nothing over from the last.
 /// One frame that does not count comes first; each of the others is seen from another place, and the median
 /// counts. Between two of them others work (they judge the picture, or draw their own), so caches are cold.
-#ifndef THIMBLE_TOOLS_INSTRUMENTS_TIMED_FRAMES_H
-#define THIMBLE_TOOLS_INSTRUMENTS_TIMED_FRAMES_H
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -92,5 +90,3 @@ struct DepthError {
 };
 
 }  // namespace thimble::tools
-
-#endif

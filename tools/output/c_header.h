@@ -1,8 +1,6 @@
-/// @file c_header.h
 /// A baked scene as a C and C++ header: bytes for flash, and the facts that a program can choose by when it
 /// is compiled.
-#ifndef THIMBLE_TOOLS_OUTPUT_C_HEADER_H
-#define THIMBLE_TOOLS_OUTPUT_C_HEADER_H
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -25,5 +23,3 @@ bool is_identifier(std::string_view text);
 std::string c_header_text(const BakedScene& scene, std::string_view identifier);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file file_place.h
 /// Where a path leads, whatever it is called, and what of a run may not be one file.
-#ifndef THIMBLE_TOOLS_OUTPUT_FILE_PLACE_H
-#define THIMBLE_TOOLS_OUTPUT_FILE_PLACE_H
+#pragma once
 
 #include <sys/stat.h>
 
@@ -44,5 +42,3 @@ class OutputClaim {
 void claim_input(const std::string& path);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,4 +1,3 @@
-/// @file gif.h
 /// Films as GIF89a: one palette for all frames, which repeat without end.
 ///
 /// The bytes, after the CompuServe specification of 1990: header and screen (13 bytes), the palette (256 times
@@ -6,8 +5,7 @@
 /// an image descriptor and its pixels, one byte an index, by LZW in blocks of at most 255 bytes; at the end
 /// 0x3B. LZW: codes from 9 to 12 bits, lowest bit first; 256 clears the table, 257 ends the frame, new words
 /// count from 258; a full table is cleared.
-#ifndef THIMBLE_TOOLS_OUTPUT_GIF_H
-#define THIMBLE_TOOLS_OUTPUT_GIF_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -29,5 +27,3 @@ std::string gif_frame(std::int32_t width_px, std::int32_t height_px, const std::
 std::string gif_end();
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file held_signals.h
 /// What a signal that ends the program leaves behind: no unfinished file, and never some of several outputs.
-#ifndef THIMBLE_TOOLS_OUTPUT_HELD_SIGNALS_H
-#define THIMBLE_TOOLS_OUTPUT_HELD_SIGNALS_H
+#pragma once
 
 #include <string>
 
@@ -26,5 +24,3 @@ void remember_unfinished(const std::string& name);
 void forget_unfinished(const std::string& name);
 
 }  // namespace thimble::tools
-
-#endif

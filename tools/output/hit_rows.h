@@ -1,7 +1,5 @@
-/// @file hit_rows.h
 /// Hits as rows, the same columns wherever hits are written: lines of CSV, or a NumPy array of records.
-#ifndef THIMBLE_TOOLS_OUTPUT_HIT_ROWS_H
-#define THIMBLE_TOOLS_OUTPUT_HIT_ROWS_H
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -53,5 +51,3 @@ inline double hit_distance(const Ray& ray, const Hit& hit) {
 }
 
 }  // namespace thimble::tools
-
-#endif

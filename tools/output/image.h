@@ -1,7 +1,5 @@
-/// @file image.h
 /// Pictures as files: PPM (P6), PGM (P5), PBM (P4), PNG, JPEG, and PFM for distances.
-#ifndef THIMBLE_TOOLS_OUTPUT_IMAGE_H
-#define THIMBLE_TOOLS_OUTPUT_IMAGE_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -62,5 +60,3 @@ void write_pfm(OutputFile* file, std::int32_t width_px, std::int32_t height_px,
                const std::vector<float>& values);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file npy_header.h
 /// The beginning of a NumPy array (readers/npy.h names the source of the format).
-#ifndef THIMBLE_TOOLS_OUTPUT_NPY_HEADER_H
-#define THIMBLE_TOOLS_OUTPUT_NPY_HEADER_H
+#pragma once
 
 #include <string>
 
@@ -18,5 +16,3 @@ inline std::string npy_header(const std::string& type, const std::string& shape)
 }
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file output_file.h
 /// Files that are either complete or not there: bytes go to a file beside the target that has no name, or a
 /// temporary one where the system cannot do without, and takes the target's name at the end.
-#ifndef THIMBLE_TOOLS_OUTPUT_OUTPUT_FILE_H
-#define THIMBLE_TOOLS_OUTPUT_OUTPUT_FILE_H
+#pragma once
 
 #include <cstdio>
 #include <span>
@@ -73,5 +71,3 @@ class OutputFile {
 void check_standard_output();
 
 }  // namespace thimble::tools
-
-#endif

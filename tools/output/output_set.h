@@ -1,7 +1,5 @@
-/// @file output_set.h
 /// The files that one run writes: all of them whole, or none of them there.
-#ifndef THIMBLE_TOOLS_OUTPUT_OUTPUT_SET_H
-#define THIMBLE_TOOLS_OUTPUT_OUTPUT_SET_H
+#pragma once
 
 #include <cstddef>
 #include <memory>
@@ -37,5 +35,3 @@ class OutputSet {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,4 +1,3 @@
-/// @file part_file.h
 /// Parts of a picture or of a film, drawn apart and put together by `thimble join`.
 ///
 /// A part is a header of 48 bytes, its rows from the top (or its frames, each row by row), and a CRC-32 of all
@@ -16,8 +15,7 @@
 ///
 /// Rows of a bit a pixel end on whole bytes. A part says nothing of time, machine, threads or engine: the same part
 /// has the same bytes wherever it was drawn.
-#ifndef THIMBLE_TOOLS_OUTPUT_PART_FILE_H
-#define THIMBLE_TOOLS_OUTPUT_PART_FILE_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -94,5 +92,3 @@ class PartFile {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file plot.h
 /// Line plots, bar charts and scatter plots as SVG files that stand on their own: axes with units, legend,
 /// readable on light and dark ground.
-#ifndef THIMBLE_TOOLS_OUTPUT_PLOT_H
-#define THIMBLE_TOOLS_OUTPUT_PLOT_H
+#pragma once
 
 #include <string>
 #include <utility>
@@ -100,5 +98,3 @@ std::string label(double x, double y, const char* anchor, const std::string& tex
                   const std::string& more = {});
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file png.h
 /// Pictures as PNG (ISO/IEC 15948), 8 bits a channel, and as JPEG (ISO/IEC 10918-1).
-#ifndef THIMBLE_TOOLS_OUTPUT_PNG_H
-#define THIMBLE_TOOLS_OUTPUT_PNG_H
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -19,5 +17,3 @@ std::vector<unsigned char> jpeg_file(std::int32_t width_px, std::int32_t height_
                                      std::span<const std::uint8_t> pixels);
 
 }  // namespace thimble::tools
-
-#endif

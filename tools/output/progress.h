@@ -1,7 +1,5 @@
-/// @file progress.h
 /// A progress bar on standard error, when that is a terminal and the work takes long enough to wait for.
-#ifndef THIMBLE_TOOLS_OUTPUT_PROGRESS_H
-#define THIMBLE_TOOLS_OUTPUT_PROGRESS_H
+#pragma once
 
 #include <chrono>
 #include <string>
@@ -36,5 +34,3 @@ auto with_progress(const std::string& label, bool quiet, const Work& work) {
 }
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file suggestion.h
 /// What somebody who mistyped a word most likely meant.
-#ifndef THIMBLE_TOOLS_OUTPUT_SUGGESTION_H
-#define THIMBLE_TOOLS_OUTPUT_SUGGESTION_H
+#pragma once
 
 #include <string>
 #include <string_view>
@@ -14,5 +12,3 @@ namespace thimble::tools {
 std::string suggestion(std::string_view word, const std::vector<std::string>& words);
 
 }  // namespace thimble::tools
-
-#endif

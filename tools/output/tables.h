@@ -1,7 +1,5 @@
-/// @file tables.h
 /// Rows of named values as CSV, and tables of a terminal.
-#ifndef THIMBLE_TOOLS_OUTPUT_TABLES_H
-#define THIMBLE_TOOLS_OUTPUT_TABLES_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -30,5 +28,3 @@ using Cells = std::vector<std::string>;
 std::string columns_of(const std::vector<Cells>& rows, std::size_t left);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file units.h
 /// Numbers as a person reads and writes them.
-#ifndef THIMBLE_TOOLS_OUTPUT_UNITS_H
-#define THIMBLE_TOOLS_OUTPUT_UNITS_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -53,5 +51,3 @@ std::string scene_title(std::string_view scene);
 std::string in_quotes(std::string_view text);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file version.h
 /// Which Thimble this is.
-#ifndef THIMBLE_TOOLS_OUTPUT_VERSION_H
-#define THIMBLE_TOOLS_OUTPUT_VERSION_H
+#pragma once
 
 namespace thimble::tools {
 
@@ -13,5 +11,3 @@ const char* version_commit();
 const char* version_date();
 
 }  // namespace thimble::tools
-
-#endif

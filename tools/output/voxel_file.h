@@ -1,7 +1,5 @@
-/// @file voxel_file.h
 /// Voxels with their colours as files of other programs.
-#ifndef THIMBLE_TOOLS_OUTPUT_VOXEL_FILE_H
-#define THIMBLE_TOOLS_OUTPUT_VOXEL_FILE_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -38,5 +36,3 @@ void write_voxels(OutputFile* file, VoxelFormat format, const CompactTree& tree,
                   bool has_colors, const Progress& progress);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file line_words.h
 /// A line of words and numbers whose errors say where in it they are.
-#ifndef THIMBLE_TOOLS_PARTICLES_LINE_WORDS_H
-#define THIMBLE_TOOLS_PARTICLES_LINE_WORDS_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -71,5 +69,3 @@ class LineWords {
 };
 
 }  // namespace thimble::tools
-
-#endif

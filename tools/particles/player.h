@@ -1,10 +1,8 @@
-/// @file player.h
 /// What keys and mouse do to a particle world, and how its time passes.
 ///
 /// Everything that happens is decided by the events and the ticks between them, so the same
 /// events give the same world, watched or not.
-#ifndef THIMBLE_TOOLS_PARTICLES_PLAYER_H
-#define THIMBLE_TOOLS_PARTICLES_PLAYER_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -132,5 +130,3 @@ class Player {
 };
 
 }  // namespace thimble::tools
-
-#endif

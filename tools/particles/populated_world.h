@@ -1,7 +1,5 @@
-/// @file populated_world.h
 /// A particle world with its bytes, its balls and their colours, as `thimble particles` begins it.
-#ifndef THIMBLE_TOOLS_PARTICLES_POPULATED_WORLD_H
-#define THIMBLE_TOOLS_PARTICLES_POPULATED_WORLD_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -114,5 +112,3 @@ void for_each_ball(const ParticleWorld& world, const Visit& visit) {
 std::uint32_t restitution_q16(double bounciness);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file session.h
 /// One run of `thimble particles`: a world, somebody watching or nobody, events from a script and from a
 /// hand.
-#ifndef THIMBLE_TOOLS_PARTICLES_SESSION_H
-#define THIMBLE_TOOLS_PARTICLES_SESSION_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -42,5 +40,3 @@ struct PlayResult {
 PlayResult play(PopulatedWorld* world, const PlayOptions& options);
 
 }  // namespace thimble::tools
-
-#endif

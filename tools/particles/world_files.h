@@ -1,7 +1,5 @@
-/// @file world_files.h
 /// A particle world as text that machines read.
-#ifndef THIMBLE_TOOLS_PARTICLES_WORLD_FILES_H
-#define THIMBLE_TOOLS_PARTICLES_WORLD_FILES_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -42,5 +40,3 @@ void draw_figures(std::int32_t width_px, std::int32_t height_px, std::string_vie
 Image field_image(const BitField& field);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,12 +1,10 @@
-/// @file block_colors.h
 /// What blocks of Minecraft and Minetest look like: one plain colour of this project's own a kind of block.
 ///
 /// A name such as `minecraft:oak_leaves[persistent=true]` or `default:aspen_tree` is stripped of what stands
 /// before the first colon and in brackets, and the first entry of a table whose word is part of it gives the
 /// colour; a colour's name in front (`light_blue_wool`) gives that. Numbers of blocks from before names (0 to
 /// 255) have a table of names.
-#ifndef THIMBLE_TOOLS_READERS_BLOCK_COLORS_H
-#define THIMBLE_TOOLS_READERS_BLOCK_COLORS_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -24,5 +22,3 @@ std::optional<Rgb> block_color(std::string_view name);
 std::optional<Rgb> block_color(unsigned number, unsigned data);
 
 }  // namespace thimble::tools
-
-#endif

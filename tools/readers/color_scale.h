@@ -1,8 +1,6 @@
-/// @file color_scale.h
 /// What the numbers of colours mean where a format does not say: decided over all of a file, so that a dark corner
 /// does not pass for another scale.
-#ifndef THIMBLE_TOOLS_READERS_COLOR_SCALE_H
-#define THIMBLE_TOOLS_READERS_COLOR_SCALE_H
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -57,5 +55,3 @@ class ColorScale {
 };
 
 }  // namespace thimble::tools
-
-#endif

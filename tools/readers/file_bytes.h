@@ -1,11 +1,9 @@
-/// @file file_bytes.h
 /// A whole file in memory, and a cursor that reads numbers out of bytes without ever leaving them.
 ///
 /// Every reader starts here: `load_file` turns a path into bytes (and a `.gz` into what it holds),
 /// `ByteReader` walks binary formats. Both throw `InputError` whose sentence says where and why; neither
 /// trusts a size that the file claims.
-#ifndef THIMBLE_TOOLS_READERS_FILE_BYTES_H
-#define THIMBLE_TOOLS_READERS_FILE_BYTES_H
+#pragma once
 
 #include <bit>
 #include <cstddef>
@@ -178,5 +176,3 @@ class ByteReader {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file formats.h
 /// The readers of scene formats, one a file of this folder; what each reads of its format, and what it refuses, stands
 /// there. Which of them reads which file: read_any.h.
-#ifndef THIMBLE_TOOLS_READERS_FORMATS_H
-#define THIMBLE_TOOLS_READERS_FORMATS_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -38,5 +36,3 @@ FormatLook looks_like_binvox, looks_like_gadget, looks_like_gltf, looks_like_gox
     looks_like_vox, looks_like_vxl;
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file gltf_draco.h
 /// Meshes of a glTF file that Draco compressed (KHR_draco_mesh_compression). Internal to the glTF reader.
-#ifndef THIMBLE_TOOLS_READERS_GLTF_DRACO_H
-#define THIMBLE_TOOLS_READERS_GLTF_DRACO_H
+#pragma once
 
 #include <string>
 
@@ -15,5 +13,3 @@ void unpack_draco(GltfFile& file, const nlohmann::json& primitive, const nlohman
                   const std::string& place);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file gltf_file.h
 /// The JSON of a glTF file and the bytes that it talks of. Internal to the glTF reader.
-#ifndef THIMBLE_TOOLS_READERS_GLTF_FILE_H
-#define THIMBLE_TOOLS_READERS_GLTF_FILE_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -108,5 +106,3 @@ class GltfFile {
 };
 
 }  // namespace thimble::tools
-
-#endif

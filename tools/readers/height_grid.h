@@ -1,4 +1,3 @@
-/// @file height_grid.h
 /// Heights on a regular grid as a landscape of voxels.
 ///
 /// The grid becomes 512 voxels along its longer side, or as many as it has points where these are
@@ -7,8 +6,7 @@
 /// is. The first row is the farthest (the greatest y, north); colours go with height, from green over brown
 /// to white. Where there is no height (NaN, the file's NODATA_value) there is a hole. The landscape is a
 /// shell: its surface, and walls down to the lowest height around it.
-#ifndef THIMBLE_TOOLS_READERS_HEIGHT_GRID_H
-#define THIMBLE_TOOLS_READERS_HEIGHT_GRID_H
+#pragma once
 
 #include <functional>
 
@@ -24,5 +22,3 @@ using HeightAt = std::function<double(std::uint64_t column, std::uint64_t row)>;
 Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightAt& height);
 
 }  // namespace thimble::tools
-
-#endif

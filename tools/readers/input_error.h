@@ -1,7 +1,5 @@
-/// @file input_error.h
 /// What is thrown at input that cannot be used: by readers, and by all that takes a file or a word from somebody.
-#ifndef THIMBLE_TOOLS_READERS_INPUT_ERROR_H
-#define THIMBLE_TOOLS_READERS_INPUT_ERROR_H
+#pragma once
 
 #include <stdexcept>
 
@@ -29,5 +27,3 @@ class UsageError : public InputError {
 };
 
 }  // namespace thimble::tools
-
-#endif

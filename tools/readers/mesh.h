@@ -1,10 +1,8 @@
-/// @file mesh.h
 /// What the readers of meshes share: cutting polygons into triangles, and points out of a mesh without faces.
 ///
 /// A polygon becomes a fan around its first corner, or, where it is not convex, what clipping its ears leaves: always
 /// triangles with the polygon's own border, so that a closed surface stays closed.
-#ifndef THIMBLE_TOOLS_READERS_MESH_H
-#define THIMBLE_TOOLS_READERS_MESH_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -63,5 +61,3 @@ Source mesh_or_points(TriangleMesh mesh, std::uint64_t face_count);
 std::uint8_t unit_to_byte(double component);
 
 }  // namespace thimble::tools
-
-#endif

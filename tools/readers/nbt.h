@@ -1,9 +1,7 @@
-/// @file nbt.h
 /// Named binary tags, the bytes that Minecraft's files are made of. Internal to the reader of schematics.
 ///
 /// Source of the format: Markus Persson, "Named Binary Tag specification", 2011.
-#ifndef THIMBLE_TOOLS_READERS_NBT_H
-#define THIMBLE_TOOLS_READERS_NBT_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -51,5 +49,3 @@ std::uint32_t nbt_list(ByteReader& reader, NbtKind* of);
 std::int64_t nbt_integer(ByteReader& reader, NbtKind kind);
 
 }  // namespace thimble::tools
-
-#endif

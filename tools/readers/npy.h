@@ -1,7 +1,5 @@
-/// @file npy.h
 /// A NumPy array as a table of numbers, for what is no scene. Scenes: formats.h.
-#ifndef THIMBLE_TOOLS_READERS_NPY_H
-#define THIMBLE_TOOLS_READERS_NPY_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -20,5 +18,3 @@ struct NumberTable {
 NumberTable read_npy_table(const SharedBytes& file);
 
 }  // namespace thimble::tools
-
-#endif

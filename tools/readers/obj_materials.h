@@ -1,7 +1,5 @@
-/// @file obj_materials.h
 /// The materials of `.obj` files: `.mtl`, of which `Kd`, `d`, `Ke` and their pictures are read. Internal to the `.obj` reader.
-#ifndef THIMBLE_TOOLS_READERS_OBJ_MATERIALS_H
-#define THIMBLE_TOOLS_READERS_OBJ_MATERIALS_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -43,5 +41,3 @@ class ObjMaterials {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file oct.h
 /// What is solid in the trees that `.oct` files hold.
-#ifndef THIMBLE_TOOLS_READERS_OCT_H
-#define THIMBLE_TOOLS_READERS_OCT_H
+#pragma once
 
 #include <array>
 #include <bit>
@@ -76,5 +74,3 @@ void walk_blocks(const CompactTree& tree, const Visit& visit) {
 }
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file picture.h
 /// Pictures from files: their pixels, and one to compare another with.
-#ifndef THIMBLE_TOOLS_READERS_PICTURE_H
-#define THIMBLE_TOOLS_READERS_PICTURE_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -28,5 +26,3 @@ std::shared_ptr<std::uint8_t> decode_picture(std::span<const std::uint8_t> encod
 Image read_picture(const std::string& path, std::int32_t width_px, std::int32_t height_px);
 
 }  // namespace thimble::tools
-
-#endif

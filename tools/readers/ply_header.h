@@ -1,7 +1,5 @@
-/// @file ply_header.h
 /// The header of a `.ply` file: which elements it holds, and what their properties are to us. Internal to its reader.
-#ifndef THIMBLE_TOOLS_READERS_PLY_HEADER_H
-#define THIMBLE_TOOLS_READERS_PLY_HEADER_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -69,5 +67,3 @@ bool has_role(const PlyElement& element, PlyRole role);
 PlyHeader read_ply_header(std::string_view text);
 
 }  // namespace thimble::tools
-
-#endif

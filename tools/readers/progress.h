@@ -1,7 +1,5 @@
-/// @file progress.h
 /// How readers, and what builds from them, say how far they are.
-#ifndef THIMBLE_TOOLS_READERS_PROGRESS_H
-#define THIMBLE_TOOLS_READERS_PROGRESS_H
+#pragma once
 
 #include <functional>
 
@@ -11,5 +9,3 @@ namespace thimble::tools {
 using Progress = std::function<void(double)>;
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,9 +1,7 @@
-/// @file read_any.h
 /// Which reader reads which file: the one table of scene formats that come as bytes.
 ///
 /// A new format is a new file beside this one, its reader in formats.h, and a row in the table of `read_any.cpp`.
-#ifndef THIMBLE_TOOLS_READERS_READ_ANY_H
-#define THIMBLE_TOOLS_READERS_READ_ANY_H
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -54,5 +52,3 @@ Source read_any(const ReadOptions& options, const SharedBytes& file, const Progr
 Source read_scene_file(const ReadOptions& options, const Progress& progress = {});
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file real3.h
 /// Three real numbers: points, directions and colours of the host, which may use floating point.
-#ifndef THIMBLE_TOOLS_READERS_REAL3_H
-#define THIMBLE_TOOLS_READERS_REAL3_H
+#pragma once
 
 #include <array>
 
@@ -32,5 +30,3 @@ std::array<Real, 3> scaled(const std::array<Real, 3>& a, Real factor) {
 }
 
 }  // namespace thimble::tools
-
-#endif

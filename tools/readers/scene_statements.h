@@ -1,8 +1,6 @@
-/// @file scene_statements.h
 /// What each statement of a `.scene` file says. `line` stands behind the statement's word, which stands at
 /// `place`; each reads what belongs to it and throws as `read_scene_text` does.
-#ifndef THIMBLE_TOOLS_READERS_SCENE_STATEMENTS_H
-#define THIMBLE_TOOLS_READERS_SCENE_STATEMENTS_H
+#pragma once
 
 #include "readers/scene_text.h"
 #include "readers/text_line.h"
@@ -23,5 +21,3 @@ inline constexpr double kMostDirection = 65535;
 inline constexpr double kFar = 9.0 * 4096;
 
 }  // namespace thimble::tools::statements
-
-#endif

@@ -1,11 +1,9 @@
-/// @file scene_text.h
 /// `.scene`: a scene as a person writes it, a statement a line. src/FORMAT.md describes the language.
 ///
 /// This reader turns text into what it says and opens no other file; `scene/text_scene.cpp` opens the models
 /// and puts the world together. Every error names line and column; both count from 1, a column is a character
 /// of UTF-8.
-#ifndef THIMBLE_TOOLS_READERS_SCENE_TEXT_H
-#define THIMBLE_TOOLS_READERS_SCENE_TEXT_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -97,5 +95,3 @@ struct SceneText {
 };
 
 }  // namespace thimble::tools
-
-#endif

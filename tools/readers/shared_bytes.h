@@ -1,11 +1,9 @@
-/// @file shared_bytes.h
 /// The bytes of a file as readers take them: a view and whatever keeps it alive.
 ///
 /// A reader whose result streams from the file (`PointCloud`) keeps a copy of this struct, which shares the
 /// bytes and copies none. The owner may be anything: a loaded file, a mapped one, or nothing at all when the
 /// bytes outlive the result anyway (a fuzzer's input, a literal).
-#ifndef THIMBLE_TOOLS_READERS_SHARED_BYTES_H
-#define THIMBLE_TOOLS_READERS_SHARED_BYTES_H
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -31,5 +29,3 @@ struct SharedBytes {
 };
 
 }  // namespace thimble::tools
-
-#endif

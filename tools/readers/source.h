@@ -1,11 +1,9 @@
-/// @file source.h
 /// What a reader of scene files hands over. A reader turns bytes into one of these and knows nothing of
 /// arenas or pictures, nor (but for the one of baked scenes) of trees; `scene/` turns a source into voxels.
 ///
 /// Memory: a source keeps at most the file's (decompressed) bytes and what they really hold, never what a
 /// header claims. Streaming methods may be called any number of times and give the same sequence each time.
-#ifndef THIMBLE_TOOLS_READERS_SOURCE_H
-#define THIMBLE_TOOLS_READERS_SOURCE_H
+#pragma once
 
 #include <array>
 #include <cmath>
@@ -194,5 +192,3 @@ void for_voxels(const Vec3i& corner, int level, const Visit& visit) {
 }
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,10 +1,8 @@
-/// @file text.h
 /// Lines, words and numbers of text formats: shared by the readers of `.ply`, `.obj`, `.off` and `.xyz`.
 ///
 /// Conventions: lines count from 1 and end with LF, CRLF or a CR alone. Numbers are decimal and written with
 /// a point whatever the locale says; a leading + is accepted. Nothing here allocates except to throw.
-#ifndef THIMBLE_TOOLS_READERS_TEXT_H
-#define THIMBLE_TOOLS_READERS_TEXT_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -133,5 +131,3 @@ class ProgressMeter {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file text_line.h
 /// The language that `.scene` statements are written in: words, numbers and clauses of one line, each with
 /// the place where it stands. What the statements mean is in scene_things.cpp and scene_lighting.cpp.
-#ifndef THIMBLE_TOOLS_READERS_TEXT_LINE_H
-#define THIMBLE_TOOLS_READERS_TEXT_LINE_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -97,5 +95,3 @@ Vec3i scaled(const std::array<double, 3>& vector, double largest);
 bool is_zero(const std::array<double, 3>& vector);
 
 }  // namespace thimble::tools
-
-#endif

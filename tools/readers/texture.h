@@ -1,11 +1,9 @@
-/// @file texture.h
 /// The pictures on the triangles of a mesh, and what colour they have over a piece of one.
 ///
 /// A picture's pixels are checked by its header before it is decoded: those of all pictures of a file may take, at four
 /// bytes each, 64 MB and 64 times what the pictures take as they are written. Decoding one has at most five times its
 /// four bytes a pixel; 5.4 bytes a pixel are kept.
-#ifndef THIMBLE_TOOLS_READERS_TEXTURE_H
-#define THIMBLE_TOOLS_READERS_TEXTURE_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -83,5 +81,3 @@ class Textures {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file vox_chunk.h
 /// The pieces that `.vox` chunks are made of: names, strings and dictionaries. Internal to the `.vox` reader.
-#ifndef THIMBLE_TOOLS_READERS_VOX_CHUNK_H
-#define THIMBLE_TOOLS_READERS_VOX_CHUNK_H
+#pragma once
 
 #include <charconv>
 #include <cstdint>
@@ -51,5 +49,3 @@ std::optional<Number> vox_number(std::string_view text) {
 }
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file vox_palette.h
 /// Colours and materials of a `.vox` file: RGBA, MATT (version 150) and MATL (version 200). Internal to the
 /// `.vox` reader.
-#ifndef THIMBLE_TOOLS_READERS_VOX_PALETTE_H
-#define THIMBLE_TOOLS_READERS_VOX_PALETTE_H
+#pragma once
 
 #include "readers/file_bytes.h"
 #include "readers/source.h"
@@ -23,5 +21,3 @@ void vox_read_matt(ByteReader& chunk, Palette& palette);
 void vox_read_matl(ByteReader& chunk, Palette& palette);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,11 +1,9 @@
-/// @file vox_scene.h
 /// The scene graph of a `.vox` file: nTRN, nGRP and nSHP nodes, layers, and where they put the models.
 /// Internal to the `.vox` reader.
 ///
 /// Node 0 is the root. An nTRN turns and moves its one child, an nGRP holds children, an nSHP shows a model.
 /// Nodes may be shared, so the graph is a directed one without cycles rather than a tree.
-#ifndef THIMBLE_TOOLS_READERS_VOX_SCENE_H
-#define THIMBLE_TOOLS_READERS_VOX_SCENE_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -81,5 +79,3 @@ class VoxScene {
 };
 
 }  // namespace thimble::tools
-
-#endif

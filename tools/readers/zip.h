@@ -1,10 +1,8 @@
-/// @file zip.h
 /// The members of a `.zip`, for formats that are one. Stored and deflated members; neither encrypted ones nor
 /// the form for more than 4 GiB.
 ///
 /// Source of the format: PKWARE, "APPNOTE.TXT - .ZIP File Format Specification".
-#ifndef THIMBLE_TOOLS_READERS_ZIP_H
-#define THIMBLE_TOOLS_READERS_ZIP_H
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -32,5 +30,3 @@ FileBytes zip_unpack(const ZipMember& member);
 FileBytes zip_beginning(const ZipMember& member, std::uint64_t count);
 
 }  // namespace thimble::tools
-
-#endif

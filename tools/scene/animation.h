@@ -1,7 +1,5 @@
-/// @file animation.h
 /// Films as files: pictures one after the other as a GIF of one palette, as YUV4MPEG2, or as a picture each.
-#ifndef THIMBLE_TOOLS_SCENE_ANIMATION_H
-#define THIMBLE_TOOLS_SCENE_ANIMATION_H
+#pragma once
 
 #include <cstddef>
 #include <functional>
@@ -56,5 +54,3 @@ class Film {
 };
 
 }  // namespace thimble::tools
-
-#endif

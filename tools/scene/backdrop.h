@@ -1,8 +1,6 @@
-/// @file backdrop.h
 /// What stands behind a scene at a pixel: a colour, a gradient or nothing, and a ground of which only the shadow
 /// is seen. Integers, and nothing of a system: the page draws by it, too.
-#ifndef THIMBLE_TOOLS_SCENE_BACKDROP_H
-#define THIMBLE_TOOLS_SCENE_BACKDROP_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -83,5 +81,3 @@ uint8_t in_shadow(uint8_t share);
 uint8_t in_corner(uint8_t share, int64_t closed_sum);
 
 }  // namespace thimble::tools
-
-#endif

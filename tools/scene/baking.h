@@ -1,7 +1,5 @@
-/// @file baking.h
 /// From a scene to the bytes of a baked one, within a limit.
-#ifndef THIMBLE_TOOLS_SCENE_BAKING_H
-#define THIMBLE_TOOLS_SCENE_BAKING_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -105,5 +103,3 @@ std::string too_large_text(const FlashLimit& limit, const Baked& baked, const Ba
                            int level);
 
 }  // namespace thimble::tools
-
-#endif

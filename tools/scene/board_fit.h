@@ -1,7 +1,5 @@
-/// @file board_fit.h
 /// What of a board is left for a scene: the one place that says so for every subcommand.
-#ifndef THIMBLE_TOOLS_SCENE_BOARD_FIT_H
-#define THIMBLE_TOOLS_SCENE_BOARD_FIT_H
+#pragma once
 
 #include <algorithm>
 #include <array>
@@ -89,5 +87,3 @@ inline const char* format_name(PixelFormat format) {
 }
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file built_scene.h
 /// A scene inside one block of memory: the structure that is traced, and room for one band of pixels.
-#ifndef THIMBLE_TOOLS_SCENE_BUILT_SCENE_H
-#define THIMBLE_TOOLS_SCENE_BUILT_SCENE_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -175,5 +173,3 @@ class BuiltScene {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,4 +1,3 @@
-/// @file default_look.h
 /// The rule for a picture that nobody described further: what a scene has decides how it looks. The one home
 /// of the rule; `thimble render --help` prints kDefaultLookText, `--verbose` prints what came of it.
 ///
@@ -11,8 +10,7 @@
 ///     LookPicture picture(built, look, ...);                       // look_picture.h
 ///
 /// Another camera of the same scene needs only the last three lines; the facts stay.
-#ifndef THIMBLE_TOOLS_SCENE_DEFAULT_LOOK_H
-#define THIMBLE_TOOLS_SCENE_DEFAULT_LOOK_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -143,5 +141,3 @@ struct QuickLook {
 QuickLook quick_look(const Look& look, const ToneTable& tone);
 
 }  // namespace thimble::tools
-
-#endif

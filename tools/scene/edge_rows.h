@@ -1,8 +1,6 @@
-/// @file edge_rows.h
 /// Pictures whose samples go where edges are (thimble/picture/render.h), row by row, by whatever draws
 /// samples.
-#ifndef THIMBLE_TOOLS_SCENE_EDGE_ROWS_H
-#define THIMBLE_TOOLS_SCENE_EDGE_ROWS_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -98,5 +96,3 @@ class EdgeRows {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file emitter_lamps.h
 /// What glows as lamps (Effect::kEmitterLight): a fixed set of places for a scene, so that a point is lit by
 /// one ray to each.
-#ifndef THIMBLE_TOOLS_SCENE_EMITTER_LAMPS_H
-#define THIMBLE_TOOLS_SCENE_EMITTER_LAMPS_H
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -25,5 +23,3 @@ std::vector<Light> glow_lamps(const CompactTree& tree, const std::vector<Surface
                               std::size_t most = kMostGlowLamps);
 
 }  // namespace thimble::tools
-
-#endif

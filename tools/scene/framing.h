@@ -1,9 +1,7 @@
-/// @file framing.h
 /// Where a picture is taken from: what is wished of a view, and the camera that shows the scene so.
 ///
 /// Geometry in doubles, for framing alone: the core gets integers and makes every ray from them.
-#ifndef THIMBLE_TOOLS_SCENE_FRAMING_H
-#define THIMBLE_TOOLS_SCENE_FRAMING_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -140,5 +138,3 @@ ViewWishes finer(const ViewWishes& wishes, int across);
 ViewAngles best_angles(const SceneShape& shape);
 
 }  // namespace thimble::tools
-
-#endif

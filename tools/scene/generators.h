@@ -1,4 +1,3 @@
-/// @file generators.h
 /// Scenes that need no file.
 ///
 ///   points:N    N voxels uniformly random in the world, repetitions allowed: the paper's workload
@@ -15,8 +14,7 @@
 /// A scene is a function of kind, count, seed and depth: integer arithmetic and a random generator of
 /// our own make it the same on every machine. It is laid out in fractions of the world, so another depth
 /// shows the same scene finer or coarser. World axes are right-handed, z up.
-#ifndef THIMBLE_TOOLS_SCENE_GENERATORS_H
-#define THIMBLE_TOOLS_SCENE_GENERATORS_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -89,5 +87,3 @@ SceneCamera demo_world_camera(int depth);
 void demo_world_light(LitDescription* lit);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file gpu_engine.h
 /// The GPU renderer (platform/gpu) over a built scene. A build without it (-DTHIMBLE_GPU=OFF) has gpu_engine_absent.cpp.
-#ifndef THIMBLE_TOOLS_SCENE_GPU_ENGINE_H
-#define THIMBLE_TOOLS_SCENE_GPU_ENGINE_H
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -45,5 +43,3 @@ class GpuEngine {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file host_memory.h
 /// The one block of bytes that a scene lives in on the host.
-#ifndef THIMBLE_TOOLS_SCENE_HOST_MEMORY_H
-#define THIMBLE_TOOLS_SCENE_HOST_MEMORY_H
+#pragma once
 
 #include <cstddef>
 #include <utility>
@@ -42,5 +40,3 @@ class HostMemory {
 void use_large_pages(Bytes bytes);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file key_sort.h
 /// Morton keys sorted with what a desktop has: caches, some spare bytes and threads.
-#ifndef THIMBLE_TOOLS_SCENE_KEY_SORT_H
-#define THIMBLE_TOOLS_SCENE_KEY_SORT_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -21,5 +19,3 @@ void sort_keys_fast(Span<std::uint32_t> keys, int key_bits, Bytes scratch, int t
 void sort_keys_fast(Span<std::uint64_t> keys, int key_bits, Bytes scratch, int threads);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,4 +1,3 @@
-/// @file lit_description.h
 /// What light does in a scene, as a source has it: surfaces of all palette entries, lights, sky, water. The
 /// one home of the conversions into the core's `LitScene`.
 ///
@@ -10,8 +9,7 @@
 ///     const LitScene scene = lit.drawn(effects);   // views into `lit`
 ///
 /// and where it is looked at from is `source.camera()`.
-#ifndef THIMBLE_TOOLS_SCENE_LIT_DESCRIPTION_H
-#define THIMBLE_TOOLS_SCENE_LIT_DESCRIPTION_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -219,5 +217,3 @@ RenderCounts totals_of(const LitCounts& counts);
 const char* ray_kind_name(LitRayKind kind);
 
 }  // namespace thimble::tools
-
-#endif

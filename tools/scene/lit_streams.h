@@ -1,8 +1,6 @@
-/// @file lit_streams.h
 /// Lit pictures by streams of rays (platform/wide/lit) made ready for one scene: the map of its tree and a workspace in
 /// an arena. A build without it (-DTHIMBLE_WIDE=OFF) has wide_absent.cpp, which makes none.
-#ifndef THIMBLE_TOOLS_SCENE_LIT_STREAMS_H
-#define THIMBLE_TOOLS_SCENE_LIT_STREAMS_H
+#pragma once
 
 #include <cstddef>
 #include <memory>
@@ -54,5 +52,3 @@ class LitStreams {
 };
 
 }  // namespace thimble::tools
-
-#endif

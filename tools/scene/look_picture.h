@@ -1,10 +1,8 @@
-/// @file look_picture.h
 /// Paints a look (default_look.h): light on what the scene holds, the backdrop behind it, then the tone.
 ///
 /// A pixel is a function of tree, look, camera and exposure alone, in integers; threads take rows as they
 /// come. `thimble render`, films and the viewer paint with it.
-#ifndef THIMBLE_TOOLS_SCENE_LOOK_PICTURE_H
-#define THIMBLE_TOOLS_SCENE_LOOK_PICTURE_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -115,5 +113,3 @@ void find_light_behind(const CompactTree& tree, const Look& look, const LitStrea
                        Span<const Ray> rays, std::uint8_t* shares);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file magnify.h
 /// A picture of every n-th pixel, stretched to the whole one. Integers, and nothing of a system: the page draws by it, too.
-#ifndef THIMBLE_TOOLS_SCENE_MAGNIFY_H
-#define THIMBLE_TOOLS_SCENE_MAGNIFY_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -26,5 +24,3 @@ void magnify_rows(const uint8_t* small, int step, int32_t width_px, int32_t heig
                   int32_t end, uint16_t* work, uint8_t* rgb);
 
 }  // namespace thimble::tools
-
-#endif

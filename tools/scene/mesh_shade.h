@@ -1,12 +1,10 @@
-/// @file mesh_shade.h
 /// Voxels of meshes with pictures.
 ///
 /// A voxel has the colour that the picture has on a triangle next to the voxel's middle, averaged over as much of the
 /// picture as a voxel covers. Where that is clear, the triangle gives no voxel; nor does its edge where the middle is
 /// beyond it and the picture, which continues there on a neighbour, is clear. A voxel that gives off a tenth of a screen's
 /// white is of that light alone.
-#ifndef THIMBLE_TOOLS_SCENE_MESH_SHADE_H
-#define THIMBLE_TOOLS_SCENE_MESH_SHADE_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -31,5 +29,3 @@ ColorHistogram mesh_colors(const TriangleMesh& mesh, int level, bool z_up);
 double glow_power(const TriangleMesh& mesh);
 
 }  // namespace thimble::tools
-
-#endif

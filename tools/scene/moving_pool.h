@@ -1,8 +1,6 @@
-/// @file moving_pool.h
 /// The water of a scene made to move, for somebody to look at: it rains. Integers, and nothing of a system: the page rains
 /// by it, too.
-#ifndef THIMBLE_TOOLS_SCENE_MOVING_POOL_H
-#define THIMBLE_TOOLS_SCENE_MOVING_POOL_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -37,5 +35,3 @@ class MovingPool {
 };
 
 }  // namespace thimble::tools
-
-#endif

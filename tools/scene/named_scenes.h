@@ -1,10 +1,8 @@
-/// @file named_scenes.h
 /// The scenes that come with Thimble, found by their names: `thimble render castle`.
 ///
 /// They lie beside the program: in share/thimble/scenes where it is installed (the folder may be moved or
 /// unpacked anywhere); in a folder that one builds in, behind a link to tools/gallery/scenes.
-#ifndef THIMBLE_TOOLS_SCENE_NAMED_SCENES_H
-#define THIMBLE_TOOLS_SCENE_NAMED_SCENES_H
+#pragma once
 
 #include <string>
 #include <vector>
@@ -34,5 +32,3 @@ std::string canonical_path(const std::string& path);
 bool is_generator(const std::string& word);
 
 }  // namespace thimble::tools
-
-#endif

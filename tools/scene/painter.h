@@ -1,4 +1,3 @@
-/// @file painter.h
 /// Ways to draw a scene's picture. `thimble render` picks one and asks it for bands, row by row from the top.
 ///
 ///   ray painter      the core, ray by ray
@@ -9,8 +8,7 @@
 ///   lit painter      light, shadows, glass, water: the core's light/render.h, or the same by streams of rays
 ///
 /// The first three give the same picture where their options are the same.
-#ifndef THIMBLE_TOOLS_SCENE_PAINTER_H
-#define THIMBLE_TOOLS_SCENE_PAINTER_H
+#pragma once
 
 #include <cstdint>
 #include <functional>
@@ -109,5 +107,3 @@ Status paint(const BandPainter& painter, std::int32_t width_px, const RowRange& 
              const Progress& progress, Painting* painting);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,4 +1,3 @@
-/// @file palette.h
 /// Colours of a cloud or a mesh to a palette of 256 entries.
 ///
 /// Index 0 is the default material (near white), the one of scenes without colours; colours get 1..255.
@@ -10,8 +9,7 @@
 /// order they came in.
 ///
 /// Memory: fixed. A histogram is 2.5 MiB, a palette map 64 KiB, however many colours there are.
-#ifndef THIMBLE_TOOLS_SCENE_PALETTE_H
-#define THIMBLE_TOOLS_SCENE_PALETTE_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -94,5 +92,3 @@ class PaletteMap {
 };
 
 }  // namespace thimble::tools
-
-#endif

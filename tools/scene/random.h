@@ -1,11 +1,9 @@
-/// @file random.h
 /// A small random generator that gives the same numbers on every machine.
 ///
 /// SplitMix64: Guy L. Steele Jr., Doug Lea and Christine H. Flood, "Fast Splittable Pseudorandom Number
 /// Generators", OOPSLA 2014, figure 16 (golden-ratio increment; the finaliser is David Stafford's variant 13
 /// of MurmurHash3's). 64 bits of state, period 2^64, one addition and two multiplications a number.
-#ifndef THIMBLE_TOOLS_SCENE_RANDOM_H
-#define THIMBLE_TOOLS_SCENE_RANDOM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -36,5 +34,3 @@ class SplitMix64 {
 };
 
 }  // namespace thimble::tools
-
-#endif

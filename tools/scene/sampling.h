@@ -1,7 +1,5 @@
-/// @file sampling.h
 /// What trades a picture's error for time, beside the camera: samples a pixel, a cut-off, a depth.
-#ifndef THIMBLE_TOOLS_SCENE_SAMPLING_H
-#define THIMBLE_TOOLS_SCENE_SAMPLING_H
+#pragma once
 
 #include <cstdint>
 
@@ -71,5 +69,3 @@ class QualityFrame {
 NodeColors take_node_colors(BuiltScene* built, const Quality& quality, const Shading& shading);
 
 }  // namespace thimble::tools
-
-#endif

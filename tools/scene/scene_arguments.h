@@ -1,7 +1,5 @@
-/// @file scene_arguments.h
 /// What a command line says of a scene, before anything is opened.
-#ifndef THIMBLE_TOOLS_SCENE_SCENE_ARGUMENTS_H
-#define THIMBLE_TOOLS_SCENE_SCENE_ARGUMENTS_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -28,5 +26,3 @@ struct SceneArguments {
 enum class StructureKind : std::uint8_t { kDense, kPool, kCompact };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file scene_shape.h
 /// What a scene occupies, as those who look for a place to see it from need it.
-#ifndef THIMBLE_TOOLS_SCENE_SCENE_SHAPE_H
-#define THIMBLE_TOOLS_SCENE_SCENE_SHAPE_H
+#pragma once
 
 #include <memory>
 #include <vector>
@@ -36,5 +34,3 @@ SceneShape shape_of(const BuiltScene& built);
 SceneShape shape_of(const SceneSource& source, const BuiltScene& built);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file scene_source.h
 /// A scene as a stream of voxels, wherever it comes from: the SCENE argument of every subcommand.
-#ifndef THIMBLE_TOOLS_SCENE_SCENE_SOURCE_H
-#define THIMBLE_TOOLS_SCENE_SCENE_SOURCE_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -144,5 +142,3 @@ std::unique_ptr<SceneSource> open_text_scene(const SceneText& text, const SceneA
                                              SceneOpening* opening, const Progress& progress);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file tone_table.h
 /// A picture's exposure and its shoulder as a table, in integers and without anything of a system: the page draws
 /// by it, too. lit_description.h says how it belongs together.
-#ifndef THIMBLE_TOOLS_SCENE_TONE_TABLE_H
-#define THIMBLE_TOOLS_SCENE_TONE_TABLE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -36,5 +34,3 @@ struct ToneTable {
 ToneTable tone_table(uint32_t exposure_q8);
 
 }  // namespace thimble::tools
-
-#endif

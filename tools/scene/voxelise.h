@@ -1,4 +1,3 @@
-/// @file voxelise.h
 /// Triangles to voxels, watertight: no ray passes from outside to inside through a closed surface.
 ///
 /// Vertices are fitted to the world and quantised once, to whole numbers of 1/256 voxel (world_fit.h); equal
@@ -18,8 +17,7 @@
 ///
 /// Conventions: meshes are y up, as most files are, and turn to z up by (x, y, z) -> (x, -z, y), which keeps
 /// the hand; `z_up` leaves them as they are. Only vertices that a triangle uses count for the fit.
-#ifndef THIMBLE_TOOLS_SCENE_VOXELISE_H
-#define THIMBLE_TOOLS_SCENE_VOXELISE_H
+#pragma once
 
 #include <array>
 #include <cstddef>
@@ -208,5 +206,3 @@ void voxelise_cells(std::span<const CellTriangle> triangles, int level, const Bl
                     const Progress& progress, const CellShade& shade = {});
 
 }  // namespace thimble::tools
-
-#endif

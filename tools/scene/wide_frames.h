@@ -1,7 +1,5 @@
-/// @file wide_frames.h
 /// The wide renderer as what draws for a simulated board, in memory of the host's own.
-#ifndef THIMBLE_TOOLS_SCENE_WIDE_FRAMES_H
-#define THIMBLE_TOOLS_SCENE_WIDE_FRAMES_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -53,5 +51,3 @@ class WideFrames final : public host::FramePainter {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,8 +1,6 @@
-/// @file wide_renderer.h
 /// The wide renderer (platform/wide) made ready for pictures of one size: its lists of voxels and its
 /// workspace in an arena. A build without it (-DTHIMBLE_WIDE=OFF) has wide_absent.cpp, which makes none.
-#ifndef THIMBLE_TOOLS_SCENE_WIDE_RENDERER_H
-#define THIMBLE_TOOLS_SCENE_WIDE_RENDERER_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -81,5 +79,3 @@ using FirstHits = std::function<Status(Span<const Ray> rays, Span<Hit> hits)>;
 FirstHits wide_first_hits(BuiltScene* built);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file workers.h
 /// Threads for what falls into tasks that do not know of one another.
-#ifndef THIMBLE_TOOLS_SCENE_WORKERS_H
-#define THIMBLE_TOOLS_SCENE_WORKERS_H
+#pragma once
 
 #include <atomic>
 #include <cstddef>
@@ -33,5 +31,3 @@ Status each_until_error(std::int32_t tasks, int threads, const Run& run) {
 }
 
 }  // namespace thimble::tools
-
-#endif

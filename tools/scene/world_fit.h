@@ -1,4 +1,3 @@
-/// @file world_fit.h
 /// From a file's real coordinates to whole numbers of 1/256 voxel in a world of 2^level voxels a side.
 ///
 /// One uniform scale and a shift, no turn. The largest extent of the bounds reaches from 1 unit to
@@ -9,8 +8,7 @@
 /// Precision: the bounds' centre is subtracted first, in double, so map coordinates (6e5, 4e6) keep all the
 /// detail that the file has. The arithmetic is IEEE `-`, `*`, `/` and rounding, one operation at a time
 /// (nothing a compiler could fuse), so the units are the same on every machine.
-#ifndef THIMBLE_TOOLS_SCENE_WORLD_FIT_H
-#define THIMBLE_TOOLS_SCENE_WORLD_FIT_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -106,5 +104,3 @@ void fit_points(const PointCloud& cloud, const PointSurvey& survey, int level, c
 void place_points(const PointCloud& cloud, int level, const PaletteMap* colors, const VoxelSink& sink);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file camera_state.h
 /// Which view the viewer shows: the one of the command line until somebody moves, then one of its own.
-#ifndef THIMBLE_TOOLS_VIEWER_CAMERA_STATE_H
-#define THIMBLE_TOOLS_VIEWER_CAMERA_STATE_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -81,5 +79,3 @@ class CameraState {
 };
 
 }  // namespace thimble::tools::viewer
-
-#endif

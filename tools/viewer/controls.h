@@ -1,11 +1,9 @@
-/// @file controls.h
 /// From keys and mouse to wishes: how the camera is to move, and what else is wished. It knows neither
 /// screen nor scene, so that tests can play every gesture.
 ///
 /// `s` has two meanings, since W, A, S and D fly: tapped it saves, held (or beside another key that flies) it
 /// flies backwards. A terminal does not tell when a key is let go; there `s` always saves.
-#ifndef THIMBLE_TOOLS_VIEWER_CONTROLS_H
-#define THIMBLE_TOOLS_VIEWER_CONTROLS_H
+#pragma once
 
 #include <cstdint>
 #include <set>
@@ -128,5 +126,3 @@ class Controls {
 };
 
 }  // namespace thimble::tools::viewer
-
-#endif

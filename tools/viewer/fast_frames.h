@@ -1,7 +1,5 @@
-/// @file fast_frames.h
 /// Frames while the camera moves: unlit, by the wide renderer or ray by ray, coarser where the time wants it.
-#ifndef THIMBLE_TOOLS_VIEWER_FAST_FRAMES_H
-#define THIMBLE_TOOLS_VIEWER_FAST_FRAMES_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -90,5 +88,3 @@ class FastFrames {
 };
 
 }  // namespace thimble::tools::viewer
-
-#endif

@@ -1,11 +1,9 @@
-/// @file finished_picture.h
 /// The picture that `thimble render` makes, and cheaper pictures of the same view.
 ///
 /// This is the one place where the viewer knows how `render` frames, lights and samples a scene: what
 /// `draw` ends with and what `thimble render` draws with the words of `FinishedLook::words` are the same
 /// bytes. Without --shade and --effects it is the scene's own look (scene/default_look.h).
-#ifndef THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
-#define THIMBLE_TOOLS_VIEWER_FINISHED_PICTURE_H
+#pragma once
 
 #include <array>
 #include <atomic>
@@ -235,5 +233,3 @@ class Refinement {
 };
 
 }  // namespace thimble::tools::viewer
-
-#endif

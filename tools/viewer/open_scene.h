@@ -1,7 +1,5 @@
-/// @file open_scene.h
 /// A scene as the viewer has it, and the thread that reads one while the screen stays alive.
-#ifndef THIMBLE_TOOLS_VIEWER_OPEN_SCENE_H
-#define THIMBLE_TOOLS_VIEWER_OPEN_SCENE_H
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -95,5 +93,3 @@ class FileWatch {
 };
 
 }  // namespace thimble::tools::viewer
-
-#endif

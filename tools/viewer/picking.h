@@ -1,7 +1,5 @@
-/// @file picking.h
 /// What is under the pointer.
-#ifndef THIMBLE_TOOLS_VIEWER_PICKING_H
-#define THIMBLE_TOOLS_VIEWER_PICKING_H
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -27,5 +25,3 @@ std::string picked_text(const OpenScene& scene, const Camera& camera, const Pick
                         std::int32_t y_px);
 
 }  // namespace thimble::tools::viewer
-
-#endif

@@ -1,7 +1,5 @@
-/// @file saving.h
 /// A picture on disk, and the command that makes the same one.
-#ifndef THIMBLE_TOOLS_VIEWER_SAVING_H
-#define THIMBLE_TOOLS_VIEWER_SAVING_H
+#pragma once
 
 #include <cstdint>
 #include <string>
@@ -31,5 +29,3 @@ std::string save_picture(const std::string& scene, std::int32_t width_px, std::i
                          const std::vector<std::uint8_t>& rgb);
 
 }  // namespace thimble::tools::viewer
-
-#endif

@@ -1,11 +1,9 @@
-/// @file viewer.h
 /// A scene to look around in: the loop between a screen, the camera and what draws.
 ///
 /// While the camera moves, frames are drawn by the clock (fast_frames.h); once it rests, the finished picture
 /// comes out of them on other threads (finished_picture.h), and ends as what `thimble render` makes. Everything
 /// else, screen included, happens on the thread that calls.
-#ifndef THIMBLE_TOOLS_VIEWER_VIEWER_H
-#define THIMBLE_TOOLS_VIEWER_VIEWER_H
+#pragma once
 
 #include <string>
 
@@ -38,5 +36,3 @@ inline constexpr const char* kBenchColumns =
     "scene,voxels,size_px,threads,engine,step,frames_a_second,frame_ms,slowest_frame_ms,lit_ms,finished_ms";
 
 }  // namespace thimble::tools::viewer
-
-#endif

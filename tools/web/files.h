@@ -1,7 +1,5 @@
-/// @file files.h
 /// The files that the page handed over, in place of a file system.
-#ifndef THIMBLE_TOOLS_WEB_FILES_H
-#define THIMBLE_TOOLS_WEB_FILES_H
+#pragma once
 
 #include <cstdint>
 #include <span>
@@ -18,5 +16,3 @@ std::string model_at_fault();
 void end_of_reading();
 
 }  // namespace thimble::tools
-
-#endif

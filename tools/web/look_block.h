@@ -1,8 +1,6 @@
-/// @file look_block.h
 /// What bake.wasm says of a scene's look from one camera, and scene.wasm draws by: this block, and behind it the
 /// lighting section (src/FORMAT.md) of the look's own lights. Both modules lay it out alike.
-#ifndef THIMBLE_TOOLS_WEB_LOOK_BLOCK_H
-#define THIMBLE_TOOLS_WEB_LOOK_BLOCK_H
+#pragma once
 
 #include <stdint.h>
 
@@ -54,5 +52,3 @@ struct WebCamera {
 };
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,7 +1,5 @@
-/// @file looks.h
 /// The command's own look (scene/default_look.h) and framing of a scene that was baked in a page.
-#ifndef THIMBLE_TOOLS_WEB_LOOKS_H
-#define THIMBLE_TOOLS_WEB_LOOKS_H
+#pragma once
 
 #include <memory>
 
@@ -14,5 +12,3 @@ namespace thimble::tools {
 void look_at_scene(std::unique_ptr<SceneSource> source, const BakedScene& scene);
 
 }  // namespace thimble::tools
-
-#endif

@@ -1,11 +1,9 @@
-/// @file runtime.h
 /// What Debian's C++ library for WebAssembly lacks and the readers use; included before every file of the
 /// module.
 ///
 /// Its std::from_chars takes no floating point. The overload here takes what the standard's does: no blanks,
 /// no `+`, no `0x`; and rounds as it does, since the C library's strtod is exact.
-#ifndef THIMBLE_TOOLS_WEB_RUNTIME_H
-#define THIMBLE_TOOLS_WEB_RUNTIME_H
+#pragma once
 
 #include <charconv>
 
@@ -14,5 +12,3 @@ namespace std {
 from_chars_result from_chars(const char* first, const char* last, double& value);
 
 }  // namespace std
-
-#endif

@@ -1,9 +1,7 @@
-/// @file engine.h
 /// One interface over what is compared: this project's particle world, a plain uniform grid and Box2D 2.4.
 ///
 /// Lengths are pixels (cells of the field), times are steps, y points down. Every engine gets the same balls.
-#ifndef THIMBLE_TESTS_BENCHMARKS_PARTICLES_ENGINE_H
-#define THIMBLE_TESTS_BENCHMARKS_PARTICLES_ENGINE_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -82,5 +80,3 @@ std::size_t kinks(const Scene& scene, const std::vector<BallState>& before,
                   const std::vector<BallState>& after, double threshold = 0.05);
 
 }  // namespace thimble::benchmarks
-
-#endif

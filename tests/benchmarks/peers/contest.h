@@ -1,8 +1,6 @@
-/// @file contest.h
 /// One scene drawn by this renderer and by all peers, frame by frame by turns, so that the load of the
 /// machine falls on all of them.
-#ifndef THIMBLE_TESTS_BENCHMARKS_PEERS_CONTEST_H
-#define THIMBLE_TESTS_BENCHMARKS_PEERS_CONTEST_H
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -87,5 +85,3 @@ void write_text(const std::string& path, const std::string& text);
 std::vector<std::pair<std::string, std::string>> machine();
 
 }  // namespace thimble::benchmarks
-
-#endif

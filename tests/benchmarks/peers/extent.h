@@ -1,7 +1,5 @@
-/// @file extent.h
 /// Where a voxel may be seen: what the loops over voxels share.
-#ifndef THIMBLE_TESTS_BENCHMARKS_PEERS_EXTENT_H
-#define THIMBLE_TESTS_BENCHMARKS_PEERS_EXTENT_H
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -70,5 +68,3 @@ inline Extent extent_of(const View& view, const float (&low)[3]) {
 }
 
 }  // namespace thimble::benchmarks
-
-#endif

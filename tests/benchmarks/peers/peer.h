@@ -1,11 +1,9 @@
-/// @file peer.h
 /// Other ways to the same picture: what somebody could use instead of this renderer.
 ///
 /// A peer is given the voxels once and then draws frames: clearing, rays, all that depends on the view, and a
 /// grey by depth for every pixel. Each is made as fast as its interface allows, and gets the rays just as
 /// the core quantises them. How many pixels show another voxel than the core's ray hits is counted.
-#ifndef THIMBLE_TESTS_BENCHMARKS_PEERS_PEER_H
-#define THIMBLE_TESTS_BENCHMARKS_PEERS_PEER_H
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -101,5 +99,3 @@ std::unique_ptr<Peer> make_embree_triangles(const std::vector<float>& corners);
 std::unique_ptr<Peer> make_nanovdb(const std::vector<Voxel>& voxels);
 
 }  // namespace thimble::benchmarks
-
-#endif
