@@ -252,6 +252,22 @@ TEST_CASE("render look: one colour that a text says -> is drawn in it, baked too
   CHECK(replaced[0] > 3 * replaced[1]);
 }
 
+TEST_CASE("render look: heights -> the slope of the land, baked too; of voxels their faces") {
+  const TemporaryFolder folder;
+  const std::string land = folder.write(
+      "land.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 1 2\n1 2 4\n2 4 9\n");
+  REQUIRE(run_command({"bake", land, "-o", folder.path("land.oct"), "--quiet"}).status == 0);
+  for (const auto& [scene, is_smooth] : {std::pair{land, true},
+                                         {folder.path("land.oct"), true},
+                                         {folder.write("a.scene", kLookScene), false}}) {
+    CAPTURE(scene);
+    const auto drawn =
+        run_command({"render", scene, "--size", "40x30", "--verbose", "-o", folder.path("a.png")});
+    REQUIRE(drawn.status == 0);
+    CHECK(contains(drawn.err, "smooth-normals") == is_smooth);
+  }
+}
+
 TEST_CASE("render look: nothing in the scene -> the backdrop, and no crash") {
   CHECK(draw("points:0,depth=4", {"--quiet"}).stats["hits"] == 0);
   CHECK(draw("points:1,depth=12", {"--quiet"}).pixels.size() == 3 * 80 * 60);

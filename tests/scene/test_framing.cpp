@@ -229,8 +229,8 @@ TEST_CASE("framing: front looks along +y, left along +x, top down with the front
   CHECK(forward(NamedView::kBest, 180, 0).x == -forward(NamedView::kBest, 0, 0).x);
 }
 
-TEST_CASE("framing: best -> the side with the many colours, from the front where sides are alike") {
-  const auto painted = [](int axis, bool high) {
+TEST_CASE("framing: best, iso -> the side with the many colours, from the front where sides are alike") {
+  const auto painted = [](int axis, bool high, tools::NamedView view = tools::NamedView::kBest) {
     // A cube whose one side is a checkerboard of materials.
     std::vector<std::uint8_t> pool(1U << 20);
     Octree octree;
@@ -243,7 +243,7 @@ TEST_CASE("framing: best -> the side with the many colours, from the front where
     std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
     CompactTree tree;
     REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
-    return tools::best_angles(tools::shape_of(tree));
+    return tools::best_angles(tools::shape_of(tree), view);
   };
   const auto plain = painted(-1, false);
   CHECK(plain.turn == -35);
@@ -251,6 +251,31 @@ TEST_CASE("framing: best -> the side with the many colours, from the front where
   CHECK(std::abs(painted(1, true).turn) > 90);
   CHECK(painted(0, false).turn < 0);
   CHECK(painted(0, true).turn > 0);
+  const auto corner = [&](int axis, bool high) { return painted(axis, high, tools::NamedView::kIso).turn; };
+  CHECK(corner(-1, false) == -45);
+  CHECK(std::abs(corner(1, true)) == 135);
+  CHECK(corner(0, true) == 45);
+}
+
+TEST_CASE("framing: best of one material -> from the front, though the back has more faces") {
+  std::vector<std::uint8_t> pool(1U << 20);
+  for (const std::uint8_t of_back : {std::uint8_t{0}, std::uint8_t{1}}) {
+    Octree octree;
+    REQUIRE(Octree::make(5, Bytes(pool.data(), pool.size()), &octree) == Status::kOk);
+    for (int i = 0; i < 16 * 16; ++i) {
+      for (int y = 8; y < 16; ++y) {
+        REQUIRE(octree.insert({8 + i % 16, y, 8 + i / 16}, 0) == Status::kOk);
+      }
+      // A flight of steps behind.
+      for (int y = 16; y < 32 - i / 16; ++y) {
+        REQUIRE(octree.insert({8 + i % 16, y, 8 + i / 16}, of_back) == Status::kOk);
+      }
+    }
+    std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
+    CompactTree tree;
+    REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
+    CHECK((std::abs(tools::best_angles(tools::shape_of(tree)).turn) > 90) == (of_back != 0));
+  }
 }
 
 TEST_CASE(

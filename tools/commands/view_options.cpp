@@ -97,7 +97,9 @@ void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits)
        {"paper", NamedView::kPaper}},
       &view->side,
       "from which side the scene fills nine tenths of the picture; best: of eight three-quarter views from "
-      "above the one that shows the most distinct faces and colours; front looks along +y, left along +x; "
+      "above the one that shows the most distinct faces and colours; iso: of the four corners; front looks "
+      "along "
+      "+y, left along +x; "
       "paper: where the instruments stand, which frame a box "
       "(default: the scene's own camera, else best)");
   const auto add_angle = [&](const char* name, double* angle, double most, const char* help) {

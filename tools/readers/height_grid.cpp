@@ -93,6 +93,7 @@ class Landscape final : public VoxelGrid {
     }
   }
   std::array<std::int32_t, 3> size() const override { return size_; }
+  bool is_landscape() const override { return true; }
   bool has_color() const override { return true; }
 
  private:

@@ -85,6 +85,8 @@ class VoxelGrid {
   virtual std::array<std::int32_t, 3> size() const = 0;
   /// Otherwise every colour is white.
   virtual bool has_color() const = 0;
+  /// Its steps stand for a slope.
+  virtual bool is_landscape() const { return false; }
 
  protected:
   /// Streams once. Throws InputError `sentence` where nothing is solid.

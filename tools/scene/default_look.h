@@ -42,7 +42,7 @@ extern const char* const kDefaultLookText;
 struct SceneFacts {
   bool has_colors = false;  ///< a palette, or colours of points or corners
   bool is_points = false;   ///< strewn voxels
-  bool is_mesh = false;     ///< triangles
+  bool is_mesh = false;     ///< triangles, or heights: a slope
   int surface_share = 100;  ///< of points: per cent with enough neighbours
   LitDescription lighting;  ///< what the scene itself states
   UsedMaterials used;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -363,9 +364,12 @@ Real3 placed(const VoxelBox& bounds, const PictureAxes& axes, double right, doub
               plus(scaled(axes.up, up), scaled(axes.forward, forward)));
 }
 
+constexpr double kIsometric = 35.264389682754654;  // the angle of a cube's diagonal and its faces
+
 // The side that is wished, in numbers.
 ViewAngles angles_for(const ViewWishes& wishes, const SceneShape& shape) {
-  ViewAngles angles = wishes.side == NamedView::kBest ? best_angles(shape) : angles_of(wishes.side);
+  const bool is_chosen = wishes.side == NamedView::kBest || wishes.side == NamedView::kIso;
+  ViewAngles angles = is_chosen ? best_angles(shape, wishes.side) : angles_of(wishes.side);
   angles.turn += wishes.onward.turn;
   angles.tilt = std::clamp(angles.tilt + wishes.onward.tilt, -90.0, 90.0);
   return angles;
@@ -507,7 +511,6 @@ PictureAxes::PictureAxes(const SceneCamera& camera) {
 }
 
 ViewAngles angles_of(NamedView view) {
-  constexpr double kIsometric = 35.264389682754654;  // the angle of a cube's diagonal and its faces
   constexpr ViewAngles kSide{-45, kIsometric};
   constexpr std::array<ViewAngles, 8> kAngles{
       // in the order of `NamedView`
@@ -692,8 +695,11 @@ ViewWishes finer(const ViewWishes& wishes, int across) {
 
 namespace {
 
+// Those from the front, then as many from behind.
 constexpr std::array<ViewAngles, 8> kCandidates{
     {{-35, 25}, {35, 25}, {-35, 40}, {35, 40}, {-145, 25}, {145, 25}, {-145, 40}, {145, 40}}};
+constexpr std::array<ViewAngles, 4> kCorners{
+    {{-45, kIsometric}, {45, kIsometric}, {-135, kIsometric}, {135, kIsometric}}};
 constexpr std::int32_t kWidth = 96;
 constexpr std::int32_t kHeight = 72;
 
@@ -720,18 +726,19 @@ std::size_t planes_seen(const CompactTree& tree, const Camera& camera) {
 
 }  // namespace
 
-ViewAngles best_angles(const SceneShape& shape) {
+ViewAngles best_angles(const SceneShape& shape, NamedView side) {
+  const std::span<const ViewAngles> all =
+      side == NamedView::kIso ? std::span<const ViewAngles>(kCorners) : kCandidates;
   if (shape.tree == nullptr || shape.corners.empty()) {
-    return kCandidates[0];
+    return all[0];
   }
   std::array<std::optional<std::size_t>, kCandidates.size()> seen{};
-  each_task(kCandidates.size(), shape.threads, [&](std::size_t i, std::size_t) {
+  each_task(all.size(), shape.threads, [&](std::size_t i, std::size_t) {
     ViewWishes wishes;
     wishes.width_px = kWidth;
     wishes.height_px = kHeight;
-    wishes.side = NamedView::kIso;
-    wishes.onward = {kCandidates[i].turn - angles_of(NamedView::kIso).turn,
-                     kCandidates[i].tilt - angles_of(NamedView::kIso).tilt};
+    wishes.side = NamedView::kFront;
+    wishes.onward = all[i];
     wishes.fov_degrees = kPictureFov;
     try {
       seen[i] = planes_seen(*shape.tree, frame_shape(wishes, shape).camera);
@@ -742,18 +749,19 @@ ViewAngles best_angles(const SceneShape& shape) {
   std::size_t best = 0;
   std::size_t most = 0;
   std::size_t front = 0;  // the most of the views from there
-  for (std::size_t i = 0; i < kCandidates.size(); ++i) {
-    if (!seen[i]) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool from_behind = i >= all.size() / 2;
+    // Without colours, more faces are no reason to show a back.
+    if (!seen[i] || (from_behind && front != 0 && !shape.tree->many_materials())) {
       continue;
     }
-    const bool from_behind = i >= kCandidates.size() / 2;
     if (from_behind ? 2 * *seen[i] > 3 * front && *seen[i] > most : *seen[i] > most) {
       best = i;
       most = *seen[i];
     }
     front = from_behind ? front : most;
   }
-  return kCandidates[best];
+  return all[best];
 }
 
 }  // namespace thimble::tools

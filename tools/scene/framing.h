@@ -27,12 +27,11 @@ inline constexpr double kPictureFill = 0.9;
 /// The vertical angle of such a picture.
 inline constexpr double kPictureFov = 35;
 
-/// Sides to see a scene from. Front looks along +y, left along +x, top down with the front below; iso stands
-/// in front on the left, as high as isometric drawings do.
+/// Sides to see a scene from. Front looks along +y, left along +x, top down with the front below.
 enum class NamedView : std::uint8_t {
   kPaper,  ///< kDefaultForward, with the corners of a box within kDefaultFill: what instruments look from
   kBest,   ///< of a few three-quarter views the one that shows most (`best_angles`)
-  kIso,
+  kIso,  ///< of the four corners, as high as isometric drawings stand, the one that shows most (`best_angles`)
   kFront,
   kBack,
   kLeft,
@@ -46,7 +45,7 @@ struct ViewAngles {
   double tilt = 0;  ///< above the horizon, -90 .. 90
 };
 
-/// Those of a named view. kBest wants a scene and has none.
+/// Those of a named view. kBest and kIso want a scene: without one they are the corner in front on the left.
 ViewAngles angles_of(NamedView view);
 
 /// Points and lengths in voxels. What is not given frames the scene.
@@ -133,8 +132,8 @@ ViewWishes finer(const ViewWishes& wishes, int across);
 /// two heights) the one that shows the most distinct faces and colours: each is drawn at 96 x 72 pixels, and
 /// what is counted is the different planes of faces (axis, side and coordinate, with the material) among the
 /// hits. People model with the front in front, so a view from behind must show half again as much as the best
-/// from there; ties go to the earlier one.
+/// from there, and where all is of one material none does; ties go to the earlier one. kIso chooses among four corners.
 /// Integers decide, so it is the same on every machine. 55,296 rays; without a compact tree, the first view.
-ViewAngles best_angles(const SceneShape& shape);
+ViewAngles best_angles(const SceneShape& shape, NamedView side = NamedView::kBest);
 
 }  // namespace thimble::tools

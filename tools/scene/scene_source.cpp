@@ -102,6 +102,7 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
   const std::shared_ptr<const VoxelGrid> grid = std::move(read);
   SourceFacts facts;
   facts.kind = "voxel grid";
+  facts.is_landscape = grid->is_landscape();
   ColorHistogram histogram;
   const bool has_color = grid->has_color();
   grid->for_each([&](auto, auto, auto, Rgb color) {
