@@ -28,7 +28,7 @@ struct SourceFacts {
   std::uint64_t points = 0;   ///< what the input counts: points, voxels of the file, vertices
   bool is_point_set = false;  ///< single voxels strewn about, of which a list is smaller than a pool of nodes
   bool is_mesh = false;       ///< every stream voxelises triangles again
-  bool is_landscape = false;     ///< heights, whose steps stand for a slope
+  bool is_landscape = false;  ///< heights, whose steps stand for a slope
   bool single_material = false;  ///< all voxels have material 0
   std::optional<bool>
       has_colors{};         ///< it says its colours, be it only one; else where its materials are many

@@ -240,7 +240,7 @@ class TextScene {
         throw InputError("the scene opens more than the limit of " + grouped(kMostSceneModels) + " models");
       }
       if (kept == nullptr) {
-        kept = survey(open_scene(arguments, opening, progress));
+        kept = survey(open_scene(arguments, opening, progress), progress);
       }
       model.model = kept;
     } catch (const InputError& error) {
@@ -266,7 +266,8 @@ class TextScene {
   }
 
   // Streams a model once.
-  static std::shared_ptr<const OpenedModel> survey(std::shared_ptr<const SceneSource> source) {
+  static std::shared_ptr<const OpenedModel> survey(std::shared_ptr<const SceneSource> source,
+                                                   const Progress& progress) {
     auto model = std::make_shared<OpenedModel>();
     source->stream(
         [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
@@ -274,7 +275,7 @@ class TextScene {
           ++model->voxels;
           grow(&model->solid, {x, y, z});
         },
-        {});
+        progress);
     model->source = std::move(source);
     return model;
   }
