@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -62,14 +63,24 @@ TEST_CASE("palette: colours that glow -> entries of their own, however many othe
   for (std::uint32_t bin = 0; bin < kColorBins; ++bin) {
     histogram.add(bin_color(bin));
   }
-  histogram.add({248, 0, 0}, true);
-  const PaletteMap map(histogram, 8);
+  histogram.add({248, 0, 0}, 8 * 256);
+  const PaletteMap map(histogram);
   CHECK(map.colors() == 255);
   const Material& entry = map.palette()[map.index({248, 0, 0}, true)];
   CHECK(entry.kind == thimble::SurfaceKind::kEmit);
   CHECK(entry.color == Rgb{248, 0, 0});
   CHECK(entry.flux == 3);
   CHECK(map.palette()[map.index({248, 0, 0})].kind == thimble::SurfaceKind::kDiffuse);
+}
+
+TEST_CASE("palette: lights of several powers -> each its own; of one entry the mean") {
+  ColorHistogram histogram;
+  histogram.add({255, 0, 0}, 1000 * 256);
+  histogram.add({0, 255, 0}, 2 * 256);
+  histogram.add({0, 255, 0}, 6 * 256);
+  const PaletteMap map(histogram);
+  CHECK(map.palette()[map.index({255, 0, 0}, true)].flux == doctest::Approx(std::log2(1000)));
+  CHECK(map.palette()[map.index({0, 255, 0}, true)].flux == 2);
 }
 
 TEST_CASE("palette: a bin of several colours -> their rounded average") {

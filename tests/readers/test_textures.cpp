@@ -316,6 +316,31 @@ TEST_CASE(
   CHECK(columns_of(quad.source()) == "rrrrrrrrbbbbbbbb");
 }
 
+TEST_CASE("texture: at the border of a picture -> nothing of the opposite border, whatever its wrap mode") {
+  constexpr Pixel kClearPixel{0, 0, 0, 0};
+  for (const char* const mode : {"OPAQUE", "MASK", "BLEND"}) {
+    std::map<Place, Rgb> clamped;
+    for (const char* const wrap : {"33071", "10497", "33648"}) {
+      Quad quad;
+      quad.picture = png(
+          2, 4,
+          {kRedPixel, kClearPixel, kBluePixel, kClearPixel, kRedPixel, kBlackPixel, kBluePixel, kWhitePixel});
+      quad.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"alphaMode":")" +
+                      std::string(mode) + R"("})";
+      quad.texture = R"({"source":0,"sampler":0})";
+      quad.more = R"("samplers":[{"wrapS":)" + std::string(wrap) + R"(,"wrapT":)" + wrap + R"(}],)";
+      Source source = quad.source();
+      auto& mesh = std::get<TriangleMesh>(source);
+      mesh.positions.push_back({2.2, 2.2, 0});  // its sides end within voxels
+      mesh.texcoords.push_back({0, 0});
+      const auto voxels = voxels_of(source, 5);
+      clamped = clamped.empty() ? voxels : clamped;
+      CHECK(voxels == clamped);
+    }
+    CHECK(clamped.size() > 60);
+  }
+}
+
 TEST_CASE("gltf: alpha -> with MASK and BLEND what is clear is nothing, with OPAQUE it means nothing") {
   Quad quad;
   quad.picture = png(4, 1, {{255, 0, 0, 0}, {255, 0, 0, 100}, {255, 0, 0, 160}, kRedPixel});
@@ -349,7 +374,7 @@ TEST_CASE(
   /// The first letters of the columns' colours, capital where they glow; and the power of what glows.
   const auto glow_of = [](const Source& source, double* power) {
     const auto& mesh = std::get<TriangleMesh>(source);
-    const PaletteMap colors(mesh_colors(mesh, 4, false), glow_power(mesh));
+    const PaletteMap colors(mesh_colors(mesh, 4, false));
     std::string columns(16, ' ');
     voxelise(mesh, 4, false, &colors, [&](std::int32_t x, std::int32_t, std::int32_t, std::uint8_t material) {
       const Material& entry = colors.palette()[material];
@@ -385,12 +410,19 @@ TEST_CASE(
   CHECK(columns_of_quad(light("[1, 0, 0]", by_picture), &power) == "RRRRRRRRbbbbbbbb");
   CHECK(columns_of_quad(light("[0.05, 0, 0]", ""), &power) == "rrrrrrrrbbbbbbbb");
   CHECK(columns_of_quad(light("[0, 0, 0]", by_picture), &power) == "rrrrrrrrbbbbbbbb");
+  CHECK(columns_of_quad(light("[0.9, 0.9, 0.9]", ""), &power) ==
+        "rrrrrrrrbbbbbbbb");  // less than it reflects
   // Its picture lies elsewhere than the colour's: it is not drawn, and that is said.
   Quad apart;
   apart.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"emissiveFactor":[1,1,1],)"
                    R"("emissiveTexture":{"index":0,"texCoord":1}})";
   CHECK(glow_of(apart.source(), &power) == "rrrrrrrrbbbbbbbb");
   CHECK(notes_hold(apart.source(), "the light of material 0 is not drawn"));
+  // A picture that has no place hides no light.
+  Quad lost;
+  lost.material =
+      R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":5}},"emissiveFactor":[0,1,0]})";
+  CHECK(glow_of(lost.source(), &power) == "GGGGGGGGGGGGGGGG");
   // Nothing but light, without any picture or coordinates.
   Quad plain;
   plain.material = R"({"emissiveFactor":[0,0,1]})";

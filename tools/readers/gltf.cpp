@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -152,7 +153,7 @@ class Scene {
     if (mesh_.surface_of.empty()) {
       mesh_.surfaces = {};
     } else {
-      mesh_.texcoords.resize(mesh_.texcoords.empty() ? 0 : mesh_.positions.size());
+      mesh_.texcoords.resize(mesh_.texcoords.empty() ? 0 : mesh_.positions.size(), kNowhere);
       mesh_.surface_of.resize(mesh_.triangles.size());
     }
     add_notes();
@@ -362,7 +363,7 @@ class Scene {
     }
     const Look look = look_of(part);
     const std::vector<float> alphas = add_colors(part, attributes, look);
-    const bool has_place = add_texcoords(part, attributes, look);
+    add_texcoords(part, attributes, look);
     if (part.mode == kPoints) {
       return;
     }
@@ -371,7 +372,7 @@ class Scene {
     if (look.cutoff > 0) {
       leave_out_clear(look, alphas, first, first_triangle);
     }
-    if (has_place && look.surface != 0) {
+    if (look.surface != 0) {
       mesh_.surface_of.resize(first_triangle);
       mesh_.surface_of.resize(mesh_.triangles.size(), look.surface);
     }
@@ -444,16 +445,16 @@ class Scene {
     return alphas;
   }
 
-  /// @return whether the part has no picture, or says where
-  bool add_texcoords(const Part& part, const json& attributes, const Look& look) {
+  /// Vertices of a part that says none are on no picture.
+  void add_texcoords(const Part& part, const json& attributes, const Look& look) {
     const auto texcoord =
         look.texcoord.empty() ? std::nullopt : gltf_number(attributes, look.texcoord.c_str(), part.place);
     const GltfAccessor corners = texcoord ? file_.accessor(*texcoord) : GltfAccessor{};
     if (corners.components != 2 || corners.count < part.vertices) {
-      return look.texcoord.empty();
+      return;
     }
     mesh_.texcoords.reserve(mesh_.positions.capacity());
-    mesh_.texcoords.resize(mesh_.positions.size() - static_cast<std::size_t>(part.vertices));
+    mesh_.texcoords.resize(mesh_.positions.size() - static_cast<std::size_t>(part.vertices), kNowhere);
     for (std::uint64_t i = 0; i < part.vertices; ++i) {
       const double u = corners.real(i, 0);
       const double v = corners.real(i, 1);
@@ -462,7 +463,6 @@ class Scene {
       };
       mesh_.texcoords.push_back({moved(look.moved[0]), moved(look.moved[1])});
     }
-    return true;
   }
 
   /// The look of a part's material; that of the last one is kept.
@@ -498,9 +498,6 @@ class Scene {
     made.alpha = look.factor[3];
     made.cutoff = look.cutoff;
     add_glow(entry, look, made, place);
-    if (made.color == nullptr && made.glow == nullptr) {
-      look.texcoord.clear();
-    }
     made.wrap_u = look.wraps[0];
     made.wrap_v = look.wraps[1];
     if (made.color != nullptr || made.emission != std::array<double, 3>{}) {
@@ -608,6 +605,7 @@ class Scene {
   }
 
   enum : std::uint64_t { kRepeat = 10497, kClamp = 33071, kMirror = 33648 };
+  static constexpr std::array<float, 2> kNowhere{std::numeric_limits<float>::quiet_NaN(), 0};
   static constexpr double kNearlyClear = 0.1;
   static constexpr std::uint64_t kPartBytes = 256;
   static constexpr std::uint64_t kVertexBytes = 35;

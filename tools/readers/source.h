@@ -139,7 +139,7 @@ struct MeshSurface {
   double alpha = 1;   ///< times that of the pictures
   double cutoff = 0;  ///< nothing is there where alpha is less; 0: alpha means nothing
 };
-/// No texture coordinate: the triangle has its own colour alone.
+/// No texture coordinate: the triangle is on no picture.
 inline constexpr std::uint32_t kNoTexcoord = UINT32_MAX;
 
 /// Triangles with real coordinates: `.obj`, `.off`, `.stl`, `.gltf`, `.ply` with faces. Polygons are already
@@ -151,9 +151,10 @@ struct TriangleMesh {
   std::vector<Rgb> face_colors{};                       ///< one a triangle, or empty; counts before `colors`
   bool is_z_up = false;                                 ///< the format says so; else y is taken to be up
   Notes notes{};
-  std::vector<MeshSurface> surfaces{};            ///< empty where no triangle has more than its colour
-  std::vector<std::uint32_t> surface_of{};        ///< one a triangle, in range, or empty as `surfaces` are
-  std::vector<std::array<float, 2>> texcoords{};  ///< u, and v that runs down; 0 to 1 is the picture once
+  std::vector<MeshSurface> surfaces{};      ///< empty where no triangle has more than its colour
+  std::vector<std::uint32_t> surface_of{};  ///< one a triangle, in range, or empty as `surfaces` are
+  std::vector<std::array<float, 2>>
+      texcoords{};  ///< u, and v that runs down; 0 to 1 is the picture once; u NaN: none
   std::vector<std::array<std::uint32_t, 3>> texcoord_corners{};  ///< one a triangle; empty: as `triangles`
 };
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -23,19 +24,26 @@ Real3 in_voxels(const UnitPoint& point) {
       1.0 / kUnitsPerVoxel);
 }
 
+/// A range cut to another.
+void cut(double low, double high, double& middle, double& half) {
+  const double first = std::clamp(middle - half, low, high);
+  const double last = std::clamp(middle + half, low, high);
+  middle = (first + last) / 2;
+  half = (last - first) / 2;
+}
+
 /// What is clear does not end the search for what a voxel is of, as all else does.
 constexpr std::uint64_t kMostClearVoxels = std::uint64_t{1} << 28;
 
 struct Shade {
   Rgb color;
-  bool glows = false;
+  std::uint32_t power_q8 = 0;  ///< ColorHistogram
 };
 
 /// One triangle of a mesh, seen from voxels.
 class MeshShade {
  public:
-  /// @param power  glow_power
-  MeshShade(const TriangleMesh& mesh, double power, std::size_t triangle, const UnitTriangle& corners);
+  MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitTriangle& corners);
 
   /// Nothing where the triangle is clear; nor, where `only_over`, where the voxel's middle is not over the triangle.
   /// @param edges  those of all triangles, sorted
@@ -59,19 +67,23 @@ class MeshShade {
   /// @param size  of the piece of the picture that is averaged; 1: what a voxel covers
   Texture::Box box_at(const Place& place, double size) const;
   Texture::Sample sample_at(const Place& place, double size) const;
+  /// What the surface gives off, or none.
+  std::optional<Shade> glow_at(const Place& place, const std::array<double, 3>& reflected) const;
   /// Clear on the average and at the place itself: a voxel may cover much that is beside the mesh's part of a picture.
   bool is_clear(const Place& place) const;
 
   const TriangleMesh& mesh_;
-  double power_;
   std::size_t triangle_;
   UnitTriangle corners_;
-  const MeshSurface* surface_ = nullptr;  ///< null: the triangle has its own colour alone
-  Real3 corner_{};                        ///< the first, in voxels; the edges from it to the others:
+  const MeshSurface* surface_ = nullptr;
+  bool has_place_ = true;  ///< on the surface's pictures, which count for nothing else
+  Real3 corner_{};         ///< the first, in voxels; the edges from it to the others:
   Real3 edge_b_{}, edge_c_{};
   double bb_ = 0, bc_ = 0, cc_ = 0, area_ = 0;  ///< products of the edges; the square of twice the area
   std::array<std::array<double, 2>, 3> texcoord_{};
   double half_u_ = 0, half_v_ = 0;  ///< of what a voxel covers
+  /// Of the picture's copy that all of the triangle lies on, beyond which it has no colour; all that there is, if none.
+  std::array<double, 2> low_{}, high_{};
 };
 
 double mixed(double p, double q, double r, const std::array<double, 2>& place) {
@@ -82,9 +94,8 @@ bool is_inside(const std::array<double, 2>& place) {
   return place[0] >= 0 && place[1] >= 0 && place[0] + place[1] <= 1;
 }
 
-MeshShade::MeshShade(const TriangleMesh& mesh, double power, std::size_t triangle,
-                     const UnitTriangle& corners)
-    : mesh_(mesh), power_(power), triangle_(triangle), corners_(corners), corner_(in_voxels(corners[0])) {
+MeshShade::MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitTriangle& corners)
+    : mesh_(mesh), triangle_(triangle), corners_(corners), corner_(in_voxels(corners[0])) {
   edge_b_ = minus(in_voxels(corners[1]), corner_);
   edge_c_ = minus(in_voxels(corners[2]), corner_);
   bb_ = dot(edge_b_, edge_b_);
@@ -93,16 +104,23 @@ MeshShade::MeshShade(const TriangleMesh& mesh, double power, std::size_t triangl
   area_ = bb_ * cc_ - bc_ * bc_;
   const auto& numbers =
       mesh.texcoord_corners.empty() ? mesh.triangles[triangle] : mesh.texcoord_corners[triangle];
-  const MeshSurface& surface = mesh.surfaces[mesh.surface_of[triangle]];
-  const bool has_picture = surface.color != nullptr || surface.opacity != nullptr || surface.glow != nullptr;
-  for (std::size_t i = 0; i < 3 && has_picture; ++i) {
-    if (numbers[i] >= mesh.texcoords.size()) {
+  surface_ = &mesh.surfaces[mesh.surface_of[triangle]];
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (numbers[i] >= mesh.texcoords.size() || std::isnan(mesh.texcoords[numbers[i]][0])) {
+      has_place_ = false;
       return;
     }
     const auto [u, v] = mesh.texcoords[numbers[i]];
     texcoord_[i] = {static_cast<double>(u), static_cast<double>(v)};
   }
-  surface_ = &surface;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto [low, high] = std::minmax({texcoord_[0][axis], texcoord_[1][axis], texcoord_[2][axis]});
+    constexpr double kRounding = 1.0 / 65536;
+    const double copy = std::floor(low + kRounding);
+    const bool is_within = high <= copy + 1 + kRounding;
+    low_[axis] = is_within ? copy : -std::numeric_limits<double>::infinity();
+    high_[axis] = is_within ? copy + 1 : std::numeric_limits<double>::infinity();
+  }
   if (area_ <= 0) {
     return;
   }
@@ -182,14 +200,19 @@ bool MeshShade::goes_on(const Place& place, std::span<const std::uint64_t> edges
 }
 
 Texture::Box MeshShade::box_at(const Place& place, double size) const {
-  return {mixed(texcoord_[0][0], texcoord_[1][0], texcoord_[2][0], place),
-          mixed(texcoord_[0][1], texcoord_[1][1], texcoord_[2][1], place), half_u_ * size, half_v_ * size};
+  Texture::Box box{mixed(texcoord_[0][0], texcoord_[1][0], texcoord_[2][0], place),
+                   mixed(texcoord_[0][1], texcoord_[1][1], texcoord_[2][1], place), half_u_ * size,
+                   half_v_ * size};
+  cut(low_[0], high_[0], box.u, box.half_u);
+  cut(low_[1], high_[1], box.v, box.half_v);
+  return box;
 }
 
 Texture::Sample MeshShade::sample_at(const Place& place, double size) const {
   const Texture::Box box = box_at(place, size);
   const auto sample_of = [&](const std::shared_ptr<const Texture>& texture) {
-    return texture == nullptr ? Texture::Sample{} : texture->average(box, surface_->wrap_u, surface_->wrap_v);
+    return texture == nullptr || !has_place_ ? Texture::Sample{}
+                                             : texture->average(box, surface_->wrap_u, surface_->wrap_v);
   };
   Texture::Sample sample = sample_of(surface_->color);
   if (surface_->opacity != nullptr) {
@@ -207,6 +230,26 @@ bool MeshShade::is_clear(const Place& place) const {
   return is_below(sample_at(place, 1)) && is_below(sample_at({inwards(place[0]), inwards(place[1])}, 0));
 }
 
+std::optional<Shade> MeshShade::glow_at(const Place& place, const std::array<double, 3>& reflected) const {
+  constexpr double kLeast = 0.1;
+  constexpr double kMost = 256;
+  std::array<double, 3> light = surface_->emission;
+  if (surface_->glow != nullptr) {
+    const Texture::Sample sample =
+        surface_->glow->average(box_at(place, 1), surface_->wrap_u, surface_->wrap_v);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      light[channel] *= sample.light[channel];
+    }
+  }
+  const double most = std::max({light[0], light[1], light[2]});
+  if (most < std::max({kLeast, reflected[0], reflected[1], reflected[2]})) {
+    return std::nullopt;
+  }
+  const double power = std::clamp(most, 1.0, kMost);  // a colour holds no more than 1
+  return Shade{{screen_byte(light[0] / power), screen_byte(light[1] / power), screen_byte(light[2] / power)},
+               static_cast<std::uint32_t>(power * 256)};
+}
+
 std::optional<Shade> MeshShade::at(const UnitPoint& voxel, bool only_over,
                                    std::span<const std::uint64_t> edges) const {
   const Real3 out = minus(Real3{voxel[0] + 0.5, voxel[1] + 0.5, voxel[2] + 0.5}, corner_);
@@ -215,29 +258,16 @@ std::optional<Shade> MeshShade::at(const UnitPoint& voxel, bool only_over,
   if (only_over && !is_over) {
     return std::nullopt;
   }
-  const bool may_glow = surface_ != nullptr && surface_->emission != std::array<double, 3>{};
-  if (surface_ == nullptr || (surface_->color == nullptr && surface_->opacity == nullptr && !may_glow)) {
+  const bool has_picture = has_place_ && (surface_->color != nullptr || surface_->opacity != nullptr);
+  const bool may_glow =
+      surface_->emission != std::array<double, 3>{} && (surface_->glow == nullptr || has_place_);
+  if (!has_picture && !may_glow) {
     return Shade{has_colors(mesh_) ? triangle_color(mesh_, triangle_) : Rgb{}};
   }
   const Place place = is_over ? below : edge_place_of(out);
-  if (surface_->cutoff > 0 && (is_clear(place) || (!is_over && goes_on(below, edges) && is_clear(below)))) {
+  if (has_picture && surface_->cutoff > 0 &&
+      (is_clear(place) || (!is_over && goes_on(below, edges) && is_clear(below)))) {
     return std::nullopt;
-  }
-  if (may_glow) {
-    constexpr double kLeast = 0.1;
-    std::array<double, 3> light = surface_->emission;
-    const Texture::Sample glow =
-        surface_->glow == nullptr
-            ? Texture::Sample{}
-            : surface_->glow->average(box_at(place, 1), surface_->wrap_u, surface_->wrap_v);
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      light[channel] *= glow.light[channel];
-    }
-    if (std::max({light[0], light[1], light[2]}) >= kLeast) {
-      return Shade{
-          {screen_byte(light[0] / power_), screen_byte(light[1] / power_), screen_byte(light[2] / power_)},
-          true};
-    }
   }
   const Texture::Sample sample = sample_at(place, 1);
   std::array<double, 3> tint{1, 1, 1};
@@ -253,16 +283,18 @@ std::optional<Shade> MeshShade::at(const UnitPoint& voxel, bool only_over,
     const auto& corners = mesh_.triangles[triangle_];
     tint_by(mesh_.colors[corners[0]], mesh_.colors[corners[1]], mesh_.colors[corners[2]]);
   }
-  return Shade{{screen_byte(tint[0] * sample.light[0]), screen_byte(tint[1] * sample.light[1]),
-                screen_byte(tint[2] * sample.light[2])}};
+  const std::array<double, 3> reflected{tint[0] * sample.light[0], tint[1] * sample.light[1],
+                                        tint[2] * sample.light[2]};
+  const std::optional<Shade> glow = may_glow ? glow_at(place, reflected) : std::nullopt;
+  return glow ? glow
+              : Shade{{screen_byte(reflected[0]), screen_byte(reflected[1]), screen_byte(reflected[2])}};
 }
 
 }  // namespace
 
 void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
-                     const std::function<std::uint8_t(Rgb, bool glows)>& material_of, const BlockSink& sink,
-                     const Progress& progress) {
-  const double power = glow_power(mesh);
+                     const std::function<std::uint8_t(Rgb, std::uint32_t power_q8)>& material_of,
+                     const BlockSink& sink, const Progress& progress) {
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
   const std::size_t count = mesh.triangles.size();
   std::uint64_t all_cost = 0;
@@ -274,7 +306,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
   for (std::size_t i = 0; i < count; ++i) {
     const CellTriangle triangle = triangle_at(i);
     all_cost += rough_cost(triangle.corners);
-    MeshShade(mesh, power, i, triangle.corners).add_edges(edges);
+    MeshShade(mesh, i, triangle.corners).add_edges(edges);
   }
   std::sort(edges.begin(), edges.end());
   std::uint64_t clear = 0;
@@ -283,7 +315,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
     if (!shown && !triangle.only_over && ++clear > kMostClearVoxels) {
       throw InputError("its triangles lie over each other too often where they are clear");
     }
-    return shown ? std::optional<std::uint8_t>(material_of(shown->color, shown->glows)) : std::nullopt;
+    return shown ? std::optional<std::uint8_t>(material_of(shown->color, shown->power_q8)) : std::nullopt;
   };
   if (goes_by_cells(all_cost, count)) {
     std::vector<CellTriangle> triangles;
@@ -297,7 +329,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
                    [&](const CellTriangle& triangle, const UnitPoint& voxel) {
                      if (!shade || number != triangle.number) {
                        number = triangle.number;
-                       shade.emplace(mesh, power, number, triangle.corners);
+                       shade.emplace(mesh, number, triangle.corners);
                      }
                      return material_at(*shade, triangle, voxel);
                    });
@@ -308,7 +340,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
       progress(static_cast<double>(i) / static_cast<double>(2 * count));
     }
     const CellTriangle triangle = triangle_at(i);
-    const MeshShade shade(mesh, power, triangle.number, triangle.corners);
+    const MeshShade shade(mesh, triangle.number, triangle.corners);
     voxelise_triangle(triangle.corners, 0, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
       if (const auto material = material_at(shade, triangle, {x, y, z})) {
         sink({x, y, z}, 0, *material);
@@ -322,20 +354,12 @@ ColorHistogram mesh_colors(const TriangleMesh& mesh, int level, bool z_up) {
     return triangle_colors(mesh);
   }
   ColorHistogram histogram;
-  const auto count = [&](Rgb color, bool glows) {
-    histogram.add(color, glows);
+  const auto count = [&](Rgb color, std::uint32_t power_q8) {
+    histogram.add(color, power_q8);
     return std::uint8_t{0};
   };
   voxelise_shaded(mesh, level, z_up, count, [](const UnitPoint&, int, std::uint8_t) {}, {});
   return histogram;
-}
-
-double glow_power(const TriangleMesh& mesh) {
-  double power = 1;
-  for (const MeshSurface& surface : mesh.surfaces) {
-    power = std::max({power, surface.emission[0], surface.emission[1], surface.emission[2]});
-  }
-  return power;
 }
 
 }  // namespace thimble::tools

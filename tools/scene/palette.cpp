@@ -140,7 +140,7 @@ Material default_material() {
   return colored({236, 236, 232});
 }
 
-PaletteMap::PaletteMap(const ColorHistogram& histogram, double power) : table_(2 * kColorBins) {
+PaletteMap::PaletteMap(const ColorHistogram& histogram) : table_(2 * kColorBins) {
   palette_.fill(default_material());
   std::vector<Swatch> swatches = used_bins(histogram);
   if (swatches.empty()) {
@@ -159,7 +159,6 @@ PaletteMap::PaletteMap(const ColorHistogram& histogram, double power) : table_(2
     if (swatches[boxes[i].first].bin >= kColorBins) {
       palette_[i + 1].kind = SurfaceKind::kEmit;
       palette_[i + 1].emission = 1;
-      palette_[i + 1].flux = std::log2(power);
     }
     for (std::size_t j = boxes[i].first; j < boxes[i].last; ++j) {
       table_[swatches[j].bin] = static_cast<std::uint8_t>(i + 1);
@@ -190,6 +189,7 @@ void PaletteMap::average_entries(const ColorHistogram& histogram, const std::vec
     const ColorHistogram::Bin& bin = histogram.bin(swatch.bin);
     entry.count += bin.count;
     entry.squares += bin.squares;
+    entry.power_q8 += bin.power_q8;
     for (std::size_t channel = 0; channel < 3; ++channel) {
       entry.sum[channel] += bin.sum[channel];
     }
@@ -197,13 +197,14 @@ void PaletteMap::average_entries(const ColorHistogram& histogram, const std::vec
   double squares = 0;
   double count = 0;
   for (std::size_t i = 1; i < entries.size(); ++i) {
-    const auto& [colors, sum, all_squares] = entries[i];
+    const auto& [colors, sum, all_squares, power_q8] = entries[i];
     if (colors == 0) {
       continue;
     }
     const Channels average{rounded_average(sum[0], colors), rounded_average(sum[1], colors),
                            rounded_average(sum[2], colors)};
     palette_[i].color = {average[0], average[1], average[2]};
+    palette_[i].flux = power_q8 == 0 ? 0 : std::log2(static_cast<double>(power_q8 / colors) / 256);
     count += static_cast<double>(colors);
     squares += static_cast<double>(all_squares);
     for (std::size_t channel = 0; channel < 3; ++channel) {

@@ -8,7 +8,7 @@
 /// arithmetic with fixed tie rules: the same colours give the same palette on every machine, whatever the
 /// order they came in.
 ///
-/// Memory: fixed. A histogram is 2.5 MiB, a palette map 64 KiB, however many colours there are.
+/// Memory: fixed. A histogram is 3 MiB, a palette map 64 KiB, however many colours there are.
 #pragma once
 
 #include <array>
@@ -39,12 +39,15 @@ class ColorHistogram {
     std::uint64_t count = 0;
     std::array<std::uint64_t, 3> sum{};  ///< of red, green, blue
     std::uint64_t squares = 0;           ///< of all three
+    std::uint64_t power_q8 = 0;          ///< of what glows
   };
 
   ColorHistogram() : bins_(2 * kColorBins) {}
-  /// @param glows  it is light that is given off: it gets an entry of its own, a light's
-  void add(Rgb color, bool glows = false) {
-    Bin& bin = bins_[color_bin(color) + (glows ? kColorBins : 0)];
+  /// @param power_q8  of a colour that is given off as light, how many times as bright it is, in 1/256: it gets an
+  /// entry of its own, a light's; 0: it is none
+  void add(Rgb color, std::uint32_t power_q8 = 0) {
+    Bin& bin = bins_[color_bin(color) + (power_q8 != 0 ? kColorBins : 0)];
+    bin.power_q8 += power_q8;
     ++bin.count;
     bin.sum[0] += color.r;
     bin.sum[1] += color.g;
@@ -64,8 +67,7 @@ class PaletteMap {
   /// Chooses the colours; some milliseconds. An empty histogram gives a palette of default materials in which
   /// every colour maps to 0. A colour whose bin was not counted maps to the entry nearest to the bin's
   /// middle (squared distance, the lowest index on a tie).
-  /// @param power  of the entries that glow: how many times as bright as a screen's white theirs is
-  explicit PaletteMap(const ColorHistogram& histogram, double power = 1);
+  explicit PaletteMap(const ColorHistogram& histogram);
 
   /// Palette index of `color`: 1..255, or 0 when no colour was counted.
   std::uint8_t index(Rgb color, bool glows = false) const {

@@ -201,8 +201,7 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
   SourceFacts facts;
   facts.kind = "triangle mesh, voxelised";
   facts.level = arguments.depth.value_or(kDefaultDepth);
-  const auto colors =
-      std::make_shared<const PaletteMap>(mesh_colors(*mesh, facts.level, z_up), glow_power(*mesh));
+  const auto colors = std::make_shared<const PaletteMap>(mesh_colors(*mesh, facts.level, z_up));
   facts.points = mesh->positions.size();
   facts.is_mesh = true;
   facts.single_material = colors->colors() == 0;

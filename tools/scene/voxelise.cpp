@@ -372,8 +372,8 @@ ColorHistogram triangle_colors(const TriangleMesh& mesh) {
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress) {
   if (!mesh.surfaces.empty()) {
-    const auto material_of = [&](Rgb color, bool glows) {
-      return colors == nullptr ? std::uint8_t{0} : colors->index(color, glows);
+    const auto material_of = [&](Rgb color, std::uint32_t power_q8) {
+      return colors == nullptr ? std::uint8_t{0} : colors->index(color, power_q8 != 0);
     };
     voxelise_shaded(mesh, level, z_up, material_of, sink, progress);
     return;
