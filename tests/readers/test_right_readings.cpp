@@ -113,6 +113,10 @@ TEST_CASE("colours: what full is follows the file's highest, noted where it is a
     CHECK_FALSE(notes_hold(stated, "--colors"));
     CHECK(colors_of(stated) == Colors{{row.of_bytes, 0, 0}});
   }
+  const std::string head = "x,y,z,r,g,b\n";
+  CHECK(notes_hold(read(read_xyz, head + "1,2,3,1.01,0,0\n", 0),
+                   "no color is above 2: full is taken to be 255"));
+  CHECK(notes_hold(read(read_ply, floats_of_ply + "1 2 3 1e30 0 0\n", 0), "below 0, above 65535"));
   CHECK(colors_of(read(read_xyz, "1 2 3 0.5 300 7\n", 0)).empty());  // no scale that whole numbers have
   CHECK(colors_of(read(read_xyz, "1 2 3 0 300 0\n", 300)) == Colors{{0, 255, 0}});
 

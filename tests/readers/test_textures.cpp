@@ -434,6 +434,9 @@ TEST_CASE(
   folder.write("a.mtl", "newmtl a\nKd 1 0 0\nKe 0 0 2\n");
   CHECK(glow_of(read_beside(folder, "a.obj", quad + "usemtl a\nf 1 2 3 4\n"), &power) == "BBBBBBBBBBBBBBBB");
   CHECK(power == 2);
+  folder.write("a.mtl", "newmtl a\nKd 0 0 0\nKe 1\n");
+  CHECK(glow_of(read_beside(folder, "a.obj", quad + "usemtl a\nf 1 2 3 4\n"), &power) == "????????????????");
+  CHECK(power == 1);
   folder.write("a.mtl", "newmtl a\nKd 0 1 0\nKe 1 0 0\nmap_Ke red.png\n");
   const std::string places = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n";
   CHECK(glow_of(read_beside(folder, "a.obj", quad + places), &power) == "RRRRRRRRgggggggg");

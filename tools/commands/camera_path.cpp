@@ -172,6 +172,7 @@ CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames)
                          static_cast<double>(frame) / frames);
       };
       PathCamera camera = cameras[way];
+      camera.is_between = frame != 0;
       for (std::optional<Real3> ViewWishes::*const point :
            {&ViewWishes::eye, &ViewWishes::target, &ViewWishes::up}) {
         for (std::size_t axis = 0; from.*point && axis < 3; ++axis) {
@@ -194,7 +195,8 @@ std::vector<Framing> frame_path(const std::string& path, const CameraPath& camer
     try {
       framings.push_back(frame_shape(camera.view, shape));
     } catch (const InputError& error) {
-      fail_in_path(path, camera.line, error.what());
+      fail_in_path(path, camera.line,
+                   std::string(camera.is_between ? "on the way from here to the next: " : "") + error.what());
     }
   }
   return framings;

@@ -11,7 +11,8 @@ namespace thimble::tools {
 
 struct PathCamera {
   ViewWishes view;
-  std::uint64_t line = 0;  ///< of the file, from 1
+  std::uint64_t line = 0;   ///< of the file, from 1
+  bool is_between = false;  ///< on the way from there to the next
 };
 
 struct CameraPath {

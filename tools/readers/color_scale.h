@@ -36,8 +36,13 @@ class ColorScale {
   double full() const { return stated_ != 0 ? stated_ : highest_ <= 1 ? 1 : highest_ <= 255 ? 255 : 65535; }
   /// Says what they are taken for where they could be something else.
   void add_note(Notes& notes) const {
-    if (stated_ == 0 && highest_ > 0 && (highest_ > 255 || (is_whole_ && highest_ <= 1))) {
-      notes.push_back("no color is above " + std::to_string(static_cast<int>(highest_)) +
+    if (!is_valid_) {
+      notes.push_back(
+          "colors below 0, above 65535 or that are no numbers are taken for what is next to them");
+    }
+    const bool is_small = highest_ > 0 && highest_ <= 2 && (is_whole_ || highest_ > 1);
+    if (stated_ == 0 && is_valid_ && (highest_ > 255 || is_small)) {
+      notes.push_back("no color is above " + std::to_string(static_cast<int>(std::ceil(highest_))) +
                       ": full is taken to be " + std::to_string(static_cast<int>(full())) +
                       " (--colors says otherwise)");
     }

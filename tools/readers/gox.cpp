@@ -11,6 +11,7 @@
 //
 // Source of the format: Guillaume Chereau, the head of Goxel's "gox.c".
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -152,8 +153,9 @@ class GoxGrid final : public VoxelGrid {
 
   template <class Take>
   void stream(const Take& take) const {
-    std::shared_ptr<const std::uint8_t> rgba;
-    std::uint32_t decoded = 0;
+    // Copies of a layer come back to its blocks.
+    constexpr std::size_t kKept = 64;
+    std::array<std::pair<std::uint32_t, std::shared_ptr<const std::uint8_t>>, kKept> kept{};
     for (const Layer& layer : layers_) {
       for (ByteReader reader = layer.blocks; reader.remaining() > 0;) {
         const std::uint32_t number = reader.u32();
@@ -167,6 +169,7 @@ class GoxGrid final : public VoxelGrid {
           reader.fail("block " + std::to_string(number) + " is not among the " +
                       std::to_string(pictures_.size()) + " of the file");
         }
+        auto& [decoded, rgba] = kept[number % kKept];
         if (rgba == nullptr || decoded != number) {
           rgba = decode(pictures_[number]);
           decoded = number;

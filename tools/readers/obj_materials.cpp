@@ -72,10 +72,15 @@ void read_library(std::string_view text, const std::string& folder,
                           : material->picture) = (is_whole ? "" : folder) + std::string(name);
     } else if (word == "Kd" || word == "Ke") {
       std::array<double, 3> color{};
-      bool is_color = true;
-      for (double& component : color) {
-        is_color = is_color && parse_number(take_word(line), component) == NumberKind::kFinite;
+      std::size_t count = 0;
+      while (count < color.size() && parse_number(take_word(line), color[count]) == NumberKind::kFinite) {
+        ++count;
       }
+      if (count == 1 && trimmed(line).empty()) {  // one number is all three
+        color[1] = color[2] = color[0];
+        count = color.size();
+      }
+      const bool is_color = count == color.size();
       if (is_color && word == "Ke") {
         for (std::size_t i = 0; i < color.size(); ++i) {
           material->emission[i] = std::clamp(color[i], 0.0, 256.0);

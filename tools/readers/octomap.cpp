@@ -24,7 +24,7 @@ constexpr std::string_view kBinaryMapMagic = "# Octomap OcTree binary file";
 constexpr std::string_view kFullMapMagic = "# Octomap OcTree file";
 constexpr int kMapLevels = 16;
 /// A cube costs no byte, but time.
-constexpr std::uint64_t kMostMapVoxels = std::uint64_t{1} << 28;
+constexpr std::uint64_t kMostMapVoxels = kMostGridVoxels;
 
 class OctomapGrid final : public VoxelGrid {
  public:

@@ -65,7 +65,7 @@ class QubicleGrid final : public VoxelGrid {
   bool has_color() const override { return true; }
 
  private:
-  static constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31;
+  static constexpr std::uint64_t kMostCells = std::uint64_t{1} << 30;
 
   void read_binary(ByteReader& reader) {
     if (file_.bytes.size() < 4 || reader.u32() != kVersion) {
@@ -153,7 +153,7 @@ class QubicleGrid final : public VoxelGrid {
     matrix.data_offset = static_cast<std::size_t>(reader.offset());
     if (is_packed_) {
       // What a run repeats costs no byte, but time.
-      cells_ += std::uint64_t{matrix.size[0]} * matrix.size[1] * matrix.size[2];
+      cells_ += std::uint64_t{matrix.size[0]} * std::max(matrix.size[1], 1U) * matrix.size[2];
       if (cells_ > kMostCells) {
         reader.fail("the matrices have more cells than the limit of " + std::to_string(kMostCells));
       }
@@ -186,8 +186,9 @@ class QubicleGrid final : public VoxelGrid {
     constexpr std::uint64_t kMostVoxelBytes = 8;  // a run of one
     const std::uint64_t columns = std::uint64_t{matrix.size[0]} * matrix.size[2];
     const std::string place = "the matrix at byte offset " + std::to_string(reader.offset());
-    const FileBytes unpacked = inflate_bytes(reader.take(reader.u32()), Deflated::kZlib,
-                                             columns * (2 + kMostVoxelBytes * matrix.size[1]) + 1, place);
+    const std::uint64_t most_bytes = std::min(columns * (2 + kMostVoxelBytes * matrix.size[1]) + 1,
+                                              3 * file_.bytes.size() + (std::uint64_t{64} << 20));
+    const FileBytes unpacked = inflate_bytes(reader.take(reader.u32()), Deflated::kZlib, most_bytes, place);
     ByteReader groups(unpacked.bytes(), place + ", unpacked");
     for (std::uint64_t column = 0; column < columns; ++column) {
       const auto x = static_cast<std::uint32_t>(column / matrix.size[2]);

@@ -72,6 +72,14 @@ class VoxelModel {
   virtual void for_each_in_frames(const Visit& visit) const { for_each(visit); }
 };
 
+/// Some formats repeat voxels in a few bytes; so many take half a minute.
+inline constexpr std::uint64_t kMostGridVoxels = std::uint64_t{1} << 27;
+inline void check_grid_voxels(std::uint64_t voxels) {
+  if (voxels > kMostGridVoxels) {
+    throw InputError("holds more than the limit of " + std::to_string(kMostGridVoxels) + " solid voxels");
+  }
+}
+
 /// Voxels with whole-number positions and a colour of their own each: `.binvox`, `.qb`, `.schematic` ...
 class VoxelGrid {
  public:
@@ -91,9 +99,9 @@ class VoxelGrid {
  protected:
   /// Streams once. Throws InputError `sentence` where nothing is solid.
   void check_solid(const char* sentence) const {
-    bool is_solid = false;
-    for_each([&](auto, auto, auto, auto) { is_solid = true; });
-    if (!is_solid) {
+    std::uint64_t voxels = 0;
+    for_each([&](auto, auto, auto, auto) { check_grid_voxels(++voxels); });
+    if (voxels == 0) {
       throw InputError(sentence);
     }
   }

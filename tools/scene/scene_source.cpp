@@ -106,7 +106,7 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
   ColorHistogram histogram;
   const bool has_color = grid->has_color();
   grid->for_each([&](auto, auto, auto, Rgb color) {
-    ++facts.points;
+    check_grid_voxels(++facts.points);
     if (has_color) {
       histogram.add(color);
     }
