@@ -86,7 +86,7 @@ int draw_frame() {
     port::flush(band);
     crc = crc32(band.pixels, crc);
   }
-  apps::put("instructions ", instructions, " crc ", Hex{crc}, "\n");
+  apps::put("instructions ", instructions, " crc ", apps::Hex{crc}, "\n");
   return 0;
 }
 

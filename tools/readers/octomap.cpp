@@ -24,7 +24,7 @@ constexpr std::string_view kBinaryMapMagic = "# Octomap OcTree binary file";
 constexpr std::string_view kFullMapMagic = "# Octomap OcTree file";
 constexpr int kMapLevels = 16;
 /// A cube costs no byte, but time.
-constexpr std::uint64_t kMostMapVoxels = kMostGridVoxels;
+constexpr std::uint64_t kMostMapVoxels = std::uint64_t{1} << 27;
 
 class OctomapGrid final : public VoxelGrid {
  public:
@@ -143,7 +143,7 @@ bool looks_like_octomap(std::span<const std::uint8_t> bytes) {
 }
 
 /// @throws InputError  no line 'data', a class of trees that is not read, nodes that end early or lie too deep, none
-///   that is occupied, more than 2^28 voxels or a side over `kGridSideLimit`
+///   that is occupied, more than 2^27 voxels or a side over `kGridSideLimit`
 Source read_octomap(const SharedBytes& file, const ReadOptions&, const Progress&) {
   return std::make_unique<OctomapGrid>(file);
 }

@@ -65,7 +65,7 @@ class QubicleGrid final : public VoxelGrid {
   bool has_color() const override { return true; }
 
  private:
-  static constexpr std::uint64_t kMostCells = std::uint64_t{1} << 30;
+  static constexpr std::uint64_t kMostCells = std::uint64_t{1} << 28;
 
   void read_binary(ByteReader& reader) {
     if (file_.bytes.size() < 4 || reader.u32() != kVersion) {

@@ -72,8 +72,8 @@ class VoxelModel {
   virtual void for_each_in_frames(const Visit& visit) const { for_each(visit); }
 };
 
-/// Some formats repeat voxels in a few bytes; so many take half a minute.
-inline constexpr std::uint64_t kMostGridVoxels = std::uint64_t{1} << 27;
+/// Some formats repeat voxels in a few bytes; so many, a solid world of level 10, take minutes.
+inline constexpr std::uint64_t kMostGridVoxels = std::uint64_t{1} << 30;
 inline void check_grid_voxels(std::uint64_t voxels) {
   if (voxels > kMostGridVoxels) {
     throw InputError("holds more than the limit of " + std::to_string(kMostGridVoxels) + " solid voxels");
