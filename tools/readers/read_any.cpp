@@ -176,7 +176,8 @@ Source read_any(const ReadOptions& options, const SharedBytes& file, const Progr
                      std::string(row.name));
   }
   constexpr std::array kColorGuessers{read_las, read_npy, read_off, read_pcd, read_ply, read_xyz, read_zip};
-  if (options.full_color != 0 && std::ranges::find(kColorGuessers, row.read) == kColorGuessers.end()) {
+  if (options.full_color != 0 &&
+      std::find(kColorGuessers.begin(), kColorGuessers.end(), row.read) == kColorGuessers.end()) {
     throw InputError("--colors is for formats that do not say what a full color is, and this is a " +
                      std::string(row.name));
   }
