@@ -34,7 +34,7 @@ for board in ${*:-lm3s6965evb microbit}; do
   fi
   said=
   # With formats, the map's frames ask hundreds of times which it is; that a few are saved would not do.
-  for least in tree:1 brick_map:400; do
+  for least in tree:1 brick_map:300; do
     engine=${least%:*}
     with=$(value $all $engine.instructions_median)
     without=$(value "$none" $engine.instructions_median)
