@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -152,7 +153,7 @@ void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
   }
   if (seconds) {
     const int rate = FilmTimes(PartKind::kCameraPath, 1).rate;
-    cameras = smoothed(camera_path, cameras, static_cast<int>(rate * *seconds + 0.5));
+    cameras = smoothed(camera_path, cameras, static_cast<int>(std::lround(rate * *seconds)));
   }
   if (frames) {
     const std::int64_t all = turntable != 0 ? turntable

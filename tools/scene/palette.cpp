@@ -204,12 +204,13 @@ void PaletteMap::average_entries(const ColorHistogram& histogram, const std::vec
     const Channels average{rounded_average(sum[0], colors), rounded_average(sum[1], colors),
                            rounded_average(sum[2], colors)};
     palette_[i].color = {average[0], average[1], average[2]};
-    palette_[i].flux = power_q8 == 0 ? 0 : std::log2(static_cast<double>(power_q8 / colors) / 256);
-    count += static_cast<double>(colors);
+    const auto all = static_cast<double>(colors);
+    palette_[i].flux = power_q8 == 0 ? 0 : std::log2(static_cast<double>(power_q8) / (256 * all));
+    count += all;
     squares += static_cast<double>(all_squares);
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const double value = average[channel];
-      squares += value * (value * static_cast<double>(colors) - 2 * static_cast<double>(sum[channel]));
+      squares += value * (value * all - 2 * static_cast<double>(sum[channel]));
     }
   }
   error_ = std::sqrt(std::fmax(0, squares) / (3 * count));
