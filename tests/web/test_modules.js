@@ -443,9 +443,10 @@ async function plays() {
     const look = new Look(modules.scene, first.baked, width, height);
     const held = new Orbit(look.point(false), look.point(true), 1 << look.x.level());
     const shown = {look, baker, width, height, file, orbit: held};
-    is('pixels of the first', pixelsThatDiffer(drawn(shown, 'fine'), rendered(shown)), 0);
+    // Before it is turned a frame stands as the page frames it, alone; the command frames a film by all of its frames.
     held.turn(0.3, 0.1);
     const before = drawn(shown, 'fine');
+    is('pixels of the first', pixelsThatDiffer(before, rendered(shown, ...lensOf(shown))), 0);
     for (const frame of [1, 2, 0]) {
       const words = ['--frame', String(frame)];
       const next = baker.bakeAhead('film.vox', board, {look: true, frame}, [held.camera(), width, height, 320]);
@@ -460,8 +461,6 @@ async function plays() {
       look.band('fine', 0, height, look.expose());
       shown.last = Buffer.from(look.rows(0, height));
       is(`pixels of frame ${frame}`, pixelsThatDiffer(shown.last, rendered(shown, ...words, ...lensOf(shown))), 0);
-      const own = {...shown, orbit: new Orbit(look.point(false), look.point(true), 1 << look.x.level())};
-      is(`pixels of frame ${frame} from its own view`, pixelsThatDiffer(drawn(own, 'fine'), rendered(own, ...words)), 0);
     }
     let said = '';
     try {
