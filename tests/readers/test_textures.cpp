@@ -319,25 +319,29 @@ TEST_CASE(
 TEST_CASE("texture: at the border of a picture -> nothing of the opposite border, whatever its wrap mode") {
   constexpr Pixel kClearPixel{0, 0, 0, 0};
   for (const char* const mode : {"OPAQUE", "MASK", "BLEND"}) {
-    std::map<Place, Rgb> clamped;
-    for (const char* const wrap : {"33071", "10497", "33648"}) {
-      Quad quad;
-      quad.picture = png(
-          2, 4,
-          {kRedPixel, kClearPixel, kBluePixel, kClearPixel, kRedPixel, kBlackPixel, kBluePixel, kWhitePixel});
-      quad.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"alphaMode":")" +
-                      std::string(mode) + R"("})";
-      quad.texture = R"({"source":0,"sampler":0})";
-      quad.more = R"("samplers":[{"wrapS":)" + std::string(wrap) + R"(,"wrapT":)" + wrap + R"(}],)";
-      Source source = quad.source();
-      auto& mesh = std::get<TriangleMesh>(source);
-      mesh.positions.push_back({2.2, 2.2, 0});  // its sides end within voxels
-      mesh.texcoords.push_back({0, 0});
-      const auto voxels = voxels_of(source, 5);
-      clamped = clamped.empty() ? voxels : clamped;
-      CHECK(voxels == clamped);
+    for (const double reach : {2.05, 2.15, 2.25, 2.35, 2.45}) {  // its sides end in any part of a voxel
+      std::map<Place, Rgb> clamped;
+      for (const char* const wrap : {"33071", "10497"}) {
+        CAPTURE(mode);
+        CAPTURE(reach);
+        Quad quad;
+        quad.picture = png(2, 2, {kClearPixel, kBlackPixel, kRedPixel, kWhitePixel});
+        quad.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"alphaMode":")" +
+                        std::string(mode) + R"("})";
+        quad.texture = R"({"source":0,"sampler":0})";
+        quad.more = R"("samplers":[{"wrapS":)" + std::string(wrap) + R"(,"wrapT":)" + wrap + R"(}],)";
+        Source source = quad.source();
+        auto& mesh = std::get<TriangleMesh>(source);
+        mesh.positions.push_back({reach, reach, 0});
+        mesh.texcoords.push_back({0, 0});
+        mesh.triangles.push_back({4, 4, 4});
+        mesh.surface_of.push_back(0);
+        const auto voxels = voxels_of(source, 5);
+        clamped = clamped.empty() ? voxels : clamped;
+        CHECK(voxels == clamped);
+      }
+      CHECK(clamped.size() > 60);
     }
-    CHECK(clamped.size() > 60);
   }
 }
 
@@ -407,6 +411,10 @@ TEST_CASE(
   CHECK(power == 1);
   CHECK(columns_of_quad(light("[0, 1, 0]", strong), &power) == "GGGGGGGGGGGGGGGG");
   CHECK(power == 4);
+  const std::string glaring =
+      R"(,"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":10000000}})";
+  CHECK(columns_of_quad(light("[0.0001, 1, 0]", glaring), &power) == "GGGGGGGGGGGGGGGG");  // its hue stays
+  CHECK(power == 256);
   CHECK(columns_of_quad(light("[1, 0, 0]", by_picture), &power) == "RRRRRRRRbbbbbbbb");
   CHECK(columns_of_quad(light("[0.05, 0, 0]", ""), &power) == "rrrrrrrrbbbbbbbb");
   CHECK(columns_of_quad(light("[0, 0, 0]", by_picture), &power) == "rrrrrrrrbbbbbbbb");

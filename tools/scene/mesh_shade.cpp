@@ -245,9 +245,9 @@ std::optional<Shade> MeshShade::glow_at(const Place& place, const std::array<dou
   if (most < std::max({kLeast, reflected[0], reflected[1], reflected[2]})) {
     return std::nullopt;
   }
-  const double power = std::clamp(most, 1.0, kMost);  // a colour holds no more than 1
+  const double power = std::fmax(most, 1);  // a colour holds no more than 1
   return Shade{{screen_byte(light[0] / power), screen_byte(light[1] / power), screen_byte(light[2] / power)},
-               static_cast<std::uint32_t>(power * 256)};
+               static_cast<std::uint32_t>(std::fmin(power, kMost) * 256)};
 }
 
 std::optional<Shade> MeshShade::at(const UnitPoint& voxel, bool only_over,

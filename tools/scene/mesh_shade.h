@@ -14,9 +14,9 @@
 
 namespace thimble::tools {
 
-/// `voxelise` of a mesh with pictures; the material of a voxel is what `material_of` says of its colour and, where it glows, its power (ColorHistogram), once or more
-/// often a voxel. Memory: 12 bytes a vertex and 24 a triangle that may be clear; cell by cell 88 a triangle more, and
-/// the lists.
+/// `voxelise` of a mesh with pictures; the material of a voxel is what `material_of` says of its colour and, where it
+/// glows, its power (ColorHistogram), once or more often a voxel. Memory: 12 bytes a vertex and 24 a triangle that may
+/// be clear; cell by cell 88 a triangle more, and the lists.
 /// @throws InputError  no triangles, or so many clear ones over each other that it does not end
 void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
                      const std::function<std::uint8_t(Rgb, std::uint32_t power_q8)>& material_of,
