@@ -15,7 +15,7 @@
 // soon as it does not, one is drawn with them, and then nothing until it moves again.
 //
 // A frame is drawn in bands of a few rows. No picture is in RAM, but for the one that is refined while a rate
-// is held, and nothing but the arena is used.
+// is held, and those that ink on a display of one bit is made from; nothing but the arena is used.
 #include "apps/apps.h"
 #include "apps/band_crew.h"
 #include "apps/band_turns.h"
@@ -28,6 +28,7 @@
 #include "apps/text.h"
 #include "port.h"
 #include "thimble/base/memory.h"
+#include "thimble/picture/ink.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/octree.h"
 
@@ -68,6 +69,28 @@ struct Crew {
 };
 #endif
 
+#if defined(THIMBLE_INK)
+/// What frames for a display of one bit are made from, where the arena holds that.
+struct Ink {
+  InkPicture picture;
+  bool is_there = false;
+
+  void take(Arena* arena) {
+    const port::Display& screen = display();
+    const size_t bytes = ink_bytes(screen.width_px, screen.height_px);
+    is_there =
+        bits_per_pixel(screen.format) == 1 && bytes <= arena->free_bytes() / 2 &&
+        InkPicture::make(screen.width_px, screen.height_px, arena->take(bytes), &picture) == Status::kOk;
+  }
+};
+#else
+struct Ink {
+  static constexpr bool is_there = false;
+
+  void take(Arena* /*arena*/) {}
+};
+#endif
+
 struct Demo : Placed {
   Arena arena{port::arena()};
   ShownScene shown;
@@ -81,6 +104,7 @@ struct Demo : Placed {
   bool turns = true;
   bool tells_crc = false;
   [[no_unique_address]] Crew crew;
+  [[no_unique_address]] Ink ink;
 
   // Holding a rate of frames.
   HeldFrame* held = nullptr;  ///< once it is allocated
@@ -148,17 +172,57 @@ void show_cross(Arena* arena) {
   return status;
 }
 
+/// Without light. `counts`: as for `draw_scene`.
+Status draw_plain(const Demo& demo, const Shading& shading, const Band& band,
+                  RenderCounts* counts = nullptr) {
+  return demo.builds ? render_band(demo.pool, demo.camera, shading, band)
+                     : draw_scene(demo.shown, demo.camera, shading, band, counts);
+}
+
 Status draw(const Demo& demo, const Band& band) {
-  if (demo.builds) {
-    return render_band(demo.pool, demo.camera, demo.shading, band);
+#if defined(THIMBLE_INK)
+  if (demo.ink.is_there) {
+    return demo.ink.picture.store(band);
   }
+#endif
   if constexpr (kCanLight) {
     if (demo.is_lit) {
       return draw_lit_scene(demo.shown, demo.camera, demo.shading, demo.light, band, !demo.is_whole);
     }
   }
-  return draw_scene(demo.shown, demo.camera, demo.shading, band);
+  return draw_plain(demo, demo.shading, band);
 }
+
+#if defined(THIMBLE_INK)
+/// What bands of ink are taken from. Counted, so that the core draws it: what a port draws is what a display is sent.
+[[gnu::noinline]] Status make_ink(Demo* demo) {
+  InkPicture& ink = demo->ink.picture;
+  RenderCounts counts;
+  Status status = Status::kOk;
+  if (kCanLight && demo->is_lit) {
+    status =
+        draw_lit_scene(demo->shown, demo->camera, demo->shading, demo->light, ink.tones(), !demo->is_whole);
+  } else {
+    status = draw_plain(*demo, demo->shading, ink.tones(), &counts);
+  }
+  if (status == Status::kOk) {
+    Shading depths;
+    const DepthRange range =
+        depth_range(demo->camera, demo->builds ? demo->pool.bounds() : demo->shown.scene.tree().bounds());
+    depths.near_q8 = range.near_q8;
+    depths.far_q8 = range.far_q8;
+    status = draw_plain(*demo, depths, ink.depths(), &counts);
+  }
+  if (status == Status::kOk) {
+    ink.finish();
+  }
+  return status;
+}
+#else
+Status make_ink(Demo* /*demo*/) {
+  return Status::kOk;
+}
+#endif
 
 /// The rows of the picture from `y` on that the band's memory holds, those before `end`.
 [[gnu::noinline]] Band band_at(const Demo& demo, int32_t y, int32_t end) {
@@ -224,9 +288,10 @@ void draw_other_bands(void* demo) {
   return frame.status;
 }
 
-/// Whether both cores draw: not where a hand may stop a frame whose light is slow.
+/// Whether both cores draw: not ink, and not where a hand may stop a frame whose light is slow.
 bool draws_together(const Demo& demo) {
-  return demo.crew.is_there && (!kCanLight || !demo.is_lit || !demo.is_whole || demo.light.moves_whole());
+  return demo.crew.is_there && !demo.ink.is_there &&
+         (!kCanLight || !demo.is_lit || !demo.is_whole || demo.light.moves_whole());
 }
 
 /// Starts the second core with as much stack as this one has.
@@ -267,17 +332,24 @@ void tell_crew(const Demo& /*demo*/) {}
     }
     return status;
   }
+  if (demo->ink.is_there) {
+    const Status status = make_ink(demo);
+    if (status != Status::kOk) {
+      return status;
+    }
+  }
   for (int32_t y = 0; y < height; y += demo->bands.rows) {
     const Band band = band_at(*demo, y, height);
-    const bool slow = kCanLight && demo->is_lit && demo->is_whole && !demo->light.moves_whole();
+    const bool lights = kCanLight && demo->is_lit && !demo->ink.is_there;
+    const bool slow = lights && demo->is_whole && !demo->light.moves_whole();
     if (slow && port::buttons() != 0) {
       demo->is_lit = demo->light.is_fast;
       demo->is_whole = false;
     }
     // Light is drawn from here: the less stands on the stack the better.
-    const Status status = kCanLight && demo->is_lit ? draw_lit_scene(demo->shown, demo->camera, demo->shading,
-                                                                     demo->light, band, !demo->is_whole)
-                                                    : draw(*demo, band);
+    const Status status = lights && demo->is_lit ? draw_lit_scene(demo->shown, demo->camera, demo->shading,
+                                                                  demo->light, band, !demo->is_whole)
+                                                 : draw(*demo, band);
     if (status != Status::kOk) {
       return status;
     }
@@ -637,6 +709,7 @@ bool take_bands(Demo* demo) {
   prove_light(demo->shown, &demo->arena, &demo->light);
   tell_board_and_scene("demo", demo->shown);
   demo->tells_crc = !display().connected;
+  demo->ink.take(&demo->arena);
   if (!take_bands(demo)) {
     return "the arena does not hold a row of the picture";
   }

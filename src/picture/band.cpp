@@ -3,14 +3,17 @@
 namespace thimble {
 
 Status check_band(const Camera& camera, int level, const Band& band, size_t* stride) {
-  const int32_t width = camera.width_px();
-  if (width == 0 || camera.level() != level || band.first_row < 0 || band.rows < 0 ||
-      band.rows > camera.height_px() - band.first_row) {
+  return camera.level() != level ? Status::kBadArgument
+                                 : check_rows(camera.width_px(), camera.height_px(), band, stride);
+}
+
+Status check_rows(int32_t width, int32_t height, const Band& band, size_t* stride) {
+  if (width == 0 || band.first_row < 0 || band.rows < 0 || band.rows > height - band.first_row) {
     return Status::kBadArgument;
   }
   // Only the picture's end may cut off what the format keeps together.
   const int32_t multiple = band_row_multiple(band.format);
-  const bool ends = band.first_row + band.rows == camera.height_px();
+  const bool ends = band.first_row + band.rows == height;
   if (band.first_row % multiple != 0 || (!ends && band.rows % multiple != 0)) {
     return Status::kBadArgument;
   }

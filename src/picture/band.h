@@ -15,6 +15,9 @@ namespace thimble {
 /// Returns the errors of `render_band`; `stride` gets the bytes from row to row.
 Status check_band(const Camera& camera, int level, const Band& band, size_t* stride);
 
+/// The same for a picture of `width` x `height` pixels (0 x 0: of none), whatever it comes from.
+Status check_rows(int32_t width, int32_t height, const Band& band, size_t* stride);
+
 /// Whether rays may be traced with `width` in a world of 2^level: kBadArgument when it is k32 and that does
 /// not take all rays of the camera.
 Status check_width(const Camera& camera, int level, Width width);

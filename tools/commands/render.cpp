@@ -24,6 +24,7 @@
 #include "scene/lit_description.h"
 #include "scene/lit_streams.h"
 #include "scene/painter.h"
+#include "thimble/picture/ink.h"
 
 namespace thimble::tools {
 namespace {
@@ -70,6 +71,9 @@ void check_usage(const RenderCommand& command) {
   command.engine.check(command.quality.plain(), command.effects.named() || command.effects.bounces);
   if (command.quality.cuts() && command.scene.structure != StructureKind::kCompact) {
     refuse_usage("--cutoff and --max-depth want --structure compact");
+  }
+  if (command.look.is_ink() && (command.output.rows || command.output.is_film())) {
+    refuse_usage("--shade ink looks at whole pictures, without --rows, --part and what makes a film");
   }
   if (command.effects.named() && !command.look.shade_name.empty() &&
       command.look.shade != ShadeMode::kColor) {
@@ -259,6 +263,28 @@ Painting paint_lit(const Subject& subject, const Light& light, const Progress& p
   return painting;
 }
 
+// What was drawn as tones, as ink for `format`.
+Image inked(const Subject& subject, const Image& tones, PixelFormat format, const Progress& progress) {
+  const std::int32_t width = tones.width_px;
+  const std::int32_t height = tones.height_px;
+  const Shading shading = scene_shading(ShadeMode::kDepth, {}, subject.camera(), subject.built.bounds());
+  Painting depths;
+  const TraceOptions options = subject.command.engine.trace_options();
+  if (paint(ray_painter(subject.built, subject.camera(), shading, PixelFormat::kGray8, options), width,
+            {0, height}, PixelFormat::kGray8, progress, &depths) != Status::kOk) {
+    fail_camera(subject.command);
+  }
+  std::vector<std::uint8_t> memory(ink_bytes(width, height));
+  InkPicture ink;
+  (void)InkPicture::make(width, height, {memory.data(), memory.size()}, &ink);  // of its size
+  std::copy(tones.pixels.begin(), tones.pixels.end(), ink.tones().pixels.data);
+  std::copy(depths.image.pixels.begin(), depths.image.pixels.end(), ink.depths().pixels.data);
+  ink.finish();
+  Image image{width, height, format, std::vector<std::uint8_t>(band_bytes(format, width, height))};
+  (void)ink.store({{image.pixels.data(), image.pixels.size()}, format, 0, 0, height});
+  return image;
+}
+
 Stats stats_of(const Subject& subject, const SceneSource& source, const Light& light,
                const Painting& painting) {
   const RenderCommand& command = subject.command;
@@ -323,8 +349,9 @@ void run(const RenderCommand& given) {
                     {command.scene.arguments.scene, command.output.camera_path});
   const ImageKind kind = command.output.kind(ImageKind::kPpm);
   // A board's picture is drawn as its display takes it.
-  const PixelFormat format =
+  const PixelFormat display =
       command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
+  const PixelFormat format = command.look.is_ink() ? PixelFormat::kGray8 : display;
 
   if (command.output.played) {
     command.scene.arguments.frame = static_cast<std::uint32_t>(command.output.played->first);
@@ -353,9 +380,12 @@ void run(const RenderCommand& given) {
   ProgressBar bar("tracing", command.scene.quiet);
   const auto progress = [&](double done) { bar.update(done); };
   const auto gpu = command.engine.gpu(built);
-  const Painting painting = light.effects == Effect::kNone
-                                ? paint_without_effects(subject, frame, gpu.get(), progress)
-                                : paint_lit(subject, light, progress);
+  Painting painting = light.effects == Effect::kNone
+                          ? paint_without_effects(subject, frame, gpu.get(), progress)
+                          : paint_lit(subject, light, progress);
+  if (command.look.is_ink()) {
+    painting.image = inked(subject, painting.image, display, progress);
+  }
   bar.clear();
 
   const Image shown = converted(painting.image, pixel_format(kind));
@@ -498,10 +528,12 @@ void add_render(CLI::App& app) {
           kFilmEndings)
       .required();
   add_picture_view(*sub, &command->view);
-  add_shade(*sub, &command->look.shade,
-            "brightness by distance (the paper's), the face's direction, the palette in one light, or white "
-            "where anything is; given without --effects it draws none",
-            &command->look.shade_name);
+  add_shade(
+      *sub, &command->look.shade,
+      "brightness by distance (the paper's), the face's direction, the palette in one light, white "
+      "where anything is, or ink: black, a pattern and white with outlines, for displays of one bit; given "
+      "without --effects it draws none",
+      &command->look.shade_name, true);
   add_look(*sub, command);
   add_path_option(
       *sub, "--hits", "FILE.csv|.npy", &command->output.hits_path,

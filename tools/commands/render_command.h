@@ -7,6 +7,7 @@
 #include "commands/render_output.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
+#include "commands/view_options.h"
 #include "output/output_set.h"
 #include "scene/default_look.h"
 #include "scene/framing.h"
@@ -24,6 +25,8 @@ struct RenderLook {
   bool verbose = false;
   ShadeMode shade = ShadeMode::kDepth;
   std::string shade_name;  ///< empty unless given
+
+  bool is_ink() const { return shade_name == kInk; }
 };
 
 struct RenderCommand {

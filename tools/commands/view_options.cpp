@@ -176,13 +176,15 @@ void add_quality(CLI::App& app, Quality* quality) {
       "compact structure only");
 }
 
-void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given) {
-  add_choice_option(app, "--shade",
-                    {{"depth", ShadeMode::kDepth},
-                     {"normal", ShadeMode::kNormal},
-                     {"color", ShadeMode::kColor},
-                     {"mono", ShadeMode::kMono}},
-                    mode, help)
+void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given, bool has_ink) {
+  std::vector<std::pair<std::string, ShadeMode>> modes{{"depth", ShadeMode::kDepth},
+                                                       {"normal", ShadeMode::kNormal},
+                                                       {"color", ShadeMode::kColor},
+                                                       {"mono", ShadeMode::kMono}};
+  if (has_ink) {
+    modes.emplace_back(kInk, ShadeMode::kColor);
+  }
+  add_choice_option(app, "--shade", modes, mode, help)
       .default_str(given != nullptr ? "the scene's own look" : "depth");
   if (given != nullptr) {
     also_check(app, [&app, given] { *given = text_given(app, "--shade"); });

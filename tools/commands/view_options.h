@@ -36,7 +36,11 @@ void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& 
 /// --samples, --cutoff and --max-depth.
 void add_quality(CLI::App& app, Quality* quality);
 
-/// --shade. `given` gets its word where it is given, and without it the scene's own look is drawn; null: depth is.
-void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given = nullptr);
+/// The shade of displays of one bit (picture/ink.h).
+inline constexpr const char* kInk = "ink";
+/// --shade. `given` gets its word where it is given, and without it the scene's own look is drawn; null: depth is. With
+/// `has_ink` ink is one of them, whose tones are palette colours.
+void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::string* given = nullptr,
+               bool has_ink = false);
 
 }  // namespace thimble::tools
