@@ -128,7 +128,7 @@ TEST_CASE("command: values out of range -> status 2, the option, the value and t
   for (const char* value : {"-1", "64X", "1e6", "K", "", "9223372036854775808", "99999999999999999999999"}) {
     render("--memory", value, {"64K"});
   }
-  render("--shade", "pretty", {"depth, normal, color or mono"});
+  render("--shade", "pretty", {"depth, normal, color, mono or ink"});
   render("--structure", "bvh", {"dense, pool or compact"});
   render("--projection", "fisheye", {"perspective or orthographic"});
   render("--engine", "cpu", {"auto, wide, gpu, ray64 or ray32"});

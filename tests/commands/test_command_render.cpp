@@ -358,6 +358,42 @@ TEST_CASE("render: the paper's own sum, 800 x 600 x 800 -> 48,000,000 bytes, nam
   CHECK(stats["budget_bytes"] == 48000000);
 }
 
+TEST_CASE(
+    "render: --shade ink -> black where nothing is, white round it, by every engine; whole pictures only") {
+  const TemporaryFolder folder;
+  const Words view{"render", "castle", "--size", "128x64", "--shade", "ink", "--quiet", "-o"};
+  check_done(view + Words{folder.path("a.pgm"), "--hits", folder.path("a.csv")});
+  const std::string pixels = read_text(folder.path("a.pgm")).substr(std::strlen("P5\n128 64\n255\n"));
+  REQUIRE(pixels.size() == 128 * 64);
+  const std::vector<std::string> lines = lines_of(read_text(folder.path("a.csv")));
+  const auto is_hit = [&](int x, int y) {
+    return split(lines[static_cast<std::size_t>(y * 128 + x + 1)])[2] == "1";
+  };
+  int white = 0;
+  int black = 0;
+  for (int y = 1; y < 63; ++y) {
+    for (int x = 1; x < 127; ++x) {
+      const int gray = static_cast<unsigned char>(pixels[static_cast<std::size_t>(y * 128 + x)]);
+      REQUIRE((gray == 0 || gray == 255));
+      if (!is_hit(x, y)) {
+        CHECK(gray == 0);
+      } else if (!is_hit(x - 1, y) || !is_hit(x + 1, y) || !is_hit(x, y - 1) || !is_hit(x, y + 1)) {
+        CHECK(gray == 255);
+      } else {
+        ++(gray == 0 ? black : white);
+      }
+    }
+  }
+  CHECK(std::min(white, black) > 400);  // it has faces of both
+  check_done(view + Words{folder.path("b.pgm"), "--engine", "ray64"});
+  CHECK(read_text(folder.path("b.pgm")) == read_text(folder.path("a.pgm")));
+  check_done(view + Words{folder.path("lit.pgm"), "--effects", "direct-light,shadows"});
+  CHECK(read_text(folder.path("lit.pgm")) != read_text(folder.path("a.pgm")));
+  check_refused(view + Words{folder.path("c.part"), "--rows", "0:8"}, 2, {"--shade ink", "--rows"});
+  check_refused(view + Words{folder.path("c.gif"), "--turntable", "4"}, 2, {"--turntable"});
+  check_refused({"view", "castle", "--shade", "ink"}, 2, {"depth, normal, color or mono"});
+}
+
 TEST_CASE("render: every structure and engine -> the same picture and, but for the nodes, the same hits") {
   const TemporaryFolder folder;
   const World world = world_of(WorldKind::kRandom, {24, 20, 9}, 91);
