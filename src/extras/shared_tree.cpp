@@ -197,9 +197,7 @@ uint8_t SharedTree::material(const Vec3i& voxel) const {
     if (mask == 0) {
       break;
     }
-    const unsigned octant = (static_cast<uint32_t>(voxel.x) >> (level - 1) & 1U) |
-                            (static_cast<uint32_t>(voxel.y) >> (level - 1) & 1U) << 1 |
-                            (static_cast<uint32_t>(voxel.z) >> (level - 1) & 1U) << 2;
+    const unsigned octant = octant_of(voxel, level);
     if (((uint32_t{mask} >> octant) & 1U) == 0) {
       return 0;
     }

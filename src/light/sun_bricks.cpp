@@ -8,10 +8,8 @@
 namespace thimble {
 
 size_t SunBricks::bytes(const BrickMap& map) {
-  if constexpr (kDeepWorlds) {
-    if (DeepMap::is_deep(map.level())) {
-      return 0;
-    }
+  if (DeepMap::is_deep(map.level())) {
+    return 0;
   }
   const Vec3i& low = map.box().low;
   const Vec3i& high = map.box().high;
@@ -23,10 +21,8 @@ Status SunBricks::make(const BrickMap& map, const Vec3i& towards, Bytes room, Su
   if (map.directory() == nullptr || towards == Vec3i{}) {
     return Status::kBadArgument;
   }
-  if constexpr (kDeepWorlds) {
-    if (DeepMap::is_deep(map.level())) {
-      return Status::kOutOfRange;
-    }
+  if (DeepMap::is_deep(map.level())) {
+    return Status::kOutOfRange;
   }
   if (room.size < size || (size != 0 && room.data == nullptr)) {
     return Status::kOutOfMemory;

@@ -28,10 +28,6 @@ bool shares_bytes(PixelFormat format) {
   return kHasPanelFormats && format > PixelFormat::kBgr565 && format != PixelFormat::kRgb332;
 }
 
-}  // namespace
-
-namespace {
-
 // In worlds of level 9 and 10 only beams are bounded: a slope of up to 2 and 1/1024 times a distance is below 2^30.
 constexpr int32_t kMostDeepDistance = (1 << 19) - 512;
 
@@ -154,13 +150,9 @@ Status render_band_32(const CompactTree& tree, const BrickMap& map, const Camera
   if (!map.belongs_to(tree)) {
     return Status::kDamaged;
   }
-  if constexpr (kDeepWorlds) {
-    if (DeepMap::is_deep(map.level())) {
-      return Status::kBadArgument;
-    }
-  }
-  return draws_fast(map, camera) ? draw_by_bricks<Course>(tree, map, camera, shading, band, counts)
-                                 : Status::kBadArgument;
+  return !DeepMap::is_deep(map.level()) && draws_fast(map, camera)
+             ? draw_by_bricks<Course>(tree, map, camera, shading, band, counts)
+             : Status::kBadArgument;
 }
 
 }  // namespace thimble

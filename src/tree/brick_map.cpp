@@ -419,16 +419,12 @@ Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t*
     return Status::kBadArgument;
   }
   size_t written = 0;
-  if constexpr (kDeepWorlds) {
-    if (DeepMap::is_deep(tree.level())) {
-      const Status status = DeepMap::make(tree, out, &written);
-      if (status == Status::kOk && size != nullptr) {
-        *size = written;
-      }
-      return status == Status::kOk && map != nullptr ? open(out.subspan(0, written), map) : status;
-    }
+  Status status = Status::kOk;
+  if (!DeepMap::is_deep(tree.level())) {
+    status = MapBuilder(tree, out).run(&written);
+  } else if constexpr (kDeepWorlds) {
+    status = DeepMap::make(tree, out, &written);
   }
-  const Status status = MapBuilder(tree, out).run(&written);
   if (status != Status::kOk) {
     return status;
   }

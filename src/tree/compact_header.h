@@ -90,6 +90,14 @@ constexpr CompactSections sections_of(const CompactShape& shape) {
   return at;
 }
 
+// Which octant of its node of `level` holds a voxel.
+constexpr unsigned octant_of(const Vec3i& voxel, int level) {
+  const int shift = level - 1;
+  return (static_cast<uint32_t>(voxel.x) >> shift & 1U) |
+         (static_cast<uint32_t>(voxel.y) >> shift & 1U) << 1 |
+         (static_cast<uint32_t>(voxel.z) >> shift & 1U) << 2;
+}
+
 // Calls leaf(node, corner, level) for what a tree that is not empty holds, in Morton order: solid blocks, and nodes of
 // level `lowest`; also for numbers of no node, which a damaged tree has. `leaf` may be false to stop.
 template <class Leaf>

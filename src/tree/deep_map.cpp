@@ -149,11 +149,7 @@ struct DeepBlock {
 DeepBlock find_deep_block(const CompactTree& tree, DeepBlock from, int from_level, const Vec3i& corner,
                           int level) {
   while (from.kind == DeepKind::kNode && from_level > level) {
-    --from_level;
-    unsigned octant = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      octant |= (static_cast<unsigned>(corner[axis]) >> from_level & 1U) << axis;
-    }
+    const unsigned octant = octant_of(corner, from_level--);
     const unsigned mask = tree.mask(from.node);
     const uint32_t child = tree.first_child(from.node) + bits::popcount8(mask & ((1U << octant) - 1));
     if ((mask >> octant & 1U) == 0 || child >= tree.node_count()) {

@@ -39,7 +39,9 @@ inline constexpr uint32_t kPageBytes = 4 + deep_place::kPageEntries;
 
 // What BrickMap does for these worlds.
 struct DeepMap {
-  static bool is_deep(int level) { return level > kMaxBrickMapLevel && level <= kMaxDeepMapLevel; }
+  static constexpr bool is_deep(int level) {
+    return kDeepWorlds && level > kMaxBrickMapLevel && level <= kMaxDeepMapLevel;
+  }
   // Whether the bytes begin as such a map does.
   static bool is_one(ConstBytes bytes);
   static Status open(ConstBytes bytes, BrickMap* map);

@@ -1,5 +1,7 @@
 #include "thimble/tree/dense_grid.h"
 
+#include "compact_header.h"
+
 namespace thimble {
 
 Status DenseGrid::make(const Vec3i& size, Bytes bytes, DenseGrid* grid) {
@@ -39,15 +41,8 @@ Status DenseGrid::set(const Vec3i& at, bool solid) {
     --voxel_count_;
     return Status::kOk;
   }
-  const bool first = voxel_count_++ == 0 && bounds_.empty();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (first || at[axis] < bounds_.low[axis]) {
-      bounds_.low[axis] = at[axis];
-    }
-    if (first || at[axis] >= bounds_.high[axis]) {
-      bounds_.high[axis] = at[axis] + 1;
-    }
-  }
+  ++voxel_count_;
+  grow_box(&bounds_, at, 0, 0);
   return Status::kOk;
 }
 

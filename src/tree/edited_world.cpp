@@ -19,12 +19,6 @@ constexpr unsigned kAllChildren = 0xFF;
 constexpr uint32_t kNodeBits = kMostEditRoom.nodes;
 static_assert(kNodeBits == (uint32_t{1} << kChildBits) - 1);
 
-unsigned child_octant(const Vec3i& voxel, int child_level) {
-  return (static_cast<unsigned>(voxel.x) >> child_level & 1U) |
-         (static_cast<unsigned>(voxel.y) >> child_level & 1U) << 1 |
-         (static_cast<unsigned>(voxel.z) >> child_level & 1U) << 2;
-}
-
 size_t up8(size_t bytes) {
   return (bytes + 7) & ~size_t{7};
 }
@@ -32,6 +26,14 @@ size_t up8(size_t bytes) {
 // Opens or closes a gap in an array of bytes.
 void move_bytes(uint8_t* array, uint32_t from, uint32_t to, uint32_t end) {
   __builtin_memmove(array + to, array + from, end - from);
+}
+
+// Adds `by` to a word of each brick's origin of which the bits of `mask` are `from` or more.
+void move_origins(uint8_t* word, uint32_t bricks, uint32_t mask, uint32_t from, uint32_t by) {
+  for (; bricks != 0; --bricks, word += kOriginBytes) {
+    const uint32_t own = bits::load32(word);
+    bits::store32(word, own + ((own & mask) >= from ? by : 0));
+  }
 }
 
 // Whether the masks have children where they should: what `open` does not look at. Counts mixed bricks.
@@ -212,7 +214,7 @@ bool EditedWorld::find(const Vec3i& voxel, int to_level, Place* place) const {
     return false;
   }
   while (place->level > to_level && masks_[place->node] != 0) {
-    const unsigned octant = child_octant(voxel, place->level - 1);
+    const unsigned octant = octant_of(voxel, place->level);
     if ((unsigned{masks_[place->node]} >> octant & 1U) == 0) {
       return false;
     }
@@ -248,7 +250,7 @@ Status EditedWorld::check_room(const Vec3i& voxel, int material, bool* changes) 
     nodes = 8 * (level - 1);
     leaves = 7 * level;
   } else {
-    const unsigned octant = child_octant(voxel, 0);
+    const unsigned octant = octant_of(voxel, 1);
     const bool is_solid = (unsigned{masks_[place.node]} >> octant & 1U) != 0;
     if (is_solid ? material == tree_.voxel_material(child_of(place.node, octant)) : material < 0) {
       return Status::kOk;
@@ -292,21 +294,13 @@ void EditedWorld::insert_nodes(uint32_t at, uint32_t count) {
     masks_[at + i] = 0;
   }
   tree_.node_count_ += count;
-  for (uint32_t i = 0; i < room_.bricks; ++i) {
-    uint8_t* const origin = origins_ + kOriginBytes * size_t{i};
-    const uint32_t first = bits::load32(origin);
-    bits::store32(origin, first + ((first & kNodeBits) >= at ? count : 0));
-  }
+  move_origins(origins_, room_.bricks, kNodeBits, at, count);
 }
 
 void EditedWorld::remove_nodes(uint32_t at, uint32_t count) {
   move_bytes(masks_, at + count, at, tree_.node_count_);
   tree_.node_count_ -= count;
-  for (uint32_t i = 0; i < room_.bricks; ++i) {
-    uint8_t* const origin = origins_ + kOriginBytes * size_t{i};
-    const uint32_t first = bits::load32(origin);
-    bits::store32(origin, first - ((first & kNodeBits) >= at + count ? count : 0));
-  }
+  move_origins(origins_, room_.bricks, kNodeBits, at + count, 0 - count);
 }
 
 // In the row of leaves, blocks then voxels, `inserted` of `material` take the place of `removed`.
@@ -320,21 +314,13 @@ void EditedWorld::move_leaves(uint32_t at, uint32_t removed, uint32_t inserted, 
 void EditedWorld::change_blocks(uint32_t at, uint32_t removed, uint32_t inserted, uint8_t material) {
   move_leaves(at, removed, inserted, material);
   tree_.solid_blocks_ += inserted - removed;
-  for (uint32_t i = 0; i < room_.bricks; ++i) {
-    uint8_t* const before = origins_ + kOriginBytes * size_t{i} + 8;
-    const uint32_t blocks = bits::load32(before);
-    bits::store32(before, blocks + (blocks >= at + removed ? inserted - removed : 0));
-  }
+  move_origins(origins_ + 8, room_.bricks, UINT32_MAX, at + removed, inserted - removed);
 }
 
 void EditedWorld::change_voxels(uint32_t at, uint32_t removed, uint32_t inserted, uint8_t material) {
   move_leaves(tree_.solid_blocks_ + at, removed, inserted, material);
   tree_.voxel_bits_ += inserted - removed;
-  for (uint32_t i = 0; i < room_.bricks; ++i) {
-    uint8_t* const before = origins_ + kOriginBytes * size_t{i} + 4;
-    const uint32_t voxels = bits::load32(before);
-    bits::store32(before, voxels + (voxels >= at + removed ? inserted - removed : 0));
-  }
+  move_origins(origins_ + 4, room_.bricks, UINT32_MAX, at + removed, inserted - removed);
 }
 
 // The directory of counts, from the entry of `node` on.
@@ -514,7 +500,7 @@ Status EditedWorld::set(const Vec3i& voxel, uint8_t material) {
   uint32_t node = 0;
   for (int level = tree_.level();; --level) {
     path[level] = node;
-    const unsigned octant = child_octant(voxel, level - 1);
+    const unsigned octant = octant_of(voxel, level);
     if (masks_[node] == 0) {
       open_block(node, level, is_new ? 1U << octant : kAllChildren);
     } else if ((unsigned{masks_[node]} >> octant & 1U) == 0) {
@@ -530,12 +516,7 @@ Status EditedWorld::set(const Vec3i& voxel, uint8_t material) {
   for (int level = 1; level <= tree_.level() && is_uniform(path[level], level, material); ++level) {
     close_node(path[level], level);
   }
-  VoxelBox& bounds = tree_.bounds_;
-  const bool first = bounds.empty();
-  for (int axis = 0; axis < 3; ++axis) {
-    bounds.low[axis] = first || voxel[axis] < bounds.low[axis] ? voxel[axis] : bounds.low[axis];
-    bounds.high[axis] = first || voxel[axis] >= bounds.high[axis] ? voxel[axis] + 1 : bounds.high[axis];
-  }
+  grow_box(&tree_.bounds_, voxel, 0, 0);
   note_change(is_new ? 1 : 0);
   return update_cell(voxel);
 }
@@ -553,7 +534,7 @@ Status EditedWorld::clear(const Vec3i& voxel) {
     if (masks_[node] == 0) {
       open_block(node, level, kAllChildren);
     }
-    node = level == 1 ? node : child_of(node, child_octant(voxel, level - 1));
+    node = level == 1 ? node : child_of(node, octant_of(voxel, level));
   }
   // Up from the voxel, what would be left without children goes, too.
   int level = 1;
@@ -562,7 +543,7 @@ Status EditedWorld::clear(const Vec3i& voxel) {
     ++level;
   }
   if (level <= tree_.level()) {
-    remove_child(path[level], level, child_octant(voxel, level - 1));
+    remove_child(path[level], level, octant_of(voxel, level));
   } else {
     change_blocks(0, 1, 0, 0);
     remove_nodes(0, 1);

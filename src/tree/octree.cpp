@@ -2,6 +2,7 @@
 // levels, so arrays of that size stand in. Coarsening is in octree_coarsen.cpp.
 #include "thimble/tree/octree.h"
 
+#include "compact_header.h"
 #include "octree_parts.h"
 
 namespace thimble {
@@ -9,15 +10,6 @@ namespace thimble {
 namespace {
 
 constexpr uint32_t kFullMask = 0xFF;
-
-/// Which octant of its block of `level` (1..12) holds `position`.
-constexpr uint32_t octant_at(Vec3i position, int level) {
-  const uint32_t shift = static_cast<uint32_t>(level - 1) & 31;
-  const uint32_t x = (static_cast<uint32_t>(position.x) >> shift) & 1;
-  const uint32_t y = (static_cast<uint32_t>(position.y) >> shift) & 1;
-  const uint32_t z = (static_cast<uint32_t>(position.z) >> shift) & 1;
-  return x | (y << 1) | (z << 2);
-}
 
 /// How many links along the chain of children `octant` is.
 constexpr uint32_t links_before(uint32_t mask, uint32_t octant) {
@@ -102,18 +94,9 @@ void Octree::clear() {
   path_low_ = level_;
 }
 
-void Octree::grow_bounds(Vec3i corner, int block_level) {
-  const int32_t side = int32_t{1} << block_level;
-  const bool first = bounds_.empty();
-  for (int axis = 0; axis < 3; ++axis) {
-    const int32_t low = corner[axis];
-    if (first || low < bounds_.low[axis]) {
-      bounds_.low[axis] = low;
-    }
-    if (first || low + side > bounds_.high[axis]) {
-      bounds_.high[axis] = low + side;
-    }
-  }
+/// Not inlined: there are two calls, and code for both takes flash.
+[[gnu::noinline]] void Octree::grow_bounds(Vec3i corner, int block_level) {
+  grow_box(&bounds_, corner, block_level, 0);
 }
 
 /// A node with nothing in it. The caller has counted: there is one.
@@ -222,7 +205,7 @@ int Octree::descend(Vec3i voxel, uint32_t& index) const {
   while (level > 1) {
     const Node node = nodes_[index];
     const uint32_t mask = mask_of(node);
-    const uint32_t octant = octant_at(voxel, level);
+    const uint32_t octant = octant_of(voxel, level);
     if (((mask >> octant) & 1) == 0) {
       break;
     }
@@ -247,7 +230,7 @@ int Octree::material(Vec3i voxel) const {
   if (mask == 0) {
     return leaf_material(node);
   }
-  const uint32_t octant = octant_at(voxel, level);
+  const uint32_t octant = octant_of(voxel, level);
   if (level > 1 || ((mask >> octant) & 1) == 0) {
     return -1;
   }
@@ -344,7 +327,7 @@ void Octree::insert_merged(Vec3i corner, int block_level, uint8_t material) {
     return;
   }
   // A world of one voxel node.
-  const uint32_t bit = uint32_t{1} << octant_at(corner, 1);
+  const uint32_t bit = uint32_t{1} << octant_of(corner, 1);
   if (bit < mask && count_bits(mask) == 1) {
     kept = material;
   }
@@ -362,13 +345,13 @@ uint32_t Octree::build_path(Vec3i corner, int from_level, int block_level, uint8
   int level = from_level;
   while (level > block_level && level > 1) {
     const uint32_t below = allocate();
-    attach(path_[level], octant_at(corner, level), below);
+    attach(path_[level], octant_of(corner, level), below);
     --level;
     path_[level] = below;
   }
   make_leaf(path_[level], material);
   if (block_level == 0) {
-    set_mask(path_[level], uint32_t{1} << octant_at(corner, level));
+    set_mask(path_[level], uint32_t{1} << octant_of(corner, level));
   }
   path_low_ = static_cast<uint8_t>(level);
   return top;
@@ -439,7 +422,7 @@ uint32_t Octree::try_insert(Vec3i corner, int block_level, uint8_t material) {
         return needed;
       }
       while (level > lowest) {
-        const uint32_t inner = split(path_[level], level, octant_at(corner, level));
+        const uint32_t inner = split(path_[level], level, octant_of(corner, level));
         --level;
         path_[level] = inner;
       }
@@ -449,7 +432,7 @@ uint32_t Octree::try_insert(Vec3i corner, int block_level, uint8_t material) {
         return 0;
       }
       set_mask(path_[level], kFullMask);
-      return try_insert_voxel(path_[level], octant_at(corner, level), material);
+      return try_insert_voxel(path_[level], octant_of(corner, level), material);
     }
     if (level == block_level) {
       voxels_ += kVolume[level] - solid_volume(index, level);
@@ -460,7 +443,7 @@ uint32_t Octree::try_insert(Vec3i corner, int block_level, uint8_t material) {
       collapse_above(level);
       return 0;
     }
-    const uint32_t octant = octant_at(corner, level);
+    const uint32_t octant = octant_of(corner, level);
     if (level == 1) {
       return try_insert_voxel(index, octant, material);
     }
@@ -680,14 +663,14 @@ Status Octree::insert_box(const VoxelBox& box, uint8_t material) {
       }
     }
     // The next block: the sibling, or that of the first parent that has one left.
-    while (level < level_ && octant_at(corner, level + 1) == 7) {
+    while (level < level_ && octant_of(corner, level + 1) == 7) {
       corner = {corner.x & ~(1 << level), corner.y & ~(1 << level), corner.z & ~(1 << level)};
       ++level;
     }
     if (level == level_) {
       return Status::kOk;
     }
-    const uint32_t octant = octant_at(corner, level + 1) + 1;
+    const uint32_t octant = octant_of(corner, level + 1) + 1;
     corner = {(corner.x & ~(1 << level)) | static_cast<int32_t>(octant & 1) << level,
               (corner.y & ~(1 << level)) | static_cast<int32_t>((octant >> 1) & 1) << level,
               (corner.z & ~(1 << level)) | static_cast<int32_t>(octant >> 2) << level};
@@ -709,20 +692,20 @@ Status Octree::remove(Vec3i voxel) {
     path_low_ = static_cast<uint8_t>(level);
     const Node node = nodes_[path_[level]];
     const uint32_t mask = mask_of(node);
-    const uint32_t octant = octant_at(voxel, level);
+    const uint32_t octant = octant_of(voxel, level);
     if (mask == 0) {
       const uint32_t needed = static_cast<uint32_t>(8 * (level - 1));
       if (needed > nodes_free()) {
         return Status::kOutOfMemory;
       }
       for (; level > 1; --level) {
-        path_[level - 1] = split(path_[level], level, octant_at(voxel, level));
+        path_[level - 1] = split(path_[level], level, octant_of(voxel, level));
       }
       path_low_ = 1;
       // What is left of the voxel node are single voxels, merged or not: a hit reports the same.
       const uint32_t index = path_[1];
       make_leaf(index, leaf_material(nodes_[index]));
-      set_mask(index, kFullMask & ~(uint32_t{1} << octant_at(voxel, 1)));
+      set_mask(index, kFullMask & ~(uint32_t{1} << octant_of(voxel, 1)));
       --voxels_;
       return Status::kOk;
     }
@@ -735,7 +718,7 @@ Status Octree::remove(Vec3i voxel) {
     --level;
     path_[level] = walk(link_of(node), links_before(mask, octant));
   }
-  remove_voxel(path_[1], octant_at(voxel, 1));
+  remove_voxel(path_[1], octant_of(voxel, 1));
   return Status::kOk;
 }
 
@@ -767,7 +750,7 @@ void Octree::remove_voxel(uint32_t index, uint32_t octant) {
     return;
   }
   path_low_ = static_cast<uint8_t>(level + 1);
-  detach(path_[level + 1], octant_at(cursor_, level + 1));
+  detach(path_[level + 1], octant_of(cursor_, level + 1));
 }
 
 }  // namespace thimble

@@ -5,12 +5,8 @@
 namespace thimble::lit {
 
 bool draws_flat(const Frame& frame, const BrickMap& map) {
-  if constexpr (kDeepWorlds) {
-    if (DeepMap::is_deep(map.level())) {
-      return false;
-    }
-  }
-  if (frame.options.max_visits != UINT32_MAX || !draws_fast(map, frame.camera)) {
+  if (DeepMap::is_deep(map.level()) || frame.options.max_visits != UINT32_MAX ||
+      !draws_fast(map, frame.camera)) {
     return false;
   }
   size_t suns = 0;
