@@ -254,22 +254,20 @@ uint32_t ParticleWorld::ball_at(Vec2i at) const {
   if (!field_.test(at)) {
     return kNoBall;
   }
+  uint32_t found = kNoBall;
   const CellRange range = cells_around({at, {at.x + 1, at.y + 1}}, config_.most_diameter / 2);
-  for (int32_t y = range.y0; y <= range.y1; ++y) {
-    for (int32_t x = range.x0; x <= range.x1; ++x) {
-      for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
-        const Vec2i corner = corner_of(balls_[id]);
-        const int32_t row = at.y - corner.y;
-        const int32_t column = at.x - corner.x;
-        const int32_t diameter = balls_[id].diameter;
-        if (row >= 0 && row < diameter && column >= 0 && column < diameter &&
-            (small_disc(diameter).rows[row] >> column & 1U) != 0) {
-          return id;
-        }
-      }
+  range.each_ball(*this, [&](uint32_t id) {
+    const Vec2i corner = corner_of(balls_[id]);
+    const int32_t row = at.y - corner.y;
+    const int32_t column = at.x - corner.x;
+    const int32_t diameter = balls_[id].diameter;
+    if (row >= 0 && row < diameter && column >= 0 && column < diameter &&
+        (small_disc(diameter).rows[row] >> column & 1U) != 0) {
+      found = id;
     }
-  }
-  return kNoBall;
+    return found == kNoBall;
+  });
+  return found;
 }
 
 Status ParticleWorld::set_velocity(uint32_t id, int32_t vx_q16, int32_t vy_q16) {

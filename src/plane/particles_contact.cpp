@@ -202,15 +202,12 @@ Vec2i ParticleWorld::wall_normal(uint32_t self, Vec2i offset, Vec2i own) const {
   };
   leave_out(disc, own);
   const CellRange range = cells_around({from, {from.x + size, from.y + size}}, config_.most_diameter / 2);
-  for (int32_t y = range.y0; y <= range.y1; ++y) {
-    for (int32_t x = range.x0; x <= range.x1; ++x) {
-      for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
-        if (id != self) {
-          leave_out(small_disc(balls_[id].diameter), corner_of(balls_[id]));
-        }
-      }
+  range.each_ball(*this, [&](uint32_t id) {
+    if (id != self) {
+      leave_out(small_disc(balls_[id].diameter), corner_of(balls_[id]));
     }
-  }
+    return true;
+  });
   Vec2i sum;
   for (int32_t row = 0; row < size; ++row) {
     for (uint32_t left = rows[row]; left != 0; left &= left - 1) {

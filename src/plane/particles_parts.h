@@ -59,6 +59,22 @@ inline int64_t square_of(const particle_detail::Ball& ball, Vec2i kick) {
 // Cells of the index, [x0, x1] x [y0, y1], inclusive.
 struct ParticleWorld::CellRange {
   int32_t x0, y0, x1, y1;
+
+  // Calls `visit(id)` for the balls whose centres lie there, until it is false; it may remove that ball.
+  template <class Visit>
+  void each_ball(const ParticleWorld& world, const Visit& visit) const {
+    for (int32_t y = y0; y <= y1; ++y) {
+      for (int32_t x = x0; x <= x1; ++x) {
+        for (uint32_t id = world.cells_[y * world.cells_across_ + x]; id != kNoBall;) {
+          const uint32_t next = world.balls_[id].next;
+          if (!visit(id)) {
+            return;
+          }
+          id = next;
+        }
+      }
+    }
+  }
 };
 
 // Rows of the field or of a disc that are worked on together (bitfield.h). Where there are four, a ball of any size takes the
@@ -66,6 +82,7 @@ struct ParticleWorld::CellRange {
 // need not guess.
 using Rows = field_detail::Block;
 using field_detail::any_of;
+using field_detail::for_rows;
 using field_detail::load;
 using field_detail::store;
 inline constexpr int32_t kLanes = field_detail::kRowsAtOnce;
@@ -91,23 +108,6 @@ inline uint32_t together(Rows bits) {
   return bits;
 }
 #endif
-// Does `visit(row)` for the first `count` rows of at most kBlock: for each of them, or for twelve or all in
-// fours.
-template <class Visit>
-inline void for_rows([[maybe_unused]] int32_t count, Visit visit) {
-  if constexpr (kLanes == 4) {
-    visit(0);
-    visit(4);
-    visit(8);
-    if (count > 12) {
-      visit(12);
-    }
-  } else {
-    for (int32_t row = 0; row < count; ++row) {
-      visit(row);
-    }
-  }
-}
 
 // Where the rows of each disc begin: looked up, this is a third of the instructions of working it out.
 struct DiscPlaces {

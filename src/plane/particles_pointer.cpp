@@ -70,19 +70,14 @@ void ParticleWorld::apply_pointer() {
       brush(pointer_before_, pointer_, brush_diameter, false);
       const CellRange range =
           cells_around({{pointer_.x, pointer_.y}, {pointer_.x + 1, pointer_.y + 1}}, pointer_radius_);
-      for (int32_t y = range.y0; y <= range.y1; ++y) {
-        for (int32_t x = range.x0; x <= range.x1; ++x) {
-          for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall;) {
-            const uint32_t next = balls_[id].next;
-            const int64_t dx = (balls_[id].x >> 16) - pointer_.x;
-            const int64_t dy = (balls_[id].y >> 16) - pointer_.y;
-            if (dx * dx + dy * dy < int64_t{pointer_radius_} * pointer_radius_) {
-              static_cast<void>(remove(id));
-            }
-            id = next;
-          }
+      range.each_ball(*this, [this](uint32_t id) {
+        const int64_t dx = (balls_[id].x >> 16) - pointer_.x;
+        const int64_t dy = (balls_[id].y >> 16) - pointer_.y;
+        if (dx * dx + dy * dy < int64_t{pointer_radius_} * pointer_radius_) {
+          static_cast<void>(remove(id));
         }
-      }
+        return true;
+      });
       break;
     }
     case PointerMode::kDraw:
@@ -103,29 +98,26 @@ void ParticleWorld::pull_balls(int32_t sign) {
   const int excess = strength == 0 ? 0 : 32 - bits::bit_length(strength);
   const uint64_t factor = strength == 0 ? 0 : ((strength << excess) / square);
   const CellRange range = cells_around({{pointer_.x, pointer_.y}, {pointer_.x + 1, pointer_.y + 1}}, radius);
-  for (int32_t y = range.y0; y <= range.y1; ++y) {
-    for (int32_t x = range.x0; x <= range.x1; ++x) {
-      for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
-        Ball& ball = balls_[id];
-        // In 1/16 cell, below 2^16 within the radius.
-        const int64_t dx = (int64_t{pointer_.x} * 65536 + 32768 - ball.x) / 4096;
-        const int64_t dy = (int64_t{pointer_.y} * 65536 + 32768 - ball.y) / 4096;
-        const int64_t inward = int64_t{radius} * 16 - rough_length(dx, dy);
-        if (inward <= 0) {
-          continue;
-        }
-        wake(id);
-        const auto change = [&](int64_t d) {
-          const uint64_t size =
-              static_cast<uint64_t>(d < 0 ? -d : d) * static_cast<uint64_t>(inward);  // below 2^30
-          const int64_t part = static_cast<int64_t>((size * factor) >> excess >> 6);
-          return (d < 0) == (sign < 0) ? part : -part;
-        };
-        ball.vx = held_within_limit(ball.vx + change(dx));
-        ball.vy = held_within_limit(ball.vy + change(dy));
-      }
+  range.each_ball(*this, [&](uint32_t id) {
+    Ball& ball = balls_[id];
+    // In 1/16 cell, below 2^16 within the radius.
+    const int64_t dx = (int64_t{pointer_.x} * 65536 + 32768 - ball.x) / 4096;
+    const int64_t dy = (int64_t{pointer_.y} * 65536 + 32768 - ball.y) / 4096;
+    const int64_t inward = int64_t{radius} * 16 - rough_length(dx, dy);
+    if (inward <= 0) {
+      return true;
     }
-  }
+    wake(id);
+    const auto change = [&](int64_t d) {
+      const uint64_t size =
+          static_cast<uint64_t>(d < 0 ? -d : d) * static_cast<uint64_t>(inward);  // below 2^30
+      const int64_t part = static_cast<int64_t>((size * factor) >> excess >> 6);
+      return (d < 0) == (sign < 0) ? part : -part;
+    };
+    ball.vx = held_within_limit(ball.vx + change(dx));
+    ball.vy = held_within_limit(ball.vy + change(dy));
+    return true;
+  });
 }
 
 }  // namespace thimble

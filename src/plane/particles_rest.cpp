@@ -166,35 +166,28 @@ void ParticleWorld::support_left(const CellBox& box, bool for_good) {
   }
   const bool aslant = for_good && config_.gravity_q16.x != 0 && config_.gravity_q16.y != 0;
   const CellRange range = cells_around(box, config_.most_diameter / 2 + 2);
-  for (int32_t y = range.y0; y <= range.y1; ++y) {
-    for (int32_t x = range.x0; x <= range.x1; ++x) {
-      for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
-        const Ball& ball = balls_[id];
-        const Vec2i corner = corner_of(ball);
-        if ((ball.flags & kAsleep) == 0 || corner.x > box.high.x || corner.y > box.high.y ||
-            corner.x + ball.diameter < box.low.x || corner.y + ball.diameter < box.low.y) {
-          continue;
-        }
-        if (!aslant && held(ball)) {
-          hold(id);
-        } else {
-          wake(id);
-        }
-      }
+  range.each_ball(*this, [&](uint32_t id) {
+    const Ball& ball = balls_[id];
+    const Vec2i corner = corner_of(ball);
+    if ((ball.flags & kAsleep) == 0 || corner.x > box.high.x || corner.y > box.high.y ||
+        corner.x + ball.diameter < box.low.x || corner.y + ball.diameter < box.low.y) {
+      return true;
     }
-  }
+    if (!aslant && held(ball)) {
+      hold(id);
+    } else {
+      wake(id);
+    }
+    return true;
+  });
 }
 
 // Sets the cells of all balls near `box`, where walls have been cleared.
 void ParticleWorld::stamp_balls(const CellBox& box) {
-  const CellRange range = cells_around(box, config_.most_diameter / 2 + 1);
-  for (int32_t y = range.y0; y <= range.y1; ++y) {
-    for (int32_t x = range.x0; x <= range.x1; ++x) {
-      for (uint32_t id = cells_[y * cells_across_ + x]; id != kNoBall; id = balls_[id].next) {
-        field_.set_inside(small_disc(balls_[id].diameter), corner_of(balls_[id]));
-      }
-    }
-  }
+  cells_around(box, config_.most_diameter / 2 + 1).each_ball(*this, [this](uint32_t id) {
+    field_.set_inside(small_disc(balls_[id].diameter), corner_of(balls_[id]));
+    return true;
+  });
 }
 
 }  // namespace thimble

@@ -1,4 +1,4 @@
-// The particle world and its field: balls that fall, meet, sleep and are drawn along; boxes, discs and rays of bits.
+// The particle world and its field: balls that fall, meet, sleep and are drawn along; boxes and discs of bits.
 #include "portable/groups.h"
 #include "portable/scene.h"
 #include "thimble/plane/particles.h"
@@ -45,32 +45,41 @@ void boxes(Check& check, int /*index*/) {
     }
     const CellBox asked = random_box(&random);
     uint32_t count = 0;
-    Vec2i first{-1, -1};
-    Vec2i last{-1, -1};
     for (int32_t y = asked.low.y; y < asked.high.y; ++y) {
       for (int32_t x = asked.low.x; x < asked.high.x; ++x) {
-        if (field.test({x, y})) {
-          first = count == 0 ? Vec2i{x, y} : first;
-          // From the right: the first row that has any, its last cell.
-          last = count == 0 || y == last.y ? Vec2i{x, y} : last;
-          ++count;
-        }
+        count += field.test({x, y}) ? 1U : 0U;
       }
     }
     THIMBLE_EQUAL(field.count(asked), count);
     THIMBLE_EQUAL(field.any(asked), count != 0);
-    Vec2i at{-1, -1};
-    THIMBLE_EQUAL(field.first(asked, &at), count != 0);
-    THIMBLE_CHECK(count == 0 || at == first);
-    at = {-1, -1};
-    THIMBLE_EQUAL(field.first_from_right(asked, &at), count != 0);
-    THIMBLE_CHECK(count == 0 || at == last);
     check.note(field.window(asked.low.x, asked.low.y));
   }
   note_field(check, field);
   field.clear_all();
   THIMBLE_EQUAL(field.count(), 0U);
 }
+
+// The cells of a circle, those of them that lie in the field, and those that are set.
+struct Circle {
+  uint32_t cells = 0;
+  uint32_t inside = 0;
+  uint32_t set = 0;
+
+  Circle(const BitField& field, int32_t diameter, const Vec2i& corner) {
+    for (int32_t y = 0; y < diameter; ++y) {
+      for (int32_t x = 0; x < diameter; ++x) {
+        const int32_t u = 2 * x + 1 - diameter;
+        const int32_t v = 2 * y + 1 - diameter;
+        const Vec2i cell{corner.x + x, corner.y + y};
+        if (u * u + v * v < diameter * diameter) {
+          ++cells;
+          inside += field.contains(cell) ? 1U : 0U;
+          set += field.test(cell) ? 1U : 0U;
+        }
+      }
+    }
+  }
+};
 
 // Discs of every size, clipped and not.
 void discs(Check& check, int /*index*/) {
@@ -82,27 +91,14 @@ void discs(Check& check, int /*index*/) {
     const Vec2i corner{random.below(90) - 20, random.below(60) - 20};
     field.clear_all();
     field.set(disc, corner);
-    check.note(disc_cells(disc));
-    uint32_t cells = 0;
-    for (int32_t y = 0; y < diameter; ++y) {
-      for (int32_t x = 0; x < diameter; ++x) {
-        const int32_t u = 2 * x + 1 - diameter;
-        const int32_t v = 2 * y + 1 - diameter;
-        const Vec2i cell{corner.x + x, corner.y + y};
-        const bool inside = u * u + v * v < diameter * diameter && field.contains(cell);
-        cells += inside ? 1U : 0U;
-        THIMBLE_REQUIRE(field.test(cell) == inside);
-      }
-    }
-    THIMBLE_EQUAL(field.count(), cells);
-    THIMBLE_EQUAL(field.count(disc, corner), cells);
-    THIMBLE_EQUAL(field.any(disc, corner), cells != 0);
-    Vec2i at;
-    THIMBLE_EQUAL(field.first(disc, corner, &at), cells != 0);
-    THIMBLE_CHECK(cells == 0 || field.test(at));
+    const Circle circle(field, diameter, corner);
+    check.note(circle.inside);
+    THIMBLE_EQUAL(circle.set, circle.inside);
+    THIMBLE_EQUAL(field.count(), circle.inside);
+    THIMBLE_EQUAL(field.any(disc, corner), circle.inside != 0);
     field.set(field.bounds());
     field.clear(disc, corner);
-    THIMBLE_EQUAL(field.count(), static_cast<uint32_t>(kWidth * kHeight) - cells);
+    THIMBLE_EQUAL(field.count(), static_cast<uint32_t>(kWidth * kHeight) - circle.inside);
   }
   // Those that lie inside, the fast way.
   for (int32_t diameter = 1; diameter <= kMaxSmallDisc; ++diameter) {
@@ -111,7 +107,7 @@ void discs(Check& check, int /*index*/) {
     const Vec2i own{random.below(kWidth - diameter), random.below(kHeight - diameter)};
     field.clear_all();
     field.set_inside(disc, corner);
-    THIMBLE_EQUAL(field.count(), disc_cells(disc));
+    THIMBLE_EQUAL(field.count(), Circle(field, diameter, corner).cells);
     THIMBLE_CHECK(field.holds(disc, corner) && field.any_inside(disc, corner));
     THIMBLE_CHECK(!field.any_besides_inside(disc, corner, corner));
     field.set(Vec2i{own.x + diameter / 2, own.y + diameter / 2});
@@ -124,59 +120,6 @@ void discs(Check& check, int /*index*/) {
     field.clear_inside(disc, corner);
     check.note(field.count());
   }
-}
-
-// Rays: what is hit is solid, and what lies before it on the ray is not.
-void rays(Check& check, int /*index*/) {
-  BitField field;
-  THIMBLE_REQUIRE(make_field(check, &field));
-  Random random;
-  for (int i = 0; i < 9; ++i) {
-    field.set(disc_stamp(2 + i), {random.below(kWidth), random.below(kHeight)});
-  }
-  field.set(CellBox{{30, 5}, {31, 36}});
-  constexpr Vec2i kDirections[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {3, -1}, {-7, -5}};
-  for (int i = 0; i < 160; ++i) {
-    FieldRay ray;
-    const int32_t x = random.below(kWidth * 256 * 2) - kWidth * 128;
-    const int32_t y = random.below(kHeight * 256 * 2) - kHeight * 128;
-    const bool lattice = i % 4 == 0;
-    ray.origin = {Q8::from_raw(lattice ? x & ~255 : x), Q8::from_raw(lattice ? y & ~255 : y)};
-    ray.direction = kDirections[i % 8];
-    if (i % 5 == 0) {
-      ray.direction = {random.below(2000) - 1000, random.below(2000) - 999};
-      if (ray.direction == Vec2i{}) {
-        ray.direction = {1, 0};
-      }
-    }
-    FieldHit hit;
-    THIMBLE_REQUIRE_OK(field.first_hit(ray, &hit));
-    check.note(static_cast<int64_t>(hit.kind));
-    check.note(hit.visits);
-    if (hit.kind != FieldHitKind::kHit) {
-      continue;
-    }
-    THIMBLE_CHECK(field.test(hit.cell));
-    check.note(hit.axis);
-    check.note(hit.corner ? 1 : 0);
-    check.note(hit.cell.x);
-    check.note(hit.cell.y);
-    check.note(hit.t_numerator);
-    check.note(hit.t_denominator);
-    const Vec2i normal = field.normal(ray, hit);
-    check.note(normal.x);
-    check.note(normal.y);
-    FieldHit again;
-    THIMBLE_REQUIRE_OK(field.first_hit(ray, &again, hit.visits));
-    THIMBLE_CHECK(again.cell == hit.cell);
-    if (hit.visits > 1) {
-      THIMBLE_REQUIRE_OK(field.first_hit(ray, &again, hit.visits - 1));
-      THIMBLE_EQUAL(again.kind, FieldHitKind::kStepLimit);
-    }
-  }
-  FieldHit hit;
-  THIMBLE_EQUAL(field.first_hit({{}, {0, 0}}, &hit), Status::kBadArgument);
-  THIMBLE_EQUAL(field.first_hit({{}, {kMaxFieldDirection + 1, 0}}, &hit), Status::kOutOfRange);
 }
 
 // --- Balls
@@ -213,9 +156,9 @@ bool field_is_union(Check& check, const ParticleWorld& world, uint32_t walls) {
   Particle ball;
   for (uint32_t id = 0; id < world.id_limit(); ++id) {
     if (world.particle(id, &ball)) {
-      const DiscStamp disc = disc_stamp(ball.diameter);
-      cells += disc_cells(disc);
-      if (world.field().count(disc, ball.corner) != disc_cells(disc)) {
+      const Circle circle(world.field(), ball.diameter, ball.corner);
+      cells += circle.cells;
+      if (circle.set != circle.cells) {
         return check.that(false, THIMBLE_WHAT("a ball whose cells are not set"));
       }
     }
@@ -312,7 +255,6 @@ static_assert(sizeof kPlayNames / sizeof kPlayNames[0] == kPlayCount);
 constexpr Case kCases[] = {
     {"boxes of bits, set, cleared, counted, looked through -> as cell by cell", kFieldBytes, boxes},
     {"discs of bits, clipped and inside -> the cells of the circle", kFieldBytes, discs},
-    {"rays through bits -> the same hits, normals and visits everywhere", kFieldBytes, rays},
     {kPlayNames[0], kPlayBytes, play, 0},
     {kPlayNames[1], kPlayBytes, play, 1},
     {kPlayNames[2], kPlayBytes, play, 2},

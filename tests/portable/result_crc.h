@@ -15,7 +15,7 @@ inline constexpr uint32_t kPanelCrc32 = 0xAE95E326;
 /// Of lit pictures, all of which every board draws.
 inline constexpr uint32_t kLitCrc32 = 0x957158C6;
 /// Of worlds of other shapes and of the plane, all of which every board runs.
-inline constexpr uint32_t kWorldCrc32 = 0x8900C2F0;
+inline constexpr uint32_t kWorldCrc32 = 0xF7F45C31;
 /// Of frames by bricks, all of them and those that every board draws.
 inline constexpr uint32_t kBrickCrc32 = 0x57EB37D1;
 inline constexpr uint32_t kCommonBrickCrc32 = 0xB9A37F48;

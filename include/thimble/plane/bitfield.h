@@ -31,10 +31,6 @@ namespace thimble {
 
 /// A field is at most this many cells wide and high (16384 x 16384 is 32 MiB).
 inline constexpr int32_t kMaxFieldSide = int32_t{1} << 14;
-/// Rays start within this many cells of cell (0, 0) on both axes, inclusive, in 1/256 cell.
-inline constexpr int32_t kMaxFieldOriginQ8 = int32_t{1} << 23;
-/// Directions of rays in the plane are integers of at most 20 bits and a sign.
-inline constexpr int32_t kMaxFieldDirection = (int32_t{1} << 20) - 1;
 /// Discs up to this diameter have a table of rows and the fast functions.
 inline constexpr int32_t kMaxSmallDisc = 16;
 /// Discs of up to this diameter can be stamped.
@@ -60,7 +56,6 @@ struct Vec2 {
   friend constexpr bool operator!=(const Vec2& a, const Vec2& b) { return !(a == b); }
 };
 using Vec2i = Vec2<int32_t>;
-using Vec2Q8 = Vec2<Q8>;
 
 /// The cells [low, high) on both axes; empty when `low >= high` on either.
 struct CellBox {
@@ -151,6 +146,24 @@ inline bool any_of(Block block) {
 }
 #endif
 
+/// Calls `visit(row)` for the first row of every block of the first `count` rows: for each row, or for twelve or sixteen
+/// in fours. Not inlined, it costs as much as what it does.
+template <class Visit>
+__attribute__((always_inline)) inline void for_rows(int32_t count, Visit visit) {
+  if constexpr (kRowsAtOnce > 1) {
+    visit(0);
+    visit(4);
+    visit(8);
+    if (count > 12) {
+      visit(12);
+    }
+  } else {
+    for (int32_t row = 0; row < count; ++row) {
+      visit(row);
+    }
+  }
+}
+
 /// Whether the squares around two discs of the same diameter share a cell.
 constexpr bool same_size_discs_meet(int32_t diameter, const Vec2i& a, const Vec2i& b) {
   const uint32_t reach = static_cast<uint32_t>(diameter) - 1;
@@ -178,56 +191,9 @@ constexpr const uint32_t* small_disc_rows(int32_t diameter) {
          field_detail::SmallDiscs::first(least < kMaxSmallDisc ? least : kMaxSmallDisc);
 }
 
-/// The cells of a disc. Cost: O(diameter).
-uint32_t disc_cells(const DiscStamp& disc);
-
 /// The corner of a disc whose centre is at `centre_q16` on an axis: floor(centre - diameter / 2 + 1/2).
 constexpr int32_t disc_corner(int32_t centre_q16, int32_t diameter) {
   return (centre_q16 - (diameter - 1) * 32768) >> 16;
-}
-
-/// A ray in the plane: the points origin + t * direction, t >= 0, in cells. The rules are those of the voxels
-/// (ray.h) with one axis less: cells are half-open, a hit is a positive length inside, a ray that runs in an
-/// edge belongs to the cell that owns it.
-struct FieldRay {
-  Vec2Q8 origin;    ///< in 1/256 cell, -kMaxFieldOriginQ8 .. kMaxFieldOriginQ8
-  Vec2i direction;  ///< -kMaxFieldDirection .. kMaxFieldDirection, not both zero
-};
-
-enum class FieldHitKind : uint8_t {
-  kMiss,       ///< the ray leaves the field without a hit
-  kHit,        ///< all members are valid
-  kStepLimit,  ///< stopped by the limit given; whether there is a hit further on is not known
-};
-
-/// What a ray met. For `kMiss` and `kStepLimit` only `visits` is meaningful.
-struct FieldHit {
-  FieldHitKind kind = FieldHitKind::kMiss;
-  /// Axis of the edge entered (0 or 1; 0 when both are entered at the same t), or -1 when the ray starts in
-  /// the cell.
-  int8_t axis = -1;
-  /// Whether it came in through the cell's corner, both edges at the same t.
-  bool corner = false;
-  Vec2i cell;
-  /// t = t_numerator / t_denominator exactly: numerator 0 .. 2^24, denominator 256 * |direction[axis]|
-  /// (1 for axis -1). Not reduced.
-  int32_t t_numerator = 0;
-  int32_t t_denominator = 1;
-  /// Words looked at.
-  uint32_t visits = 0;
-};
-
-/// Whether `ray` may be traced: `kOk`, `kBadArgument` (zero direction) or `kOutOfRange`.
-constexpr Status check_field_ray(const FieldRay& ray) {
-  for (int axis = 0; axis < 2; ++axis) {
-    const int32_t origin = ray.origin[axis].raw;
-    const int32_t direction = ray.direction[axis];
-    if (origin < -kMaxFieldOriginQ8 || origin > kMaxFieldOriginQ8 || direction < -kMaxFieldDirection ||
-        direction > kMaxFieldDirection) {
-      return Status::kOutOfRange;
-    }
-  }
-  return ray.direction == Vec2i{} ? Status::kBadArgument : Status::kOk;
 }
 
 /// A field over the caller's bytes, which outlive it. Copies share the bytes.
@@ -287,11 +253,6 @@ class BitField {
   uint32_t count(const CellBox& box) const;
   /// All set cells.
   uint32_t count() const { return count(bounds()); }
-  /// The first set cell of the box in reading order (least y, then least x). False, and `at` untouched, when
-  /// there is none.
-  bool first(const CellBox& box, Vec2i* at) const;
-  /// The same with the order of each row turned around: least y, then greatest x.
-  bool first_from_right(const CellBox& box, Vec2i* at) const;
 
   // --- Discs, clipped at the edges; `corner` may be anything. Cost: the words of each row, which are one or
   // two for diameters up to 32.
@@ -299,9 +260,6 @@ class BitField {
   void set(const DiscStamp& disc, Vec2i corner);
   void clear(const DiscStamp& disc, Vec2i corner);
   bool any(const DiscStamp& disc, Vec2i corner) const;
-  uint32_t count(const DiscStamp& disc, Vec2i corner) const;
-  /// The first set cell under the disc in reading order; as `first` of a box.
-  bool first(const DiscStamp& disc, Vec2i corner, Vec2i* at) const;
 
   // --- Discs of diameter 1 .. kMaxSmallDisc that lie in the field: the fast ones. The caller keeps to that
   // (`holds` tells); beyond it they read and write outside the bytes.
@@ -324,31 +282,6 @@ class BitField {
   /// An `own` that covers nothing.
   static constexpr Vec2i kNowhere{-(int32_t{1} << 20), -(int32_t{1} << 20)};
 
-  // --- Rays
-
-  /// The set cell that the ray enters first. Errors as `check_field_ray`, `hit` untouched then. At most
-  /// `max_visits` words are looked at. Cost: a word for each row crossed and one more for each 32 cells along
-  /// a row, with 32-bit additions only; to set up, a loop of 24 turns and one 64-bit product.
-  Status first_hit(const FieldRay& ray, FieldHit* hit, uint32_t max_visits = UINT32_MAX) const;
-
-  /// The direction in which the surface faces at `hit` of `ray` (kind kHit), estimated from the cells within
-  /// kNormalRadius of the one hit: a vector of integers of at most 10 bits and a sign, not normalised.
-  ///
-  /// The empty cells that hang together (by edges, within the radius) with the one that the ray came from are
-  /// the outside; the rest, whatever it is, counts as solid, so that a line of one cell has two sides. The
-  /// vector is the sum of the outside cells' offsets from the cell hit. It turns and mirrors with the
-  /// picture, so walls along the axes and diagonals give exactly their normal. Where the sum is zero it is
-  /// that of the edge or corner entered; for axis -1, where there is no outside, the direction against the
-  /// ray.
-  ///
-  /// Measured, RMS degrees off: slanted walls 1.1, slanted lines of one cell 1.4 (at most 5); single discs of
-  /// diameter 2: 26, 3: 14, 4: 16, 6: 7, 8: 6, 10: 5, 12: 4.4, most of it because a hit is known to a cell
-  /// only (two discs that meet know their centres, and should use them).
-  ///
-  /// Cost: 30 words, and a few hundred operations on them.
-  Vec2i normal(const FieldRay& ray, const FieldHit& hit) const;
-  static constexpr int32_t kNormalRadius = 7;
-
  private:
   // Where the words of a small disc lie.
   struct Rows {
@@ -358,9 +291,6 @@ class BitField {
     bool two_words;            // it reaches into the next column
   };
   __attribute__((always_inline)) Rows rows_of(const DiscStamp& disc, Vec2i corner) const;
-  // Calls `visit(row)` for the first row of every block. Not inlined, it costs as much as what it does.
-  template <class Visit>
-  __attribute__((always_inline)) static void for_each_block(int32_t diameter, Visit visit);
 
   field_detail::Word* words_ = nullptr;
   int32_t width_ = 0;
@@ -386,22 +316,6 @@ inline BitField::Rows BitField::rows_of(const DiscStamp& disc, Vec2i corner) con
   return rows;
 }
 
-template <class Visit>
-inline void BitField::for_each_block(int32_t diameter, Visit visit) {
-  if constexpr (field_detail::kRowsAtOnce > 1) {
-    visit(0);
-    visit(4);
-    visit(8);
-    if (diameter > 12) {
-      visit(12);
-    }
-  } else {
-    for (int32_t row = 0; row < diameter; ++row) {
-      visit(row);
-    }
-  }
-}
-
 inline bool BitField::any_inside(const DiscStamp& disc, Vec2i corner) const {
   using namespace field_detail;
   if (height_ < kMaxSmallDisc) {
@@ -409,10 +323,10 @@ inline bool BitField::any_inside(const DiscStamp& disc, Vec2i corner) const {
   }
   const Rows rows = rows_of(disc, corner);
   Block found = {};
-  for_each_block(disc.diameter,
-                 [&](int32_t row) { found |= load(rows.left + row) >> rows.shift & load(rows.masks + row); });
+  for_rows(disc.diameter,
+           [&](int32_t row) { found |= load(rows.left + row) >> rows.shift & load(rows.masks + row); });
   if (rows.two_words) {
-    for_each_block(disc.diameter, [&](int32_t row) {
+    for_rows(disc.diameter, [&](int32_t row) {
       found |= load(rows.left + height_ + row) << (32 - rows.shift) & load(rows.masks + row);
     });
   }
@@ -434,12 +348,12 @@ inline bool BitField::any_besides_inside(const DiscStamp& disc, Vec2i corner, Ve
   const int32_t to_left = own.x < corner.x ? corner.x - own.x : 0;
   const int32_t to_right = own.x > corner.x ? own.x - corner.x : 0;
   Block found = {};
-  for_each_block(disc.diameter, [&](int32_t row) {
+  for_rows(disc.diameter, [&](int32_t row) {
     found |= load(rows.left + row) >> rows.shift & load(rows.masks + row) &
              ~(load(own_masks + row) >> to_left << to_right);
   });
   if (rows.two_words) {
-    for_each_block(disc.diameter, [&](int32_t row) {
+    for_rows(disc.diameter, [&](int32_t row) {
       found |= load(rows.left + height_ + row) << (32 - rows.shift) & load(rows.masks + row) &
                ~(load(own_masks + row) >> to_left << to_right);
     });
@@ -454,12 +368,12 @@ inline void BitField::set_inside(const DiscStamp& disc, Vec2i corner) {
     return;
   }
   const Rows rows = rows_of(disc, corner);
-  for_each_block(disc.diameter, [&](int32_t row) {
+  for_rows(disc.diameter, [&](int32_t row) {
     store(rows.left + row, load(rows.left + row) | load(rows.masks + row) << rows.shift);
   });
   if (rows.two_words) {
     Word* right = rows.left + height_;
-    for_each_block(disc.diameter, [&](int32_t row) {
+    for_rows(disc.diameter, [&](int32_t row) {
       store(right + row, load(right + row) | load(rows.masks + row) >> (32 - rows.shift));
     });
   }
@@ -472,12 +386,12 @@ inline void BitField::clear_inside(const DiscStamp& disc, Vec2i corner) {
     return;
   }
   const Rows rows = rows_of(disc, corner);
-  for_each_block(disc.diameter, [&](int32_t row) {
+  for_rows(disc.diameter, [&](int32_t row) {
     store(rows.left + row, load(rows.left + row) & ~(load(rows.masks + row) << rows.shift));
   });
   if (rows.two_words) {
     Word* right = rows.left + height_;
-    for_each_block(disc.diameter, [&](int32_t row) {
+    for_rows(disc.diameter, [&](int32_t row) {
       store(right + row, load(right + row) & ~(load(rows.masks + row) >> (32 - rows.shift)));
     });
   }
