@@ -1,5 +1,5 @@
+#include "parts.h"
 #include "picture.h"
-#include "view.h"
 
 namespace thimble::c_face {
 

@@ -76,6 +76,13 @@ constexpr int32_t number(Status status) {
   return static_cast<int32_t>(status);
 }
 
+/// What `call(object)` says of the object that a handle holds; kBadArgument where it holds none.
+template <class Object, class Handle, class Call>
+int32_t with(Handle* handle, const Call& call) {
+  auto* const object = held<Object>(handle);
+  return number(object == nullptr ? Status::kBadArgument : call(*object));
+}
+
 /// Bytes as C gives them. False for a null pointer with a size.
 template <class Byte, class Void>
 bool take_bytes(Void* bytes, size_t size, Span<Byte>* span) {

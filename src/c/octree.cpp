@@ -26,47 +26,39 @@ extern "C" int32_t thimble_octree_make(thimble_octree_t* octree, int32_t level, 
 }
 
 extern "C" int32_t thimble_octree_clear(thimble_octree_t* octree) {
-  Octree* const tree = held<Octree>(octree);
-  if (tree == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  tree->clear();
-  return number(Status::kOk);
+  return with<Octree>(octree, [](Octree& tree) {
+    tree.clear();
+    return Status::kOk;
+  });
 }
 
 extern "C" int32_t thimble_octree_set_coarsen(thimble_octree_t* octree, int32_t yes) {
-  Octree* const tree = held<Octree>(octree);
-  if (tree == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  tree->set_coarsen(yes != 0);
-  return number(Status::kOk);
+  return with<Octree>(octree, [=](Octree& tree) {
+    tree.set_coarsen(yes != 0);
+    return Status::kOk;
+  });
 }
 
 extern "C" int32_t thimble_octree_insert(thimble_octree_t* octree, int32_t x, int32_t y, int32_t z,
                                          int32_t material) {
-  Octree* const tree = held<Octree>(octree);
-  if (tree == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  return number(is_material(material) ? tree->insert({x, y, z}, static_cast<uint8_t>(material))
-                                      : Status::kOutOfRange);
+  return with<Octree>(octree, [=](Octree& tree) {
+    return is_material(material) ? tree.insert({x, y, z}, static_cast<uint8_t>(material))
+                                 : Status::kOutOfRange;
+  });
 }
 
 extern "C" int32_t thimble_octree_insert_box(thimble_octree_t* octree, const thimble_box_t* box,
                                              int32_t material) {
-  Octree* const tree = held<Octree>(octree);
-  if (tree == nullptr || box == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  return number(is_material(material) ? tree->insert_box({vector_of(box->low), vector_of(box->high)},
-                                                         static_cast<uint8_t>(material))
-                                      : Status::kOutOfRange);
+  return with<Octree>(octree, [=](Octree& tree) {
+    return box == nullptr ? Status::kBadArgument
+           : is_material(material)
+               ? tree.insert_box({vector_of(box->low), vector_of(box->high)}, static_cast<uint8_t>(material))
+               : Status::kOutOfRange;
+  });
 }
 
 extern "C" int32_t thimble_octree_erase(thimble_octree_t* octree, int32_t x, int32_t y, int32_t z) {
-  Octree* const tree = held<Octree>(octree);
-  return number(tree == nullptr ? Status::kBadArgument : tree->remove({x, y, z}));
+  return with<Octree>(octree, [=](Octree& tree) { return tree.remove({x, y, z}); });
 }
 
 extern "C" int32_t thimble_octree_contains(const thimble_octree_t* octree, int32_t x, int32_t y, int32_t z) {

@@ -27,25 +27,29 @@ int32_t end_of(int32_t at, int32_t size) {
   return at > INT32_MAX - size ? INT32_MAX : at + size;
 }
 
-// The errors of draw_box and erase_box, and the box.
-Status take_box(const ParticleWorld* world, int32_t x, int32_t y, int32_t width, int32_t height,
-                CellBox* box) {
-  if (world == nullptr) {
-    return Status::kBadArgument;
-  }
-  if (width < 0 || height < 0) {
-    return Status::kOutOfRange;
-  }
-  *box = {{x, y}, {end_of(x, width), end_of(y, height)}};
-  return Status::kOk;
+// Draws or erases a box, as `change(world, box)` does.
+template <class Change>
+int32_t change_box(thimble_particles_t* world, Vec2i from, Vec2i size, const Change& change) {
+  return with<ParticleWorld>(world, [&](ParticleWorld& balls) {
+    if (size.x < 0 || size.y < 0) {
+      return Status::kOutOfRange;
+    }
+    change(balls, CellBox{from, {end_of(from.x, size.x), end_of(from.y, size.y)}});
+    return Status::kOk;
+  });
 }
 
-// Stores the number of a ball that was put there.
-int32_t tell_id(Status status, uint32_t id, int32_t* to) {
-  if (status == Status::kOk && to != nullptr) {
-    *to = static_cast<int32_t>(id);
-  }
-  return number(status);
+// Puts a ball somewhere, as `spawn(world, &number)` does, and stores its number.
+template <class Spawn>
+int32_t add(thimble_particles_t* world, int32_t* id, const Spawn& spawn) {
+  return with<ParticleWorld>(world, [&](ParticleWorld& balls) {
+    uint32_t added = kNoBall;
+    const Status status = spawn(balls, &added);
+    if (status == Status::kOk && id != nullptr) {
+      *id = static_cast<int32_t>(added);
+    }
+    return status;
+  });
 }
 
 }  // namespace
@@ -84,72 +88,50 @@ extern "C" int32_t thimble_particles_make(thimble_particles_t* world, const thim
 
 extern "C" int32_t thimble_particles_add(thimble_particles_t* world, int32_t x_q16, int32_t y_q16,
                                          int32_t vx_q16, int32_t vy_q16, int32_t diameter, int32_t* id) {
-  ParticleWorld* const balls = held<ParticleWorld>(world);
-  if (balls == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  uint32_t added = kNoBall;
-  const Status status = balls->spawn(x_q16, y_q16, vx_q16, vy_q16, diameter, &added);
-  return tell_id(status, added, id);
+  return add(world, id, [=](ParticleWorld& balls, uint32_t* added) {
+    return balls.spawn(x_q16, y_q16, vx_q16, vy_q16, diameter, added);
+  });
 }
 
 extern "C" int32_t thimble_particles_add_random(thimble_particles_t* world, int32_t max_speed_q16,
                                                 int32_t* id) {
-  ParticleWorld* const balls = held<ParticleWorld>(world);
-  if (balls == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  uint32_t added = kNoBall;
-  const Status status = balls->spawn_random(max_speed_q16, &added);
-  return tell_id(status, added, id);
+  return add(world, id,
+             [=](ParticleWorld& balls, uint32_t* added) { return balls.spawn_random(max_speed_q16, added); });
 }
 
 extern "C" int32_t thimble_particles_remove(thimble_particles_t* world, int32_t id) {
-  ParticleWorld* const balls = held<ParticleWorld>(world);
-  return number(balls == nullptr ? Status::kBadArgument : balls->remove(static_cast<uint32_t>(id)));
+  return with<ParticleWorld>(world,
+                             [=](ParticleWorld& balls) { return balls.remove(static_cast<uint32_t>(id)); });
 }
 
 extern "C" int32_t thimble_particles_set_velocity(thimble_particles_t* world, int32_t id, int32_t vx_q16,
                                                   int32_t vy_q16) {
-  ParticleWorld* const balls = held<ParticleWorld>(world);
-  return number(balls == nullptr ? Status::kBadArgument
-                                 : balls->set_velocity(static_cast<uint32_t>(id), vx_q16, vy_q16));
+  return with<ParticleWorld>(world, [=](ParticleWorld& balls) {
+    return balls.set_velocity(static_cast<uint32_t>(id), vx_q16, vy_q16);
+  });
 }
 
 extern "C" int32_t thimble_particles_set_gravity(thimble_particles_t* world, int32_t x_q16, int32_t y_q16) {
-  ParticleWorld* const balls = held<ParticleWorld>(world);
-  return number(balls == nullptr ? Status::kBadArgument : balls->set_gravity({x_q16, y_q16}));
+  return with<ParticleWorld>(world, [=](ParticleWorld& balls) { return balls.set_gravity({x_q16, y_q16}); });
 }
 
 extern "C" int32_t thimble_particles_draw_box(thimble_particles_t* world, int32_t x, int32_t y, int32_t width,
                                               int32_t height) {
-  ParticleWorld* const balls = held<ParticleWorld>(world);
-  CellBox box;
-  const Status status = take_box(balls, x, y, width, height, &box);
-  if (status == Status::kOk) {
-    balls->draw_box(box);
-  }
-  return number(status);
+  return change_box(world, {x, y}, {width, height},
+                    [](ParticleWorld& balls, const CellBox& box) { balls.draw_box(box); });
 }
 
 extern "C" int32_t thimble_particles_erase_box(thimble_particles_t* world, int32_t x, int32_t y,
                                                int32_t width, int32_t height) {
-  ParticleWorld* const balls = held<ParticleWorld>(world);
-  CellBox box;
-  const Status status = take_box(balls, x, y, width, height, &box);
-  if (status == Status::kOk) {
-    balls->erase_box(box);
-  }
-  return number(status);
+  return change_box(world, {x, y}, {width, height},
+                    [](ParticleWorld& balls, const CellBox& box) { balls.erase_box(box); });
 }
 
 extern "C" int32_t thimble_particles_step(thimble_particles_t* world) {
-  ParticleWorld* const balls = held<ParticleWorld>(world);
-  if (balls == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  balls->step();
-  return number(Status::kOk);
+  return with<ParticleWorld>(world, [](ParticleWorld& balls) {
+    balls.step();
+    return Status::kOk;
+  });
 }
 
 extern "C" int32_t thimble_particles_get_info(const thimble_particles_t* world,

@@ -14,16 +14,21 @@ static_assert(THIMBLE_SHADE_DEPTH == static_cast<int>(ShadeMode::kDepth) &&
               THIMBLE_SHADE_MONO == static_cast<int>(ShadeMode::kMono));
 static_assert(sizeof(Rgb8) == 3 && alignof(Rgb8) == 1, "the palette is read where it lies");
 
-constexpr bool formats_are_equal() {
-  for (int32_t format = 0; format <= 255; ++format) {
-    const int32_t named = c_format(static_cast<PixelFormat>(format));
-    if (named != -1 && named != format) {
-      return false;
-    }
-  }
-  return true;
-}
-static_assert(formats_are_equal(), "enum thimble_format has another number than PixelFormat");
+static_assert(THIMBLE_FORMAT_MONO1 == static_cast<int>(PixelFormat::kMono1) &&
+              THIMBLE_FORMAT_GRAY4 == static_cast<int>(PixelFormat::kGray4) &&
+              THIMBLE_FORMAT_GRAY8 == static_cast<int>(PixelFormat::kGray8) &&
+              THIMBLE_FORMAT_RGB565 == static_cast<int>(PixelFormat::kRgb565) &&
+              THIMBLE_FORMAT_RGB888 == static_cast<int>(PixelFormat::kRgb888) &&
+              THIMBLE_FORMAT_RGB565_BE == static_cast<int>(PixelFormat::kRgb565Be) &&
+              THIMBLE_FORMAT_BGR565 == static_cast<int>(PixelFormat::kBgr565) &&
+              THIMBLE_FORMAT_RGB444 == static_cast<int>(PixelFormat::kRgb444) &&
+              THIMBLE_FORMAT_MONO1_PAGES == static_cast<int>(PixelFormat::kMono1Pages) &&
+              THIMBLE_FORMAT_GRAY4_LOW == static_cast<int>(PixelFormat::kGray4Low) &&
+              THIMBLE_FORMAT_GRAY2 == static_cast<int>(PixelFormat::kGray2) &&
+              THIMBLE_FORMAT_PAPER3 == static_cast<int>(PixelFormat::kPaper3) &&
+              THIMBLE_FORMAT_PAPER7 == static_cast<int>(PixelFormat::kPaper7) &&
+              THIMBLE_FORMAT_RGB332 == static_cast<int>(PixelFormat::kRgb332));
+static_assert(kPixelFormats == THIMBLE_FORMAT_RGB332 + 1, "enum thimble_format lacks a format");
 
 // floor(2^32 * numerator / denominator): numerator 0 .. 2^24, denominator 1 .. 2^28. One 32-bit division and
 // 32 steps.

@@ -16,43 +16,8 @@ inline Ray ray_of(const thimble_ray_t& from) {
 /// picture.cpp. A hit as C sees it.
 void tell_hit(const Ray& ray, const Hit& hit, thimble_hit_t* to);
 
-/// The number in C, -1 for no format. A line a format; the compiler names one that lacks.
-constexpr int32_t c_format(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kMono1:
-      return THIMBLE_FORMAT_MONO1;
-    case PixelFormat::kGray4:
-      return THIMBLE_FORMAT_GRAY4;
-    case PixelFormat::kGray8:
-      return THIMBLE_FORMAT_GRAY8;
-    case PixelFormat::kRgb565:
-      return THIMBLE_FORMAT_RGB565;
-    case PixelFormat::kRgb888:
-      return THIMBLE_FORMAT_RGB888;
-    case PixelFormat::kRgb565Be:
-      return THIMBLE_FORMAT_RGB565_BE;
-    case PixelFormat::kBgr565:
-      return THIMBLE_FORMAT_BGR565;
-    case PixelFormat::kRgb444:
-      return THIMBLE_FORMAT_RGB444;
-    case PixelFormat::kMono1Pages:
-      return THIMBLE_FORMAT_MONO1_PAGES;
-    case PixelFormat::kGray4Low:
-      return THIMBLE_FORMAT_GRAY4_LOW;
-    case PixelFormat::kGray2:
-      return THIMBLE_FORMAT_GRAY2;
-    case PixelFormat::kPaper3:
-      return THIMBLE_FORMAT_PAPER3;
-    case PixelFormat::kPaper7:
-      return THIMBLE_FORMAT_PAPER7;
-    case PixelFormat::kRgb332:
-      return THIMBLE_FORMAT_RGB332;
-  }
-  return -1;
-}
 constexpr bool is_format(int32_t format) {
-  return format >= 0 && format < kPixelFormats && has_format(static_cast<PixelFormat>(format)) &&
-         c_format(static_cast<PixelFormat>(format)) == format;
+  return format >= 0 && format < kPixelFormats && has_format(static_cast<PixelFormat>(format));
 }
 
 /// False for null, an unknown mode, or a palette that is not there.

@@ -1,8 +1,6 @@
 #include "thimble/bake/baked_scene.h"
 
-#include "shading.h"
-#include "tree.h"
-#include "view.h"
+#include "parts.h"
 
 namespace thimble::c_face {
 

@@ -1,4 +1,4 @@
-#include "shading.h"
+#include "parts.h"
 #include "picture.h"
 
 namespace thimble::c_face {
@@ -27,12 +27,8 @@ void tell_default_shading(ShadeMode mode, Span<const Rgb8> palette, thimble_shad
   for (int face = 0; face < 6; ++face) {
     to->face_light[face] = from.face_light[face];
   }
-  to->default_rgb[0] = from.default_color.r;
-  to->default_rgb[1] = from.default_color.g;
-  to->default_rgb[2] = from.default_color.b;
-  to->background_rgb[0] = from.background.r;
-  to->background_rgb[1] = from.background.g;
-  to->background_rgb[2] = from.background.b;
+  __builtin_memcpy(to->default_rgb, &from.default_color, sizeof to->default_rgb);
+  __builtin_memcpy(to->background_rgb, &from.background, sizeof to->background_rgb);
 }
 
 extern "C" void thimble_shading_default(thimble_shading_t* shading) {

@@ -1,4 +1,4 @@
-#include "tree.h"
+#include "parts.h"
 
 #include "thimble/tree/octree.h"
 

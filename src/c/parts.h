@@ -1,10 +1,17 @@
-// Views between C and the core. Internal to src/c.
+// What a scene, a tree and a camera tell C of themselves, each by the file of its name. Internal to src/c.
 #pragma once
 
 #include "kinds.h"
 #include "thimble/bake/baked_scene.h"
+#include "thimble/picture/shading.h"
+#include "thimble/tree/compact_tree.h"
 
 namespace thimble::c_face {
+
+void tell_tree(const CompactTree& tree, thimble_tree_info_t* to);
+
+/// The core's default with that mode and palette.
+void tell_default_shading(ShadeMode mode, Span<const Rgb8> palette, thimble_shading_t* to);
 
 void tell_view(const SceneCamera& from, thimble_view_t* to);
 
