@@ -2,7 +2,6 @@
 // to src/.
 #pragma once
 
-#include "../../base/choose.h"
 #include "../../picture/bricks/sight.h"
 #include "mirror_rays.h"
 #include "point_lighting.h"

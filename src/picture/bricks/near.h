@@ -247,13 +247,7 @@ class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
     if (way[axis] <= 0) {
       return false;
     }
-    if (axis == 0) {
-      find_within<0>(signs, way, ray.d, point);
-    } else if (axis == 1) {
-      find_within<1>(signs, way, ray.d, point);
-    } else {
-      find_within<2>(signs, way, ray.d, point);
-    }
+    find_within(axis, signs, way, ray.d, point);
     return true;
   }
 };

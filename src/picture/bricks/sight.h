@@ -56,7 +56,18 @@ template <int kAxis, class OneCourse, class Direction>
   point->axis = kAxis;
   point->faces_up = course.flip[kAxis] != 0;
 }
-template <int kAxis>
+template <class OneCourse, class Direction>
+[[gnu::always_inline]] inline void find_within(int axis, const OneCourse& course, const int32_t (&way)[3],
+                                               const Direction& d, FacePoint* point) {
+  switch (axis) {
+    case 0:
+      return find_within<0>(course, way, d, point);
+    case 1:
+      return find_within<1>(course, way, d, point);
+    default:
+      return find_within<2>(course, way, d, point);
+  }
+}
 void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* point) {
   const Landing& landing = course.landing;
   int32_t way[3];  // from the eye to the voxel's near plane
@@ -68,17 +79,7 @@ void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* p
     point->voxel[i] = 4 * (flip != 0 ? side - 1 - brick : brick) + place;
     way[i] = (4 * brick + (place ^ flip)) * Q8::kOne - (course.origin[i] - (i == course.c ? 0 : kOutsideQ8));
   }
-  find_within<kAxis>(course, way, d, point);
-}
-void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* point) {
-  switch (course.landing.axis) {
-    case 0:
-      return find_point<0>(course, d, point);
-    case 1:
-      return find_point<1>(course, d, point);
-    default:
-      return find_point<2>(course, d, point);
-  }
+  find_within(landing.axis, course, way, d, point);
 }
 
 template <int kC>
@@ -112,14 +113,7 @@ struct SeenFace {
 
 // Finds where the ray of direction `d` meets the face.
 void find_point(const SightCourse& course, const Vec3<uint32_t>& d, SeenFace* face) {
-  switch (face->point.axis) {
-    case 0:
-      return find_within<0>(course, face->way, d, &face->point);
-    case 1:
-      return find_within<1>(course, face->way, d, &face->point);
-    default:
-      return find_within<2>(course, face->way, d, &face->point);
-  }
+  find_within(face->point.axis, course, face->way, d, &face->point);
 }
 
 // The pixels of a tile that show one face.

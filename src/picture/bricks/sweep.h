@@ -132,15 +132,6 @@ template <bool kDeep>
   return kept;
 }
 
-// An element by an axis that is known at run time only: without the branches of `operator[]`.
-template <class Number>
-Number element(const Vec3<Number>& vector, int axis) {
-  Number number;
-  const uint8_t* from =
-      reinterpret_cast<const uint8_t*>(&vector) + static_cast<size_t>(axis) * sizeof(number);
-  __builtin_memcpy(&number, __builtin_assume_aligned(from, alignof(Number)), sizeof(number));
-  return number;
-}
 // The direction of a tile's first pixel on a, b and c, mirrored, and a half: rounding is cutting off.
 struct FirstDirection {
   uint64_t on[3];
@@ -150,7 +141,7 @@ FirstDirection first_direction(const Course& course, const Camera::Vec3Q32& valu
   FirstDirection first;
   for (int k = 0; k < 3; ++k) {
     const int axis = course.axis[k];
-    const int64_t own = element(value, axis);
+    const int64_t own = component(value, axis);
     first.on[k] =
         static_cast<uint64_t>((course.mirrored >> axis & 1U) != 0 ? -own : own) + (uint64_t{1} << 31);
   }
@@ -163,8 +154,8 @@ FirstDirection first_direction(const Course& course, const Camera::Vec3Q32& valu
   const uint32_t x = pixel & (kTileAcrossPx - 1);
   const uint32_t y = pixel / kTileAcrossPx;
   for (int k = 0; k < 3; ++k) {
-    const auto step_x = static_cast<uint64_t>(element(course.step_x, course.axis[k]));
-    const auto step_y = static_cast<uint64_t>(element(course.step_y, course.axis[k]));
+    const auto step_x = static_cast<uint64_t>(component(course.step_x, course.axis[k]));
+    const auto step_y = static_cast<uint64_t>(component(course.step_y, course.axis[k]));
     uint64_t sum = first.on[k];
     sum += wide_product_u(static_cast<uint32_t>(step_x), x);
     sum += wide_product_u(static_cast<uint32_t>(step_y), y);
