@@ -40,6 +40,16 @@ constexpr bool is_seen(const Weight& weight) {
   return weight.c[0] >= kLeastWeight || weight.c[1] >= kLeastWeight || weight.c[2] >= kLeastWeight;
 }
 
+/// Sends a ray that comes out of another, where it can be seen.
+inline void send(Frame& frame, const PendingRay& from, LitRayKind kind, int axis, const Ray& ray,
+                 const Weight& weight, PendingRay* pending, size_t* count) {
+  if (is_seen(weight)) {
+    count_ray(frame, kind);
+    pending[(*count)++] = {ray, weight, static_cast<uint8_t>(from.bounces + 1), kind,
+                           static_cast<int8_t>(axis)};
+  }
+}
+
 /// The length of the ray from `from` to the meeting, in 1/256 voxel.
 inline uint32_t stretch_q8(const Ray& ray, const Leg& leg, const Meeting& meeting) {
   const int32_t end = distance_q8(ray.direction, meeting.hit.t_numerator, meeting.hit.t_denominator);
@@ -133,6 +143,15 @@ constexpr bool is_mirror(const Surface& metal) {
     mirrored->c[i] = weighed(weighed(own->c[i], reflected), share + share / 65535);
     own->c[i] = weighed(own->c[i], 65535 - share);
   }
+}
+
+/// Whether a metal spreads what a ray of the camera sees in it over kRoughnessRays; each then has its part of the weight.
+[[gnu::always_inline]] inline bool is_spread(const Surface& metal, const PendingRay& now, Weight* mirrored) {
+  const bool rough = metal.roughness != 0 && now.bounces == 0;
+  for (uint16_t& channel : mirrored->c) {
+    channel = rough ? static_cast<uint16_t>(channel / kRoughnessRays) : channel;
+  }
+  return rough;
 }
 
 /// The direction of ray `number` of a rough metal, of what a smooth one would mirror at a face of `axis`.

@@ -15,6 +15,12 @@ uint32_t step_of(uint32_t channel, uint32_t levels, const LitOptions& options, i
   return (channel * levels + (128 - place) * kWhite / 128) / kWhite;
 }
 
+Rgb8 color_565(const uint32_t (&channel)[3], const LitOptions& options, int32_t x, int32_t y) {
+  return {static_cast<uint8_t>(step_of(channel[0], 31, options, x, y) << 3),
+          static_cast<uint8_t>(step_of(channel[1], 63, options, x, y) << 2),
+          static_cast<uint8_t>(step_of(channel[2], 31, options, x, y) << 3)};
+}
+
 // The formats behind kRgb888: those with levels are dithered as the others, from all bits that there are. Paper has
 // its own dither, in store_pixel, of 8 bits; without one a colour is taken as in the middle of the cell.
 Rgb8 panel_color(const uint32_t (&channel)[3], uint32_t gray, PixelFormat format, const LitOptions& options,
@@ -22,29 +28,27 @@ Rgb8 panel_color(const uint32_t (&channel)[3], uint32_t gray, PixelFormat format
   const auto step = [&](uint32_t value, uint32_t levels) {
     return static_cast<uint8_t>((step_of(value, levels, options, x, y) * 255 + levels / 2) / levels);
   };
+  const auto grays = [&](uint32_t levels) {
+    const uint8_t value = step(gray, levels);
+    return Rgb8{value, value, value};
+  };
   if (has_pages(format)) {
-    const uint8_t value = step(gray, 1);
-    return {value, value, value};
+    return grays(1);
   }
-  if (has_format(PixelFormat::kGray4Low) && format == PixelFormat::kGray4Low) {
-    const uint8_t value = step(gray, 15);
-    return {value, value, value};
+  if (is_format<PixelFormat::kGray4Low>(format)) {
+    return grays(15);
   }
-  if (has_format(PixelFormat::kGray2) && format == PixelFormat::kGray2) {
-    const uint8_t value = step(gray, 3);
-    return {value, value, value};
+  if (is_format<PixelFormat::kGray2>(format)) {
+    return grays(3);
   }
-  if (has_format(PixelFormat::kRgb444) && format == PixelFormat::kRgb444) {
+  if (is_format<PixelFormat::kRgb444>(format)) {
     return {step(channel[0], 15), step(channel[1], 15), step(channel[2], 15)};
   }
-  if (has_format(PixelFormat::kRgb332) && format == PixelFormat::kRgb332) {
+  if (is_format<PixelFormat::kRgb332>(format)) {
     return {step(channel[0], 7), step(channel[1], 7), step(channel[2], 3)};
   }
-  if ((has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
-      (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565)) {
-    return {static_cast<uint8_t>(step_of(channel[0], 31, options, x, y) << 3),
-            static_cast<uint8_t>(step_of(channel[1], 63, options, x, y) << 2),
-            static_cast<uint8_t>(step_of(channel[2], 31, options, x, y) << 3)};
+  if (is_format<PixelFormat::kRgb565Be>(format) || is_format<PixelFormat::kBgr565>(format)) {
+    return color_565(channel, options, x, y);
   }
   Rgb8 color = in_8_bits(channel);
   if (!options.dither) {
@@ -102,27 +106,16 @@ void store(const Frame& frame, const Band& band, uint8_t* line, int32_t x, int32
       break;
     }
     case PixelFormat::kRgb565:
-      stored = {static_cast<uint8_t>(step_of(channel[0], 31, frame.options, x, y) << 3),
-                static_cast<uint8_t>(step_of(channel[1], 63, frame.options, x, y) << 2),
-                static_cast<uint8_t>(step_of(channel[2], 31, frame.options, x, y) << 3)};
-      break;
-    case PixelFormat::kRgb565Be:
-    case PixelFormat::kBgr565:
-    case PixelFormat::kRgb444:
-    case PixelFormat::kMono1Pages:
-    case PixelFormat::kGray4Low:
-    case PixelFormat::kGray2:
-    case PixelFormat::kPaper3:
-    case PixelFormat::kPaper7:
-    case PixelFormat::kRgb332:
-      if constexpr (kHasPanelFormats) {
-        stored = panel_color(channel, gray, band.format, frame.options, x, y);
-      }
+      stored = color_565(channel, frame.options, x, y);
       break;
     case PixelFormat::kGray8:
     case PixelFormat::kRgb888:
       stored = in_8_bits(channel);
       break;
+    default:
+      if (is_panel(band.format)) {
+        stored = panel_color(channel, gray, band.format, frame.options, x, y);
+      }
   }
   store_pixel(line, x, y, band.format, stored);
 }

@@ -17,30 +17,29 @@ template <class Place>
                                                const Place& /*place*/, Hit* hit) {
   find_solid(frame, kind, ray, hit);
 }
-/// A miss as long as there is no answer.
-template <class Place>
-inline void find_before(AskedFrame& frame, LitRayKind kind, const Ray& ray, const Place& place, Hit* hit) {
+/// The answer, counted; as long as there is none a miss, and `ask()` notes the query.
+template <class Ask>
+inline void take_counted(AskedFrame& frame, LitRayKind kind, Hit* hit, const Ask& ask) {
   const Answer* answer = frame.look();
   if (answer == nullptr) {
-    frame.note(kind == LitRayKind::kOcclusion ? Question::kNear : Question::kBefore, ray, place());
+    ask();
     *hit = Hit{};
     return;
   }
   *hit = answer->hit;
   count_result(frame, kind, hit->kind, hit->visits);
 }
+template <class Place>
+inline void find_before(AskedFrame& frame, LitRayKind kind, const Ray& ray, const Place& place, Hit* hit) {
+  take_counted(frame, kind, hit, [&] {
+    frame.note(kind == LitRayKind::kOcclusion ? Question::kNear : Question::kBefore, ray, place());
+  });
+}
 
 /// The same for a ray of occlusion round a slope, `aimed()`.
 template <class Aimed>
 inline void find_around(AskedFrame& frame, const Aimed& aimed, Hit* hit) {
-  const Answer* answer = frame.look();
-  if (answer == nullptr) {
-    frame.note(Question::kAround, aimed(), {});
-    *hit = Hit{};
-    return;
-  }
-  *hit = answer->hit;
-  count_result(frame, LitRayKind::kOcclusion, hit->kind, hit->visits);
+  take_counted(frame, LitRayKind::kOcclusion, hit, [&] { frame.note(Question::kAround, aimed(), {}); });
 }
 
 /// The same with balls.

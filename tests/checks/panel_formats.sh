@@ -1,6 +1,6 @@
 #!/bin/sh
 # A pixel format that an image leaves out (THIMBLE_PANEL_FORMATS) takes none of its flash: each source that asks
-# has_format, compiled for a Cortex-M0 without formats of panels, is smaller than with all of them, small ones than with
+# is_format, compiled for a Cortex-M0 without formats of panels, is smaller than with all of them, small ones than with
 # any one; and where nothing else is in it, nothing is left.     panel_formats.sh ROOT WORK_DIR
 set -eu
 root=$1
@@ -22,8 +22,8 @@ bytes() {
   arm-none-eabi-g++ $flags -DTHIMBLE_PANEL_FORMATS="${2}U" -c "$1" -o "$work/one.o"
   arm-none-eabi-size "$work/one.o" | awk 'NR == 2 { print $1 + $2 }'
 }
-sources=$(grep -l 'has_format(' -r src --include='*.cpp' | sort)
-[ -n "$sources" ] || complain "no source of src asks has_format"
+sources=$(grep -l 'is_format<' -r src --include='*.cpp' | sort)
+[ -n "$sources" ] || complain "no source of src asks is_format"
 for source in $sources; do
   none=$(bytes "$source" 0)
   case $source in

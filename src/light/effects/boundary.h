@@ -56,18 +56,11 @@ inline Vec3Q8 beside_surface(const WaterSurface& water, Vec3Q8 at, const Vec3i& 
 /// Sends a share of a ray's light, where it can be seen.
 inline void send_share(Frame& frame, const PendingRay& from, LitRayKind kind, int8_t axis, const Ray& ray,
                        uint32_t share_q16, PendingRay* pending, size_t* count) {
-  PendingRay out;
-  out.ray = ray;
-  out.bounces = static_cast<uint8_t>(from.bounces + 1);
-  out.kind = kind;
-  out.axis = axis;
+  Weight weight;
   for (int i = 0; i < 3; ++i) {
-    out.weight.c[i] = weighed(from.weight.c[i], share_q16);
+    weight.c[i] = weighed(from.weight.c[i], share_q16);
   }
-  if (is_seen(out.weight)) {
-    count_ray(frame, kind);
-    pending[(*count)++] = out;
-  }
+  send(frame, from, kind, axis, ray, weight, pending, count);
 }
 
 }  // namespace thimble::lit

@@ -159,24 +159,13 @@ void send_mirrored(Frame& frame, PendingRay* now, const Spot& spot, const Slope&
   const Vec3i mirrored = along < 0 ? shorten(reflect(unit, slope.normal)) : unit;
   Weight weight;
   divide_weight(metal, cosine, &now->weight, &weight);
-  PendingRay out;
-  out.bounces = static_cast<uint8_t>(now->bounces + 1);
-  out.kind = LitRayKind::kMirrorRay;
-  out.axis = static_cast<int8_t>(slope.raised ? -1 : axis);
-  const bool rough = metal.roughness != 0 && now->bounces == 0;
+  const bool rough = is_spread(metal, *now, &weight);
   for (int i = 0; i < (rough ? kRoughnessRays : 1); ++i) {
-    out.ray = {slope.start, rough ? shorten(roughen(mirrored, metal.roughness, i)) : mirrored};
-    out.weight = weight;
+    Ray ray{slope.start, rough ? shorten(roughen(mirrored, metal.roughness, i)) : mirrored};
     if (!slope.raised) {
-      out.ray.direction = turned_from(out.ray.direction, axis, !spot.face.negative);
+      ray.direction = turned_from(ray.direction, axis, !spot.face.negative);
     }
-    for (uint16_t& channel : out.weight.c) {
-      channel = rough ? static_cast<uint16_t>(channel / kRoughnessRays) : channel;
-    }
-    if (is_seen(out.weight)) {
-      count_ray(frame, LitRayKind::kMirrorRay);
-      pending[(*count)++] = out;
-    }
+    send(frame, *now, LitRayKind::kMirrorRay, slope.raised ? -1 : axis, ray, weight, pending, count);
   }
 }
 

@@ -58,7 +58,7 @@ class FlatSink : PointLighting<kSet, kSecondary>,
         stride_(stride),
         storing_(storing_of(band.format)),
         counts_(counts) {
-    const bool blue_first = has_format(PixelFormat::kBgr565) && band.format == PixelFormat::kBgr565;
+    const bool blue_first = is_format<PixelFormat::kBgr565>(band.format);
     shift_[0] = blue_first ? 0 : 11;
     shift_[1] = 5;
     shift_[2] = blue_first ? 11 : 0;
@@ -163,23 +163,18 @@ class FlatSink : PointLighting<kSet, kSecondary>,
     const unsigned side = seen.course.face[face.point.axis];
     if constexpr (kIsWet<kSet>) {
       if (!this->is_dry(face.point, floor_q8())) {
-        for_each(seen.pixels, [&](uint32_t pixel) {  // of the band's part of the tile
-          this->note(pixel_at(seen.place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
-                              seen.place.y + static_cast<int32_t>(pixel / kTileAcrossPx)),
-                     note_of(face.point));
-        });
+        for_each(seen.place, seen.pixels,
+                 [&](int32_t x, int32_t y, uint32_t) { this->note(pixel_at(x, y), note_of(face.point)); });
         return;
       }
     }
     if constexpr (kMirrors<kSet>) {
       const uint8_t material = material_of(face.voxel, side);
       if (mirrors(material)) {
-        for_each(seen.pixels, [&](uint32_t pixel) {
+        for_each(seen.place, seen.pixels, [&](int32_t x, int32_t y, uint32_t pixel) {
           const Vec3<uint32_t> d = seen.direction(pixel);
           find_point(seen.course, d, &face);
-          show_mirrored(seen.place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
-                        seen.place.y + static_cast<int32_t>(pixel / kTileAcrossPx), seen.course, d,
-                        face.point, material);
+          show_mirrored(x, y, seen.course, d, face.point, material);
         });
         return;
       }
@@ -216,10 +211,7 @@ class FlatSink : PointLighting<kSet, kSecondary>,
       misses_ += counts_ ? count_of(pixels) : 0;
       store(place, pixels, sky_);
     } else {
-      for_each(pixels, [&](uint32_t pixel) {
-        miss(place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
-             place.y + static_cast<int32_t>(pixel / kTileAcrossPx));
-      });
+      for_each(place, pixels, [&](int32_t x, int32_t y, uint32_t) { miss(x, y); });
     }
   }
 
@@ -305,11 +297,14 @@ class FlatSink : PointLighting<kSet, kSecondary>,
     }
     return count;
   }
+  // Calls `call(x, y, pixel)` for pixels of the band's part of a tile.
   template <class Call>
-  static void for_each(const Pixels& pixels, const Call& call) {
+  static void for_each(const TilePlace& place, const Pixels& pixels, const Call& call) {
     for (uint32_t i = 0; i < kTileWords; ++i) {
       for (uint32_t word = pixels.word[i]; word != 0; word &= word - 1) {
-        call(32 * i + bits::lowest_bit(word));
+        const uint32_t pixel = 32 * i + bits::lowest_bit(word);
+        call(place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
+             place.y + static_cast<int32_t>(pixel / kTileAcrossPx), pixel);
       }
     }
   }
@@ -332,7 +327,7 @@ class FlatSink : PointLighting<kSet, kSecondary>,
   [[gnu::noinline]] void store_points(const SeenPixels& seen, SeenFace& face, uint8_t material,
                                       unsigned lights, unsigned open) {
     const unsigned side = seen.course.face[face.point.axis];
-    for_each(seen.pixels, [&](uint32_t pixel) {
+    for_each(seen.place, seen.pixels, [&](int32_t x, int32_t y, uint32_t pixel) {
       find_point(seen.course, seen.direction(pixel), &face);
       unsigned reach = lights;
       for (size_t i = 0; i < kMaxFlatSuns; ++i) {
@@ -346,8 +341,6 @@ class FlatSink : PointLighting<kSet, kSecondary>,
           }
         }
       }
-      const int32_t x = seen.place.x + static_cast<int32_t>(pixel % kTileAcrossPx);
-      const int32_t y = seen.place.y + static_cast<int32_t>(pixel / kTileAcrossPx);
       if constexpr (kGathers) {
         show_gathered(x, y, face.point, material, side, reach);
       } else {
@@ -559,10 +552,7 @@ class FlatSink : PointLighting<kSet, kSecondary>,
       return;
     }
     if (!is_whole_) {
-      for_each(pixels, [&](uint32_t pixel) {
-        store(place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
-              place.y + static_cast<int32_t>(pixel / kTileAcrossPx), ink);
-      });
+      for_each(place, pixels, [&](int32_t x, int32_t y, uint32_t) { store(x, y, ink); });
       return;
     }
     const uint32_t low = ink.low;
@@ -595,9 +585,7 @@ class FlatSink : PointLighting<kSet, kSecondary>,
     }
   }
 
-  bool is_big_endian() const {
-    return has_format(PixelFormat::kRgb565Be) && band_.format == PixelFormat::kRgb565Be;
-  }
+  bool is_big_endian() const { return is_format<PixelFormat::kRgb565Be>(band_.format); }
 
   // Not inlined, since pixels of these formats are seldom drawn one by one.
   [[gnu::noinline]] void store_color(uint8_t* line, int32_t x, int32_t y, uint32_t limit,

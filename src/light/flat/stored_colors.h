@@ -15,9 +15,8 @@ Storing storing_of(PixelFormat format) {
   if (format == PixelFormat::kMono1 || format == PixelFormat::kGray4) {
     return Storing::kGrays;
   }
-  return format == PixelFormat::kRgb565 ||
-                 (has_format(PixelFormat::kRgb565Be) && format == PixelFormat::kRgb565Be) ||
-                 (has_format(PixelFormat::kBgr565) && format == PixelFormat::kBgr565)
+  return format == PixelFormat::kRgb565 || is_format<PixelFormat::kRgb565Be>(format) ||
+                 is_format<PixelFormat::kBgr565>(format)
              ? Storing::kHalfwords
          : format == PixelFormat::kGray8 || format == PixelFormat::kRgb888 ? Storing::kBytes
                                                                            : Storing::kAny;
