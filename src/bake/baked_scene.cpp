@@ -139,86 +139,64 @@ void store_camera(uint8_t* to, const SceneCamera& camera) {
   bits::store32(to + kSpan, static_cast<uint32_t>(camera.span.raw));
 }
 
-// Bytes of a part's section; 0 for one that is left out.
-size_t section_bytes(const BakedParts& parts, SectionKind kind) {
+// A part as its section holds it, where it is bytes already; none for the camera.
+ConstBytes bytes_of(const BakedParts& parts, SectionKind kind) {
   switch (kind) {
     case SectionKind::kTree:
-      return parts.tree.size;
+      return parts.tree;
     case SectionKind::kPalette:
-      return sizeof(Rgb8) * parts.palette.size;
+      return {reinterpret_cast<const uint8_t*>(parts.palette.data), sizeof(Rgb8) * parts.palette.size};
     case SectionKind::kCamera:
-      return parts.camera != nullptr ? kCameraBytes : 0;
+      return {};
     case SectionKind::kBrickMap:
-      return parts.brick_map.size;
+      return parts.brick_map;
     case SectionKind::kName:
-      return parts.name.size;
+      return parts.name;
     case SectionKind::kLighting:
-      return parts.lighting.size;
+      return parts.lighting;
     case SectionKind::kLook:
-      return parts.look.size;
+      return parts.look;
   }
-  return 0;
+  return {};
 }
 
-void copy(uint8_t* to, ConstBytes from) {
-  for (size_t i = 0; i < from.size; ++i) {
-    to[i] = from.data[i];
-  }
+// Bytes of a part's section; 0 for one that is left out.
+size_t section_bytes(const BakedParts& parts, SectionKind kind) {
+  return kind != SectionKind::kCamera ? bytes_of(parts, kind).size
+         : parts.camera != nullptr    ? kCameraBytes
+                                      : 0;
 }
 
 void write_section(uint8_t* to, const BakedParts& parts, SectionKind kind) {
-  switch (kind) {
-    case SectionKind::kTree:
-      copy(to, parts.tree);
-      return;
-    case SectionKind::kPalette:
-      for (size_t i = 0; i < parts.palette.size; ++i) {
-        to[3 * i] = parts.palette[i].r;
-        to[3 * i + 1] = parts.palette[i].g;
-        to[3 * i + 2] = parts.palette[i].b;
-      }
-      return;
-    case SectionKind::kCamera:
-      store_camera(to, *parts.camera);
-      return;
-    case SectionKind::kBrickMap:
-      copy(to, parts.brick_map);
-      return;
-    case SectionKind::kName:
-      copy(to, parts.name);
-      return;
-    case SectionKind::kLighting:
-      copy(to, parts.lighting);
-      return;
-    case SectionKind::kLook:
-      copy(to, parts.look);
-      return;
+  if (kind == SectionKind::kCamera) {
+    store_camera(to, *parts.camera);
+    return;
+  }
+  for (const uint8_t byte : bytes_of(parts, kind)) {
+    *to++ = byte;
   }
 }
 
 }  // namespace
 
 Status set_camera(const SceneCamera& camera, int32_t width_px, int32_t height_px, int level, Camera* result) {
-  if (camera.is_perspective) {
-    PerspectiveView view;
+  const auto set = [&](auto& view) {
     view.eye = camera.eye;
     view.forward = forward_of(camera);
     view.up = camera.up;
-    view.fov_degrees = camera.fov_degrees;
     view.width_px = width_px;
     view.height_px = height_px;
     view.direction_bits = camera.direction_bits;
     return result->set(view, level);
+  };
+  if (camera.is_perspective) {
+    PerspectiveView view;
+    view.fov_degrees = camera.fov_degrees;
+    return set(view);
   }
   OrthographicView view;
-  view.eye = camera.eye;
-  view.forward = forward_of(camera);
-  view.up = camera.up;
   view.span = camera.span;
-  view.width_px = width_px;
-  view.height_px = height_px;
-  view.direction_bits = camera.direction_bits;
-  return result->set(view, level);
+  return set(view);
 }
 
 // All that `open` promises; on a fault `*scene` is as it was.
