@@ -140,36 +140,29 @@ bool PagePanel::sleep(bool on) {
   return commands({on ? kOff : kOn});
 }
 
-bool Ssd1306::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation rotation) {
+bool PagePanel::begin_oled(const Oled& oled, const PageGeometry& geometry, Rotation rotation) {
   const bool turned = rotation == Rotation::k180;
-  if (!PagePanel::begin(Kind::kSsd1306, bus, geometry, rotation)) {
-    return false;
-  }
-  // A reset of the board alone leaves a scroll running that somebody has started. The module of 72 x 40 has no resistor
-  // for the segments' current, so that the controller's own reference sets it: 30 uA.
-  if (!commands({kOff, kScrollOff}) ||
-      (geometry.width_px == 72 && geometry.height_px == 40 && !commands({kReference, 0x30})) ||
-      !commands({kClock,
-                 0x80,
+  if (!commands({kClock,
+                 oled.clock,
                  kMultiplex,
                  static_cast<uint8_t>(geometry.height_px - 1),
                  kOffset,
                  0,
                  kStartLine,
-                 kChargePump,
-                 0x14,
-                 kAddressing,
-                 0x00,
+                 oled.power[0],
+                 oled.power[1],
+                 oled.power[2],
+                 oled.power[3],
                  turned ? kSegmentsForward : kSegmentsBackward,
                  turned ? kRowsForward : kRowsBackward,
                  kRowPins,
                  row_pins(geometry.height_px),
                  kContrast,
-                 0x7F,
+                 oled.contrast,
                  kPrecharge,
-                 0xF1,
+                 oled.precharge,
                  kVcomh,
-                 0x20,
+                 oled.vcomh,
                  kFromMemory,
                  kNormal}) ||
       !clear() || !commands({kOn})) {
@@ -178,43 +171,23 @@ bool Ssd1306::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation 
   wait(100);  // until the pump has its voltage
   return true;
 }
+
+bool Ssd1306::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation rotation) {
+  // A reset of the board alone leaves a scroll running that somebody has started. The module of 72 x 40 has no resistor
+  // for the segments' current, so that the controller's own reference sets it: 30 uA.
+  constexpr Oled kOled{0x80, {kChargePump, 0x14, kAddressing, 0x00}, 0x7F, 0xF1, 0x20};
+  return PagePanel::begin(Kind::kSsd1306, bus, geometry, rotation) && commands({kOff, kScrollOff}) &&
+         (geometry.width_px != 72 || geometry.height_px != 40 || commands({kReference, 0x30})) &&
+         begin_oled(kOled, geometry, rotation);
+}
 bool Ssd1306::contrast(uint8_t level) {
   return commands({kContrast, level});
 }
 
 bool Sh1106::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation rotation) {
-  const bool turned = rotation == Rotation::k180;
-  if (!PagePanel::begin(Kind::kSh1106, bus, geometry, rotation)) {
-    return false;
-  }
-  if (!commands({kOff,
-                 kClock,
-                 0x50,
-                 kMultiplex,
-                 static_cast<uint8_t>(geometry.height_px - 1),
-                 kOffset,
-                 0,
-                 kStartLine,
-                 kConverter,
-                 0x8B,
-                 kPumpVoltage | 2,
-                 turned ? kSegmentsForward : kSegmentsBackward,
-                 turned ? kRowsForward : kRowsBackward,
-                 kRowPins,
-                 row_pins(geometry.height_px),
-                 kContrast,
-                 0x80,
-                 kPrecharge,
-                 0x22,
-                 kVcomh,
-                 0x35,
-                 kFromMemory,
-                 kNormal}) ||
-      !clear() || !commands({kOn})) {
-    return false;
-  }
-  wait(100);
-  return true;
+  constexpr Oled kOled{0x50, {kConverter, 0x8B, kPumpVoltage | 2, kOff}, 0x80, 0x22, 0x35};  // it is off
+  return PagePanel::begin(Kind::kSh1106, bus, geometry, rotation) && commands({kOff}) &&
+         begin_oled(kOled, geometry, rotation);
 }
 bool Sh1106::contrast(uint8_t level) {
   return commands({kContrast, level});

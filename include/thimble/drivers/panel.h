@@ -122,7 +122,17 @@ class PagePanel {
 
  protected:
   enum class Kind : uint8_t { kSsd1306, kSh1106, kSt7567 };
+  /// What an OLED's controller is set to: its clock, what feeds the segments, and their levels.
+  struct Oled {
+    uint8_t clock;
+    uint8_t power[4];
+    uint8_t contrast;
+    uint8_t precharge;
+    uint8_t vcomh;
+  };
   bool begin(Kind kind, const PanelBus& bus, const PageGeometry& geometry, Rotation rotation);
+  /// The rest of `begin`, with the display off.
+  bool begin_oled(const Oled& oled, const PageGeometry& geometry, Rotation rotation);
   bool commands(const uint8_t* bytes, size_t count) { return bus_.command(bus_.context, bytes, count); }
   template <size_t kCount>
   bool commands(const uint8_t (&bytes)[kCount]) {
