@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
 .PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install \
-  uninstall deb packages release sanitize clang fuzz check test test-all coverage bench firmware emulate flash test-boards test-packages \
+  uninstall deb packages release sanitize clang fuzz check test test-all coverage bench firmware emulate images flash test-boards test-packages \
   bench-frames test-framebuffer test-threads mutants ranges soak web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
@@ -148,8 +148,13 @@ firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCE
 	@sh platform/build.sh "$(BOARD)" "$(APP)" "$(SCENE)"
 emulate: firmware ## Run that image under QEMU: the UART on this terminal, the exit status passed on
 	@sh platform/emulate.sh "$(BOARD)" "$(APP)" $(QEMU_ARGS)
-flash: firmware ## Write that image to a real board
-	@sh platform/flash.sh "$(BOARD)" "$(APP)"
+# All boards, unless one is named.
+images: deps-boards all ## Build the programs that `thimble image` puts scenes behind (build/images), of BOARD=NAME or all boards
+	@sh platform/images.sh $(if $(filter file,$(origin BOARD)),,$(filter-out all,$(BOARD)))
+# Where one of those is there no compiler is needed, but for what a program is built with.
+IMAGE = $(if $(filter %.h,$(SCENE))$(FRAMES)$(PLACE),,$(wildcard build/images/$(BOARD)-$(APP)-*.elf.gz))
+flash: $(if $(IMAGE),all,firmware) ## Write that image to a real board
+	@$(if $(IMAGE),IMAGE=yes )sh platform/flash.sh "$(BOARD)" "$(APP)" "$(SCENE)"
 test-boards: ## Run the tests of the firmware on every board under QEMU; says first what it installs
 	@sh tests/boards/deps.sh
 	@$(MAKE) --no-print-directory all

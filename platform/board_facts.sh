@@ -6,3 +6,17 @@ fi
 fact() {
   sed -n "s/^set(BOARD_$1 \"\\{0,1\\}\\([^\")]*\\)\"\\{0,1\\}.*)/\\1/p" "platform/boards/$board/board.cmake"
 }
+# choose_scene: what "auto" is for $board and $apps, in `scene` (the demonstration shows what reads on the board's display, all
+# others the valley); and the effects that it is baked for, in `effects`, where they are not its own.
+choose_scene() {
+  if [ "$scene" = auto ]; then
+    scene=demo
+    if [ "$apps" = demo ] && [ "$(fact DISPLAY)" = oled ]; then
+      scene=oled
+    fi
+  fi
+  effects=${EFFECTS:-}
+  if [ -z "$effects" ]; then
+    case $scene in demo | valley) effects=$(fact DEMO_EFFECTS) ;; esac
+  fi
+}

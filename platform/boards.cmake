@@ -15,7 +15,7 @@ endfunction()
 
 # Sets the BOARD_... variables of one board in the caller's scope, and refuses a file that leaves one out.
 macro(thimble_read_board name)
-  set(facts TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
+  set(facts TITLE ARCH CPU FLASH_ORIGIN FLASH_BYTES ERASE_BYTES RAM_ORIGIN RAM_BYTES STACK_BYTES DISPLAY WIDTH_PX HEIGHT_PX
     FORMAT BUTTONS QEMU PROBE CLOCK_MHZ ICOUNT_SHIFT VISITS_A_SECOND FRAME_INSTRUCTIONS CATCHES)
   foreach(fact IN LISTS facts)
     unset(BOARD_${fact})
@@ -75,6 +75,10 @@ function(thimble_write_board_table file)
     if(BOARD_CORES)
       set(cores ${BOARD_CORES})
     endif()
+    set(uf2 0)
+    if(BOARD_UF2)
+      set(uf2 ${BOARD_UF2})
+    endif()
     set(most_map_level 8)
     if(BOARD_WORLDS STREQUAL "deep")
       set(most_map_level 10)
@@ -84,7 +88,7 @@ function(thimble_write_board_table file)
     string(APPEND text "{\"${name}\", \"${BOARD_TITLE}\", \"${BOARD_CPU}\", ${BOARD_RAM_BYTES}, "
       "${BOARD_FLASH_BYTES}, ${BOARD_STACK_BYTES}, Screen::k${screen}, PixelFormat::k${format}, ${BOARD_WIDTH_PX}, "
       "${BOARD_HEIGHT_PX}, ${BOARD_BUTTONS}, ${BOARD_VISITS_A_SECOND}, ${BOARD_MAP_RAYS_A_SECOND}, ${BOARD_CORE_MHZ}, ${BOARD_FRAME_INSTRUCTIONS}, "
-      "${band_buffers}, ${cores}, ${most_map_level}, {${app_stacks}}},\n")
+      "${band_buffers}, ${cores}, ${most_map_level}, {${app_stacks}}, ${uf2}, \"${BOARD_IMAGE}\"},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
 endfunction()

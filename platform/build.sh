@@ -7,6 +7,7 @@
 # EFFECTS=LIST bakes the scene for these effects (bake --effects; without it for those that it calls for, and
 # SCENE=demo for the board's BOARD_DEMO_EFFECTS); FRAMES=N ends the application after N frames; HOLD=true waits for a `q` then;
 # PANEL_FORMATS=MASK has other formats of panels than the board's (picture/pixel.h); HOLD_FPS=N holds a rate of frames;
+# WITHIN=SET has the scene behind the program, with effects within SET (images/README.md);
 # CASE_STEP=N runs every Nth test case, MEASURED=ON has bench measure the fastest engine alone; THIMBLE_FIRMWARE is another
 # place than build/firmware.
 set -eu
@@ -41,13 +42,7 @@ scene=${3:-}
 . platform/board_facts.sh
 work=${THIMBLE_FIRMWARE:-build/firmware}/$board
 mkdir -p "$work"
-# "auto": the demonstration shows what reads on the board's display, all others the valley.
-if [ "$scene" = auto ]; then
-  scene=demo
-  if [ "$apps" = demo ] && [ "$(fact DISPLAY)" = oled ]; then
-    scene=oled
-  fi
-fi
+choose_scene
 case $scene in
   *.h) [ -z "${BAKE:-}" ] || { echo "build: BAKE=\"$BAKE\" is for a scene that is baked, and $scene is" >&2 && exit 2; } ;;
 esac
@@ -57,10 +52,6 @@ case $scene in
   *.h) header=$PWD/$scene ;;
   *)
     header=$PWD/$work/scene.h
-    effects=${EFFECTS:-}
-    if [ -z "$effects" ]; then
-      case $scene in demo | valley) effects=$(fact DEMO_EFFECTS) ;; esac
-    fi
     # Words, as BAKE has them. What was left out to make it fit is said.
     # shellcheck disable=SC2086
     build/release/thimble bake "$scene" --board "$board" ${effects:+--effects "$effects"} ${BAKE:-} -o "$header" 2>"$work/bake.log" || {
@@ -73,7 +64,7 @@ esac
 # A compiler cache would hand out objects without their call graphs.
 export CCACHE_DISABLE=1
 cmake -S . -B "$work" -G Ninja -DCMAKE_TOOLCHAIN_FILE="platform/arch/$(fact ARCH)/toolchain.cmake" -DTHIMBLE_BOARD="$board" \
-  -DTHIMBLE_APP="$apps" -DTHIMBLE_SCENE_HEADER="$header" -DTHIMBLE_FRAMES="${FRAMES:-0}" \
+  -DTHIMBLE_APP="$apps" -DTHIMBLE_SCENE_HEADER="$header" -DTHIMBLE_SCENE_IN_FLASH="${WITHIN:-}" -DTHIMBLE_FRAMES="${FRAMES:-0}" \
   -DTHIMBLE_HOLD="${HOLD:-false}" -DTHIMBLE_HOLD_FPS="${HOLD_FPS:-0}" -DTHIMBLE_PANEL_FORMATS="${PANEL_FORMATS:-}" \
   -DTHIMBLE_CASE_STEP="${CASE_STEP:-1}" -DTHIMBLE_MEASURED="${MEASURED:-OFF}" --log-level=WARNING -Wno-dev \
   --no-warn-unused-cli >/dev/null

@@ -2,6 +2,8 @@
 #
 #   THIMBLE_APP            which applications, a list (demo): each becomes APP.elf, APP.bin and APP.hex (and APP.uf2)
 #   THIMBLE_SCENE_HEADER   a header made by `thimble bake`; without it port::scene() is empty
+#   THIMBLE_SCENE_IN_FLASH a set of effects (0x3f0b): the scene is what lies behind the program and has effects within the
+#                          set, and that of the header where there is none (images/README.md)
 #   THIMBLE_FRAMES         how many frames an application draws; 0: it does not end by itself
 #   THIMBLE_HOLD_FPS       the rate of frames that an application holds from its start; 0: none
 #   THIMBLE_HOLD           whether it then waits for a `q` over the UART, its last frame shown (false)
@@ -9,6 +11,7 @@
 # Says flash, RAM and stack of each image after its link. platform/build.sh calls this.
 set(THIMBLE_APP demo CACHE STRING "Applications to build")
 set(THIMBLE_SCENE_HEADER "" CACHE FILEPATH "Baked scene")
+set(THIMBLE_SCENE_IN_FLASH "" CACHE STRING "Effects of scenes behind the program")
 set(THIMBLE_FRAMES 0 CACHE STRING "Frames before the application ends; 0: for ever")
 set(THIMBLE_HOLD_FPS 0 CACHE STRING "Rate of frames to hold from the start; 0: none")
 set(THIMBLE_HOLD false CACHE STRING "Wait at the end: true or false")
@@ -45,6 +48,8 @@ else()
 endif()
 include(${THIMBLE_PLATFORM_DIR}/scene_facts.cmake)
 configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/scene.cpp.in ${generated}/scene.cpp @ONLY)
+
+string(COMPARE NOTEQUAL "${THIMBLE_SCENE_IN_FLASH}" "" scene_in_flash)
 
 # One set of flags for the core, the port and the applications.
 add_library(thimble_firmware_flags INTERFACE)
@@ -85,17 +90,12 @@ endif()
 if(BOARD_VISITS_A_SECOND EQUAL 0)
   target_compile_definitions(thimble_apps PRIVATE THIMBLE_NO_HOLD)
 endif()
-# Lit frames by the map whose points send rays of their own (occlusion, mirrors, water; lamps) take long to compile: an image
-# has those of its scene's effects.
-if(NOT "map_light" IN_LIST THIMBLE_APP)
-  set_property(SOURCE ${PROJECT_SOURCE_DIR}/src/light/flat/flat.cpp TARGET_DIRECTORY thimble APPEND PROPERTY
-    COMPILE_DEFINITIONS "THIMBLE_FLAT_EFFECTS=${THIMBLE_IMAGE_EFFECTS};THIMBLE_FLAT_LAMPS=${THIMBLE_IMAGE_LAMPS}")
-endif()
 thimble_choose_frames()
 thimble_choose_formats()
 foreach(part thimble_port thimble_board thimble_apps)
   target_include_directories(${part} PRIVATE ${THIMBLE_PLATFORM_DIR} ${generated})
   target_compile_options(${part} PRIVATE -Os)
+  target_compile_definitions(${part} PRIVATE $<$<BOOL:${scene_in_flash}>:THIMBLE_SCENE_IN_FLASH>)
   target_link_libraries(${part} PRIVATE thimble thimble_firmware_flags thimble_warnings)
 endforeach()
 target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)

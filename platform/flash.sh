@@ -1,6 +1,7 @@
 #!/bin/sh
-# Writes an image to a real board, the way its board.cmake says (BOARD_PROBE). flash.sh BOARD APP
-# In the environment: PLACE=ram writes the image for RAM where the board has one (BOARD_UF2); THIMBLE_DRIVE is where the board's
+# Writes an image to a real board, the way its board.cmake says (BOARD_PROBE). flash.sh BOARD APP [SCENE]
+# In the environment: IMAGE=yes makes it first, of a program that is built already and SCENE, baked with EFFECTS and BAKE as in
+# build.sh (images/README.md); PLACE=ram writes the image for RAM where the board has one (BOARD_UF2); THIMBLE_DRIVE is where the board's
 # drive is mounted, THIMBLE_DRIVE_S how long its answer is waited for (20 s).
 set -eu
 cd "$(dirname "$0")/.."
@@ -18,7 +19,23 @@ fail() {
 need() {
   command -v "$1" >/dev/null 2>&1 || fail "$1 is not installed (Debian: apt-get install $2)"
 }
-[ -f "$image.elf" ] || fail "$image.elf is not there; make firmware BOARD=$board APP=$app builds it"
+case $probe in
+  "openocd "*) ending=elf ;;
+  *.hex) ending=hex ;;
+  *.elf) ending=elf ;;
+  *.uf2) ending=uf2 ;;
+  *) ending=bin ;;
+esac
+if [ -n "${IMAGE:-}" ]; then
+  scene=${3:-auto}
+  apps=$app
+  choose_scene
+  mkdir -p "${image%/*}"
+  # Words, as BAKE has them.
+  # shellcheck disable=SC2086
+  build/release/thimble image "$scene" --board "$board" --app "$app" ${effects:+--effects "$effects"} ${BAKE:-} -o "$image.$ending"
+fi
+[ -f "$image.$ending" ] || fail "$image.$ending is not there; make firmware BOARD=$board APP=$app builds it"
 case $probe in
   "openocd "*)
     need openocd openocd
@@ -53,7 +70,7 @@ case $probe in
     how="connect the board"
     case $file in *.uf2) how="hold BOOTSEL while you connect the board, or copy $image.uf2 onto it by hand" ;; esac
     [ -n "$drive" ] || fail "no drive $with is mounted; $how, or say where it is: THIMBLE_DRIVE=/path"
-    case $file in *.hex) from=$image.hex ;; *.elf) from=$image.elf ;; *.uf2) from=$image.uf2 ;; *) from=$image.bin ;; esac
+    from=$image.$ending
     # What was there before under a name that is not ours, a system's kernel.img, is kept: the first one.
     case $file in
       */thimble.* | thimble.*) ;;

@@ -35,6 +35,15 @@ function(thimble_choose_formats)
 endfunction()
 
 function(thimble_choose_frames)
+  # Lit frames by the map whose points send rays of their own (occlusion, mirrors, water; lamps) take long to compile: an image
+  # has those of its scene's effects.
+  if(scene_in_flash AND NOT THIMBLE_IMAGE_EFFECTS STREQUAL "0")
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/src/light/flat/flat.cpp TARGET_DIRECTORY thimble APPEND PROPERTY
+      COMPILE_DEFINITIONS "THIMBLE_FLAT_WITHIN=${THIMBLE_IMAGE_EFFECTS}")
+  elseif(NOT "map_light" IN_LIST THIMBLE_APP)
+    set_property(SOURCE ${PROJECT_SOURCE_DIR}/src/light/flat/flat.cpp TARGET_DIRECTORY thimble APPEND PROPERTY
+      COMPILE_DEFINITIONS "THIMBLE_FLAT_EFFECTS=${THIMBLE_IMAGE_EFFECTS};THIMBLE_FLAT_LAMPS=${THIMBLE_IMAGE_LAMPS}")
+  endif()
   set(wet_stack_bytes 7296)
   # Pictures of up to 160 x 128 do without what larger ones take (picture/render.h).
   if("${BOARD_FRAMES}" STREQUAL "small")

@@ -12,3 +12,8 @@ if(THIMBLE_SCENE_HEADER)
     set(THIMBLE_IMAGE_LAMPS 1)
   endif()
 endif()
+# A program that takes its scene from the flash behind it has what it is built for; its own scene is one of those.
+if(NOT "${THIMBLE_SCENE_IN_FLASH}" STREQUAL "")
+  set(THIMBLE_IMAGE_EFFECTS ${THIMBLE_SCENE_IN_FLASH})
+  set(THIMBLE_IMAGE_LAMPS 1)
+endif()

@@ -3,9 +3,9 @@
 # What makes APP.uf2 of APP.elf: a program for this machine, so its own compiler builds it.
 function(thimble_find_make_uf2)
   find_program(THIMBLE_HOST_CXX NAMES c++ g++ clang++ REQUIRED)
-  set(source ${THIMBLE_PLATFORM_DIR}/uf2/make_uf2.cpp)
+  set(source ${THIMBLE_PLATFORM_DIR}/uf2/make_uf2.cpp ${THIMBLE_PLATFORM_DIR}/images/image_file.cpp)
   set(program ${PROJECT_BINARY_DIR}/make_uf2)
-  add_custom_command(OUTPUT ${program} DEPENDS ${source} VERBATIM
+  add_custom_command(OUTPUT ${program} DEPENDS ${source} ${THIMBLE_PLATFORM_DIR}/images/image_file.h VERBATIM
     COMMAND ${THIMBLE_HOST_CXX} -std=c++20 -O1 -o ${program} ${source})
   add_custom_target(thimble_make_uf2 DEPENDS ${program})
 endfunction()

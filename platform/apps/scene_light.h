@@ -1,7 +1,8 @@
 /// Light in the pictures of a baked scene: the effects that it was baked for, and no others.
 ///
 /// In a firmware image the set is a constant (`THIMBLE_IMAGE_EFFECTS`, which platform/firmware.cmake reads
-/// off the header that `thimble bake` made): the linker leaves out the rest, and with an empty set all of it.
+/// off the header that `thimble bake` made): the linker leaves out the rest, and with an empty set all of it. An image that
+/// is there before its scene (`THIMBLE_SCENE_IN_FLASH`, platform/IMAGES.md) draws every set within that constant.
 /// On a desktop the scene comes with the command line, so the set is looked up there, and the library's own
 /// renderers draw it. Both draw the same picture. Where the effects allow it and there is a brick map, frames are fast
 /// enough to move in (map_render.h).
@@ -21,6 +22,12 @@ inline constexpr EffectSet kImageEffects = THIMBLE_IMAGE_EFFECTS;
 #else
 inline constexpr EffectSet kImageEffects = Effect::kAll;
 #endif
+/// Whether the set is the scene's, within `kImageEffects`.
+#if !defined(THIMBLE_IMAGE_EFFECTS) || defined(THIMBLE_SCENE_IN_FLASH)
+inline constexpr bool kIsOpen = true;
+#else
+inline constexpr bool kIsOpen = false;
+#endif
 /// Whether lamps go through the brick map.
 #if defined(THIMBLE_IMAGE_EFFECTS) && !defined(THIMBLE_IMAGE_LAMPS)
 inline constexpr bool kImageLamps = false;
@@ -31,20 +38,29 @@ inline constexpr bool kImageLamps = true;
 #endif
 /// Whether there is anything of light in this program.
 inline constexpr bool kCanLight = kImageEffects != Effect::kNone;
+#ifdef THIMBLE_IMAGE_EFFECTS
+/// Whether this program draws a scene that was baked for `effects`.
+constexpr bool is_for(EffectSet effects) {
+#ifdef THIMBLE_SCENE_IN_FLASH
+  return lies_within(effects, kImageEffects);
+#else
+  return effects == kImageEffects;
+#endif
+}
+#endif
 /// The effects of frames while the camera moves, where these are fast: all but what asks the tree for each pixel.
 constexpr EffectSet moving_effects(EffectSet effects) {
   return effects & ~Effect::kEdges;
 }
 /// Whether its lit frames may go through the brick map. THIMBLE_WATER_BY_TREE: those with water do not
 /// (platform/frames.cmake).
-#if !defined(THIMBLE_IMAGE_EFFECTS)
-inline constexpr bool kLightsFast = true;
-#elif defined(THIMBLE_WATER_BY_TREE)
-inline constexpr bool kLightsFast =
-    is_flat(moving_effects(kImageEffects)) && (kImageEffects & Effect::kWater) == 0;
+#if defined(THIMBLE_WATER_BY_TREE)
+inline constexpr bool kWaterByMap = false;
 #else
-inline constexpr bool kLightsFast = is_flat(moving_effects(kImageEffects));
+inline constexpr bool kWaterByMap = true;
 #endif
+inline constexpr bool kLightsFast = kIsOpen || (is_flat(moving_effects(kImageEffects)) &&
+                                                (kWaterByMap || (kImageEffects & Effect::kWater) == 0));
 
 /// Whether a scene stands before black: it was baked for a display of few greys, this is one, and it has no sky.
 constexpr bool is_dark_behind(EffectSet effects, PixelFormat format) {
@@ -72,7 +88,7 @@ struct SceneLight {
     return "the scene's lighting is damaged";
   }
 #ifdef THIMBLE_IMAGE_EFFECTS
-  if (light->baked.effects != kImageEffects) {
+  if (!is_for(light->baked.effects)) {
     return "the image was built for other effects than the scene's";
   }
 #endif
@@ -84,7 +100,10 @@ struct SceneLight {
 [[gnu::noinline]] inline Status draw_lit(const BakedScene& scene, const Camera& camera,
                                          const Shading& shading, const SceneLight& light, const Band& band,
                                          LitCounts* counts = nullptr) {
-#ifdef THIMBLE_IMAGE_EFFECTS
+#if defined(THIMBLE_SCENE_IN_FLASH)
+  return render_lit_band_within<kImageEffects>(light.baked.effects, scene.tree(), camera, shading,
+                                               light.baked.scene, band, counts);
+#elif defined(THIMBLE_IMAGE_EFFECTS)
   return render_lit_band<kImageEffects>(scene.tree(), camera, shading, light.baked.scene, band, counts);
 #else
   return render_lit_band(light.baked.effects, scene.tree(), camera, shading, light.baked.scene, band, counts);
@@ -97,11 +116,12 @@ struct SceneLight {
   if constexpr (kLightsFast) {
     const Span<const Light>& lights = light->baked.scene.lights;
     // Those of an image are its scene's, or `open_light` refuses that.
-    const EffectSet effects = kImageEffects != Effect::kAll ? kImageEffects : light->effects();
+    const EffectSet effects = kIsOpen ? light->effects() : kImageEffects;
     const bool has_shadows = (effects & Effect::kShadows) != 0;
     const bool has_way_to_lamps = kImageLamps && takes_lamps(effects);
     size_t suns = 0;
-    light->is_fast = shown.has_map && is_flat(moving_effects(effects));
+    light->is_fast = shown.has_map && is_flat(moving_effects(effects)) &&
+                     (!kIsOpen || kWaterByMap || (effects & Effect::kWater) == 0);
     for (const Light& one : lights) {
       light->is_fast = light->is_fast && (one.is_point ? has_way_to_lamps : ++suns <= kMaxFlatSuns);
     }
@@ -124,7 +144,13 @@ struct SceneLight {
                                                const Band& band, bool moves, LitCounts* counts = nullptr) {
   if constexpr (kLightsFast) {
     if (light.is_fast && (moves || light.moves_whole())) {
-#ifdef THIMBLE_IMAGE_EFFECTS
+#if defined(THIMBLE_SCENE_IN_FLASH)
+      return render_lit_band_within < kImageEffects,
+             kWaterByMap &&
+                 (kImageEffects & Effect::kWater) !=
+                     0 > (moving_effects(light.baked.effects), shown.scene.tree(), shown.map, camera, shading,
+                          light.baked.scene, {light.suns, kMaxFlatSuns}, band, counts);
+#elif defined(THIMBLE_IMAGE_EFFECTS)
       return render_lit_band<moving_effects(kImageEffects), kImageLamps>(
           shown.scene.tree(), shown.map, camera, shading, light.baked.scene, {light.suns, kMaxFlatSuns}, band,
           counts);

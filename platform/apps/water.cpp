@@ -216,7 +216,10 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts, uint32_t
     balls[i] = drawn_ball(pool.balls[i], pool.ball_size);
   }
   const DrawnBalls drawn{{balls, kBalls}, passed};
-#ifdef THIMBLE_IMAGE_EFFECTS
+#if defined(THIMBLE_SCENE_IN_FLASH)
+  return render_lit_band_within<kImageEffects>(pool.lighting.effects, tree_of(pool), drawn, pool.camera,
+                                               pool.shading, pool.lighting.scene, band, counts);
+#elif defined(THIMBLE_IMAGE_EFFECTS)
   return render_lit_band<THIMBLE_IMAGE_EFFECTS>(tree_of(pool), drawn, pool.camera, pool.shading,
                                                 pool.lighting.scene, band, counts);
 #else
@@ -384,7 +387,7 @@ void zoom(Pool* pool, int32_t by) {
     return "the scene holds no water";
   }
 #ifdef THIMBLE_IMAGE_EFFECTS
-  if (pool->lighting.effects != THIMBLE_IMAGE_EFFECTS) {
+  if (!is_for(pool->lighting.effects)) {
     return "the image was built for other effects than the scene's";
   }
 #endif

@@ -38,6 +38,8 @@ struct BoardFacts {
   int32_t cores;                ///< port::cores()
   int32_t most_map_level;       ///< of worlds whose brick maps it takes
   AppStack app_stacks[5];       ///< those that there are, then empty ones
+  uint32_t uf2_family;          ///< of files that are dragged onto its drive; 0: it takes none
+  const char* image_ending;     ///< of files of its emulators' own ("gba"), or ""
 };
 
 /// All boards, by name in alphabetical order.

@@ -40,6 +40,7 @@ if [ "${1:-}" = --job ]; then
       examples | emulate | frames) ;;
       *) sh "$here/scenes.sh" "$2" || status=1 ;;
     esac
+    case $2 in lm3s6965evb | microbit | sifive_e | pico | gba) sh "$here/images.sh" "$2" || status=1 ;; esac
   } >"$log" 2>&1
   cat "$log"
   exit $status

@@ -3,33 +3,17 @@
 #include <memory>
 
 #include "commands/arguments.h"
+#include "commands/bake_command.h"
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
-#include "commands/view_options.h"
-#include "output/c_header.h"
 #include "output/output_set.h"
 #include "output/progress.h"
 #include "output/units.h"
-#include "scene/baking.h"
 #include "scene/board_fit.h"
 #include "scene/framing.h"
 #include "scene/generators.h"
 
 namespace thimble::tools {
 namespace {
-
-struct BakeCommand {
-  SceneOptions scene;  // its --memory is the limit of what is written
-  ViewWishes view;
-  std::string output;
-  std::string identifier = kDefaultIdentifier;
-  bool as_header = false;
-  bool brick_map = false;
-  EffectChoice effects;
-
-  FlashLimit limit() const { return {scene.board, scene.memory_bytes}; }
-};
 
 BakingOptions baking_options(const BakeCommand& command, const SceneSource& source, std::string* note) {
   BakingOptions options;
@@ -93,16 +77,18 @@ std::string advice(const BakeCommand& command, const SceneSource& source, Effect
       break;  // a pipe is read only once; and a camera may suit one world and not another
     }
   }
-  return text + (command.scene.board == nullptr ? "" : " (make firmware takes such options as BAKE=\"...\")");
+  const bool is_for_make = command.scene.board != nullptr && !command.room;
+  return text + (is_for_make ? " (make firmware takes such options as BAKE=\"...\")" : "");
 }
 
-void report(const BakeCommand& command, const BakingOptions& options, const Baked& baked, bool lost_light,
-            const std::string& note) {
+}  // namespace
+
+std::string baked_text(const BakeCommand& command, const BakingOptions& options, const Baked& baked) {
   const CompactTree& tree = baked.scene.tree();
   const std::uint64_t bytes = baked.bytes.size();
   std::string text;
-  if (!note.empty()) {
-    text += "note: " + note + "\n";
+  if (!command.note.empty()) {
+    text += "note: " + command.note + "\n";
   }
   const double a_voxel = static_cast<double>(bytes) / static_cast<double>(tree.voxel_count());
   text += grouped(tree.voxel_count()) + (tree.voxel_count() == 1 ? " voxel" : " voxels") + " in " +
@@ -115,28 +101,18 @@ void report(const BakeCommand& command, const BakingOptions& options, const Bake
       tree.level() <= options.most_map_level && baked.scene.section(SectionKind::kBrickMap).empty()) {
     text += "without a brick map, for which there is no room: frames take several times longer\n";
   }
-  if (lost_light) {
+  if (command.lost_light) {
     text += "without light, for which there is no room\n";
   }
   if (tree.solid_added() != 0) {
     text += "coarsened to fit: " + grouped(tree.solid_added()) +
             (tree.solid_added() == 1 ? " voxel" : " voxels") + " of solid volume added\n";
   }
-  if (const platform::BoardFacts* board = command.scene.board) {
-    const std::uint64_t flash = scene_flash_bytes(*board, baked.effects);
-    const std::uint64_t ram = drawing_ram_bytes(*board, baked.effects);
-    text += std::string(board->name) + ": flash " + grouped(bytes) + " of the " + grouped(flash) +
-            " bytes beside the demonstration's " + grouped(code_flash_bytes(*board, baked.effects)) +
-            "; RAM " + grouped(ram) + " of " + grouped(board->ram_bytes) + " bytes (renderer " +
-            grouped(lit_render_bytes(baked.effects)) + ", band of " + std::to_string(kBoardBandRows) +
-            " rows " + grouped(board_band_bytes(*board)) + ", stack " + grouped(board->stack_bytes) + ")" +
-            (ram > board->ram_bytes ? ": too much" : "") + "\n";
-  }
-  std::fputs(text.c_str(), stderr);
+  return text;
 }
 
-Stats stats_of(const BakeCommand& command, const SceneSource& source, const Baked& baked,
-               std::optional<std::uint64_t> limit) {
+Stats baked_stats(const BakeCommand& command, const SceneSource& source, const Baked& baked,
+                  std::optional<std::uint64_t> limit) {
   const CompactTree& tree = baked.scene.tree();
   Stats stats;
   stats.scene = command.scene.arguments.scene;
@@ -157,34 +133,74 @@ Stats stats_of(const BakeCommand& command, const SceneSource& source, const Bake
   return stats;
 }
 
+Baked bake(BakeCommand* command, const SceneSource& source, BakingOptions* options) {
+  *options = baking_options(*command, source, &command->note);
+  options->coarsen = command->scene.coarsen;
+  const bool lit = options->default_look;
+  Baked baked = with_progress("baking", command->scene.quiet, [&](const Progress& progress) {
+    return bake_within(command->limit(), source, options, progress);
+  });
+  if (command->room && command->room(baked.effects) == 0) {
+    throw InputError(not_drawn_text(*command, baked.effects));
+  }
+  if (!baked.fits) {
+    throw InputError(too_large_text(command->limit(), baked, *options, source.level()) +
+                     (options->coarsen ? "" : advice(*command, source, baked.effects)));
+  }
+  command->lost_light = lit && !options->default_look;
+  return baked;
+}
+
+std::string not_drawn_text(const BakeCommand& command, EffectSet effects) {
+  return "calls for " + effects_text(effects) + ", which no image for " + command.scene.board->name +
+         " draws together; --effects none or fewer of them may do, and make firmware SCENE=... builds a "
+         "program "
+         "for them";
+}
+
+void add_fitting(CLI::App& app, BakeCommand* command) {
+  add_bytes(app, "--memory", &command->scene.memory_bytes,
+            "the most bytes that the baked scene may take, such as 65536, 64K or 2M (default: no limit)");
+  add_flag(app, "--coarsen", &command->scene.coarsen,
+           "when it does not fit, merge blocks of voxels until it just does; this only adds solid");
+}
+
+namespace {
+
+void report(const BakeCommand& command, const BakingOptions& options, const Baked& baked) {
+  std::string text = baked_text(command, options, baked);
+  if (const platform::BoardFacts* board = command.scene.board) {
+    const std::uint64_t bytes = baked.bytes.size();
+    const std::uint64_t flash = scene_flash_bytes(*board, baked.effects);
+    const std::uint64_t ram = drawing_ram_bytes(*board, baked.effects);
+    text += std::string(board->name) + ": flash " + grouped(bytes) + " of the " + grouped(flash) +
+            " bytes beside the demonstration's " + grouped(code_flash_bytes(*board, baked.effects)) +
+            "; RAM " + grouped(ram) + " of " + grouped(board->ram_bytes) + " bytes (renderer " +
+            grouped(lit_render_bytes(baked.effects)) + ", band of " + std::to_string(kBoardBandRows) +
+            " rows " + grouped(board_band_bytes(*board)) + ", stack " + grouped(board->stack_bytes) + ")" +
+            (ram > board->ram_bytes ? ": too much" : "") + "\n";
+  }
+  std::fputs(text.c_str(), stderr);
+}
+
 void run(const BakeCommand& given) {
   BakeCommand command = given;
   use_display(command.scene.board, &command.view);
   OutputSet outputs({command.output, command.scene.stats_path}, {command.scene.arguments.scene});
   const auto source = command.scene.open();
-  std::string note;
-  BakingOptions options = baking_options(command, *source, &note);
-  options.coarsen = command.scene.coarsen;
-  const bool lit = options.default_look;
-  const Baked baked = with_progress("baking", command.scene.quiet, [&](const Progress& progress) {
-    return bake_within(command.limit(), *source, &options, progress);
-  });
-  if (!baked.fits) {
-    throw InputError(too_large_text(command.limit(), baked, options, source->level()) +
-                     (options.coarsen ? "" : advice(command, *source, baked.effects)));
-  }
-
+  BakingOptions options;
+  const Baked baked = bake(&command, *source, &options);
   if (command.as_header) {
     outputs[0]->write(c_header_text(baked.scene, command.identifier));
   } else {
     outputs[0]->write(baked.bytes);
   }
   if (outputs[1] != nullptr) {
-    outputs[1]->write(stats_text(stats_of(command, *source, baked, options.limit_bytes)));
+    outputs[1]->write(stats_text(baked_stats(command, *source, baked, options.limit_bytes)));
   }
   outputs.commit();
   if (!command.scene.quiet) {
-    report(command, options, baked, lit && !options.default_look, note);
+    report(command, options, baked);
   }
 }
 
@@ -204,15 +220,12 @@ void add_bake(CLI::App& app) {
       },
       "the bytes as a file (.oct) or as a C and C++ header (.h); - is the bytes on standard output")
       .required();
-  add_bytes(*sub, "--memory", &command->scene.memory_bytes,
-            "the most bytes that the baked scene may take, such as 65536, 64K or 2M (default: no limit)");
+  add_fitting(*sub, command.get());
   add_board(*sub, &command->scene.board,
             "the limit is what the demonstration leaves of the board's flash (the smaller counts if --memory "
             "is given too), and the camera frames the scene for its display, so that all of it stays in the "
             "picture while "
             "it turns");
-  add_flag(*sub, "--coarsen", &command->scene.coarsen,
-           "when it does not fit, merge blocks of voxels until it just does; this only adds solid");
   add_flag(*sub, "--brick-map", &command->brick_map,
            "add a table that makes frames on a chip several times faster, in worlds of up to 1,024 a side "
            "(256 on most boards), "

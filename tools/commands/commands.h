@@ -16,6 +16,7 @@ void add_join(CLI::App& app);
 void add_trace(CLI::App& app);
 void add_table(CLI::App& app);
 void add_bake(CLI::App& app);
+void add_image(CLI::App& app);
 void add_export(CLI::App& app);
 void add_info(CLI::App& app);
 void add_boards(CLI::App& app);
@@ -39,6 +40,7 @@ inline void add_all_commands(CLI::App& app) {
   add_trace(app);
   add_table(app);
   add_bake(app);
+  add_image(app);
   add_export(app);
   add_info(app);
   add_boards(app);

@@ -115,19 +115,19 @@ void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64
       help);
 }
 
-void add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help) {
+Option add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help) {
   std::vector<std::string> all;
   for (const platform::BoardFacts& each : platform::boards()) {
     all.emplace_back(each.name);
   }
   const std::string names = joined(all, ", ");
-  add_text_option(
-      app, "--board", "NAME",
-      [board, names](const std::string& text) {
-        *board = platform::find_board(text.c_str());
-        return *board != nullptr ? std::string() : "is not a board; there are " + names;
-      },
-      help + "; " + names)
+  return add_text_option(
+             app, "--board", "NAME",
+             [board, names](const std::string& text) {
+               *board = platform::find_board(text.c_str());
+               return *board != nullptr ? std::string() : "is not a board; there are " + names;
+             },
+             help + "; " + names)
       .offers(all);
 }
 

@@ -23,6 +23,7 @@ struct TraceOptions;
 namespace thimble::tools {
 
 class BuiltScene;
+class Option;
 class SceneSource;
 
 /// SCENE, --depth, --memory, --board and the rest that decides what is built.
@@ -60,7 +61,7 @@ struct SceneOptions {
 };
 
 /// An option --board, whose `help` says what of the board counts.
-void add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help);
+Option add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help);
 /// An option that is a number of bytes.
 void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64_t>* bytes,
                const std::string& help);

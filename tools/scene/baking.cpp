@@ -423,7 +423,11 @@ namespace {
 
 std::string limit_text(const FlashLimit& limit, EffectSet effects, std::uint64_t bytes) {
   const platform::BoardFacts* const board = limit.board;
-  if (board != nullptr && bytes == scene_flash_bytes(*board, effects)) {
+  if (board != nullptr && bytes == limit.board_bytes(effects)) {
+    if (limit.room) {
+      return std::string(board->name) + " has " + grouped(bytes) +
+             " bytes of flash for a scene behind the image";
+    }
     return std::string(board->name) + " has " + grouped(bytes) + " bytes of flash for a scene (" +
            grouped(board->flash_bytes) + " less " + grouped(code_flash_bytes(*board, effects)) +
            " for the demonstration)";
@@ -441,11 +445,15 @@ bool has_room_for_light(const FlashLimit& limit, const Baked& baked) {
 
 }  // namespace
 
+std::uint64_t FlashLimit::board_bytes(EffectSet effects) const {
+  return room ? room(effects) : scene_flash_bytes(*board, effects);
+}
+
 std::optional<std::uint64_t> FlashLimit::bytes(EffectSet effects) const {
   if (board == nullptr) {
     return memory_bytes;
   }
-  return std::min(scene_flash_bytes(*board, effects), memory_bytes.value_or(UINT64_MAX));
+  return std::min(board_bytes(effects), memory_bytes.value_or(UINT64_MAX));
 }
 
 Baked bake_within(const FlashLimit& limit, const SceneSource& source, BakingOptions* options,

@@ -87,7 +87,11 @@ std::string scene_name(const std::string& scene);
 struct FlashLimit {
   const platform::BoardFacts* board = nullptr;  ///< may be null
   std::optional<std::uint64_t> memory_bytes;    ///< --memory
+  /// What the board has for a scene with these effects behind a program that is there; empty: beside the demonstration.
+  std::function<std::uint64_t(EffectSet)> room{};
 
+  /// Of the board, without --memory.
+  std::uint64_t board_bytes(EffectSet effects) const;
   /// The smaller of both, for a scene with these effects; none where neither is given.
   std::optional<std::uint64_t> bytes(EffectSet effects = Effect::kNone) const;
 };

@@ -17,26 +17,10 @@ namespace fs = std::filesystem;
 // Where both are there, the text comes first: it has the model, a camera and light.
 constexpr std::array<std::string_view, 3> kEndings{".scene", ".vox", ".vox.gz"};
 
-fs::path scene_folder() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  if (error) {
-    return {};
-  }
-  // Where it is installed, and a link that the build makes.
-  for (const char* from_program : {THIMBLE_SCENES_FROM_PROGRAM, "scenes"}) {
-    fs::path folder = (program / from_program).lexically_normal();
-    if (fs::is_directory(folder, error)) {
-      return folder;
-    }
-  }
-  return {};
-}
-
 // Paths by name.
 std::map<std::string, std::string> known_scenes() {
   std::map<std::string, std::string> known;
-  const fs::path folder = scene_folder();
+  const fs::path folder = folder_beside_program("scenes");
   std::error_code error;
   for (const std::string_view ending : kEndings) {
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -53,6 +37,22 @@ std::map<std::string, std::string> known_scenes() {
 }
 
 }  // namespace
+
+std::string folder_beside_program(const std::string& name) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  if (error) {
+    return {};
+  }
+  const fs::path installed = fs::path(THIMBLE_SCENES_FROM_PROGRAM).parent_path() / name;
+  for (const fs::path& from_program : {installed, fs::path(name)}) {
+    fs::path folder = (program / from_program).lexically_normal();
+    if (fs::is_directory(folder, error)) {
+      return folder.string();
+    }
+  }
+  return {};
+}
 
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;

@@ -17,6 +17,9 @@ std::vector<std::string> scene_names();
 /// Throws InputError, which lists the names, for one that is neither a file nor known.
 std::string scene_path(const std::string& scene);
 
+/// Where `name` (scenes, images) lies beside the program: installed, or behind a link that the build makes. Empty: nowhere.
+std::string folder_beside_program(const std::string& name);
+
 // Names of files, as text.
 
 /// The last part of a path, without its folder.

@@ -102,6 +102,12 @@ constexpr EffectSet flat_specialisation(EffectSet set) {
          ((set & Effect::kMirror) != 0 ? Effect::kAmbientOcclusion : Effect::kNone);
 }
 
+/// The specialisation that draws every set within kMost which `is_flat` and is dry; kMost has kDirectLight and kShadows.
+template <EffectSet kMost>
+inline constexpr EffectSet kFlatWithin =
+    flat_specialisation(kMost&(Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion |
+                               Effect::kEmission | Effect::kMirror | Effect::kSky));
+
 /// Whether the fast way takes the frame, whose set `is_flat`.
 bool draws_flat(const Frame& frame, const BrickMap& map);
 /// Draws the band where `draws_flat`; kSet is the specialisation of the frame's set. `suns` has what is proven of the
@@ -139,6 +145,39 @@ template <EffectSet kEffects, bool kHasLamps = (kEffects & Effect::kEmitterLight
     }
   }
   return render_lit_band<kEffects>(tree, camera, shading, scene, band, counts, options);
+}
+
+/// The same for a set that `lies_within` kMost (render.h); lamps go through the map where the scene has any. `kHasWater`:
+/// water does, too.
+template <EffectSet kMost, bool kHasWater>
+inline Status render_lit_band_within(EffectSet effects, const CompactTree& tree, const BrickMap& map,
+                                     const Camera& camera, const Shading& shading, const LitScene& scene,
+                                     Span<const SunBricks> suns, const Band& band,
+                                     LitCounts* counts = nullptr) {
+  constexpr EffectSet kDry = lit::kFlatWithin<kMost>;
+  if (!map.belongs_to(tree)) {
+    return Status::kDamaged;
+  }
+  const bool is_wet = (effects & Effect::kWater) != 0;
+  if (lies_within(effects, kMost) && is_flat(effects) && (kHasWater || !is_wet)) {
+    bool has_lamps = false;
+    for (const Light& light : scene.lights) {
+      has_lamps = has_lamps || (light.is_point && takes_lamps(effects));
+    }
+    const LitOptions options;
+    const EffectSet set = (effects & ~lit::kLamps) | (has_lamps ? lit::kLamps : Effect::kNone);
+    lit::Frame frame{tree, camera, shading, scene, options, set};
+    if (lit::draws_flat(frame, map)) {
+      if constexpr (kHasWater) {
+        if (is_wet) {
+          return lit::draw_flat<0x428B>(frame, map, suns, band, counts);
+        }
+      }
+      return has_lamps ? lit::draw_flat<kDry | lit::kLamps>(frame, map, suns, band, counts)
+                       : lit::draw_flat<kDry>(frame, map, suns, band, counts);
+    }
+  }
+  return render_lit_band_within<kMost>(effects, tree, camera, shading, scene, band, counts);
 }
 
 /// The same with a set that is known only now, as that of render.h; an image that does not call it holds nothing of it.

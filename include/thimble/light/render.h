@@ -78,6 +78,30 @@ Status render_lit_band(EffectSet effects, const CompactTree& tree, const Camera&
                        const Shading& shading, const LitScene& scene, const Band& band,
                        LitCounts* counts = nullptr, const LitOptions& options = {});
 
+// A set that is known only when the program runs, by one renderer for all sets within another: for a program that is
+// there before its scene, in a flash that does not hold the renderers of the function above.
+
+/// Whether the renderers for `most` draw `effects` exactly: nothing beyond `most`, and shadows where there is direct light.
+/// Scenes with metals want Effect::kMirror, too, if `most` has it.
+constexpr bool lies_within(EffectSet effects, EffectSet most) {
+  const bool has_hard_light = (effects & (Effect::kDirectLight | Effect::kShadows)) == Effect::kDirectLight;
+  return (effects & ~most) == 0 && !(has_hard_light && (most & Effect::kShadows) != 0);
+}
+
+/// As `render_lit_band(effects, ...)`, for a set that `lies_within` kMost: kBadArgument for any other.
+template <EffectSet kMost>
+inline Status render_lit_band_within(EffectSet effects, const CompactTree& tree, const Camera& camera,
+                                     const Shading& shading, const LitScene& scene, const Band& band,
+                                     LitCounts* counts = nullptr) {
+  if (effects == Effect::kNone) {
+    return render_band(tree, camera, shading, band);
+  }
+  const LitOptions options;
+  return lies_within(effects, kMost)
+             ? lit::draw<kMost>(lit::Frame{tree, camera, shading, scene, options, effects}, band, counts)
+             : Status::kBadArgument;
+}
+
 // Small balls in a lit picture that are not in its tree: they fall through the air of a scene in flash.
 //
 // A ball is a cube without its edges, the union of three boxes, at any place in 1/256 voxel. Each ray of a pixel
@@ -188,6 +212,21 @@ template <EffectSet kEffects>
 Status render_lit_band(EffectSet effects, const CompactTree& tree, const DrawnBalls& drawn,
                        const Camera& camera, const Shading& shading, const LitScene& scene, const Band& band,
                        LitCounts* counts = nullptr, const LitOptions& options = {});
+
+/// The same for a set that `lies_within` kMost; kBadArgument for any other, and for none.
+template <EffectSet kMost>
+inline Status render_lit_band_within(EffectSet effects, const CompactTree& tree, const DrawnBalls& drawn,
+                                     const Camera& camera, const Shading& shading, const LitScene& scene,
+                                     const Band& band, LitCounts* counts = nullptr) {
+  const LitOptions options;
+  const Status status = effects == Effect::kNone || !lies_within(effects, kMost)
+                            ? Status::kBadArgument
+                            : lit::check_balls(drawn, tree.level());
+  return status != Status::kOk
+             ? status
+             : lit::draw<kMost>(lit::BallFrame({tree, camera, shading, scene, options, effects}, drawn), band,
+                                counts);
+}
 
 }  // namespace thimble
 

@@ -3,6 +3,7 @@ set(BOARD_ARCH arm7)
 set(BOARD_CPU arm7tdmi)
 set(BOARD_FLASH_ORIGIN 0x08000000)
 set(BOARD_FLASH_BYTES 33554432)
+set(BOARD_ERASE_BYTES 65536)
 set(BOARD_RAM_ORIGIN 0x02000000)
 set(BOARD_RAM_BYTES 262144)
 # The core's own RAM: 32 KiB but for the 256 bytes at its end that the boot ROM uses. The stack lies there, and ARM code

@@ -3,6 +3,8 @@ set(BOARD_ARCH cortex-m)
 set(BOARD_CPU cortex-m4)
 set(BOARD_FLASH_ORIGIN 0x08000000)
 set(BOARD_FLASH_BYTES 1048576)
+# The first sectors are smaller; a program ends behind them.
+set(BOARD_ERASE_BYTES 131072)
 # SRAM1 and SRAM2 in one piece (STM32F405 data sheet, memory map). 64 KiB more at 0x10000000 (CCM) lie apart, and QEMU before
 # 10 has no memory there: nothing is put into them.
 set(BOARD_RAM_ORIGIN 0x20000000)

@@ -21,7 +21,14 @@ bool draws_flat(const Frame& frame, const BrickMap& map) {
 
 #define THIMBLE_DRAW_FLAT(set) \
   template Status draw_flat<set>(Frame&, const BrickMap&, Span<const SunBricks>, const Band&, LitCounts*);
-#ifdef THIMBLE_FLAT_EFFECTS  // a firmware image draws by the set of its scene, and compiles sooner without the others
+#if defined(THIMBLE_FLAT_WITHIN)  // render_lit_band_within<THIMBLE_FLAT_WITHIN> (map_render.h)
+THIMBLE_DRAW_FLAT(kFlatWithin<THIMBLE_FLAT_WITHIN>)
+THIMBLE_DRAW_FLAT(kFlatWithin<THIMBLE_FLAT_WITHIN> | kLamps)
+#if (THIMBLE_FLAT_WITHIN & 0x80) != 0
+THIMBLE_DRAW_FLAT(0x428B)
+#endif
+#elif defined( \
+    THIMBLE_FLAT_EFFECTS)  // a firmware image draws by the set of its scene, and compiles sooner without the others
 THIMBLE_FLAT_SUNS(THIMBLE_DRAW_FLAT)
 #if (THIMBLE_FLAT_EFFECTS & 0x94) != 0 || THIMBLE_FLAT_LAMPS != 0
 constexpr EffectSet kMoving = THIMBLE_FLAT_EFFECTS & ~(Effect::kEdges | kLamps);

@@ -1,0 +1,49 @@
+/// What `thimble bake` and `thimble image` share: the options of a baked scene, and its baking within a flash.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands/scene_options.h"
+#include "commands/stats.h"
+#include "commands/view_options.h"
+#include "output/c_header.h"
+#include "scene/baking.h"
+#include "scene/scene_source.h"
+
+namespace thimble::tools {
+
+struct BakeCommand {
+  SceneOptions scene;  // its --memory is the limit of what is written
+  ViewWishes view;
+  std::string output;
+  std::string identifier = kDefaultIdentifier;
+  bool as_header = false;
+  bool brick_map = false;
+  EffectChoice effects;
+  std::function<std::uint64_t(EffectSet)> room{};  ///< FlashLimit::room
+  // Once it is baked:
+  std::string note{};  ///< of the camera
+  bool lost_light = false;
+
+  FlashLimit limit() const { return {scene.board, scene.memory_bytes, room}; }
+};
+
+/// Opens the scene, bakes it within the command's limit; `options` are then those that it was baked with. Throws
+/// InputError for what does not fit, with the options that make it fit.
+Baked bake(BakeCommand* command, const SceneSource& source, BakingOptions* options);
+
+/// What was baked, in lines for people, without the board.
+std::string baked_text(const BakeCommand& command, const BakingOptions& options, const Baked& baked);
+Stats baked_stats(const BakeCommand& command, const SceneSource& source, const Baked& baked,
+                  std::optional<std::uint64_t> limit);
+
+/// What is wrong with a scene that wants these effects, for which there is no program.
+std::string not_drawn_text(const BakeCommand& command, EffectSet effects);
+
+/// --memory and --coarsen.
+void add_fitting(CLI::App& app, BakeCommand* command);
+
+}  // namespace thimble::tools
