@@ -2,7 +2,7 @@
 ///
 /// In a firmware image the set is a constant (`THIMBLE_IMAGE_EFFECTS`, which platform/firmware.cmake reads
 /// off the header that `thimble bake` made): the linker leaves out the rest, and with an empty set all of it. An image that
-/// is there before its scene (`THIMBLE_SCENE_IN_FLASH`, platform/IMAGES.md) draws every set within that constant.
+/// is there before its scene (`THIMBLE_SCENE_IN_FLASH`, platform/images) draws every set within that constant.
 /// On a desktop the scene comes with the command line, so the set is looked up there, and the library's own
 /// renderers draw it. Both draw the same picture. Where the effects allow it and there is a brick map, frames are fast
 /// enough to move in (map_render.h).
@@ -145,11 +145,10 @@ struct SceneLight {
   if constexpr (kLightsFast) {
     if (light.is_fast && (moves || light.moves_whole())) {
 #if defined(THIMBLE_SCENE_IN_FLASH)
-      return render_lit_band_within < kImageEffects,
-             kWaterByMap &&
-                 (kImageEffects & Effect::kWater) !=
-                     0 > (moving_effects(light.baked.effects), shown.scene.tree(), shown.map, camera, shading,
-                          light.baked.scene, {light.suns, kMaxFlatSuns}, band, counts);
+      constexpr bool kHasWater = kWaterByMap && (kImageEffects & Effect::kWater) != 0;
+      return render_lit_band_within<kImageEffects, kHasWater>(
+          moving_effects(light.baked.effects), shown.scene.tree(), shown.map, camera, shading,
+          light.baked.scene, {light.suns, kMaxFlatSuns}, band, counts);
 #elif defined(THIMBLE_IMAGE_EFFECTS)
       return render_lit_band<moving_effects(kImageEffects), kImageLamps>(
           shown.scene.tree(), shown.map, camera, shading, light.baked.scene, {light.suns, kMaxFlatSuns}, band,
