@@ -12,7 +12,7 @@ namespace thimble {
 namespace {
 
 // The rule of a cut-off for one ray: the walk stops at nodes that are cut.
-class RayCut : public FirstSolid {
+class RayCut {
  public:
   RayCut(const Cutoff& cutoff, const MirroredRay& ray) : level_(cutoff.level()) {
     axis_ = ray.direction.y > ray.direction.x ? 1 : 0;

@@ -71,8 +71,7 @@ static void report(const MirroredRay& ray, int32_t side, const Crossings<Int>& c
 template <class Path>
 struct NodeStep {
   typename Path::State state;
-  uint32_t link;  // as of the node
-  uint8_t mask;
+  NodeRef node;
   uint8_t octant;  // the child that the loop is in
   uint8_t rest;    // children still to visit, as bits
 };
@@ -93,22 +92,33 @@ static Vec3i corner_of(const Step (&stack)[kMaxLevel + 1], int level, int world_
           static_cast<int32_t>(z << level)};
 }
 
-// Goes down from a node of `level` to the voxel that the ray enters it by. `inside`: the walk begins in the node.
-template <class Path, class Rule>
-static void descend_to_voxel(const Path& path, const MirroredRay& ray, const Rule& rule,
-                             typename Path::State state, int level, bool inside,
-                             NodeStep<Path> (&stack)[kMaxLevel + 1]) {
+// Goes down from a node of `level` that is solid through to the voxel that the ray enters it by. `inside`:
+// the ray starts in the node.
+template <class Path>
+static void descend_to_voxel(const Path& path, const MirroredRay& ray, typename Path::State state, int level,
+                             bool inside, NodeStep<Path> (&stack)[kMaxLevel + 1]) {
   for (; level > 0; --level) {
     uint32_t octants = mirrored_octants(path.octants(state), ray.flip);
-    const unsigned first = rule.first_octant(ray, level);
+    const unsigned origin = ray.origin_octant(level);
     if (inside) {
-      octants &= octants_from(first);
+      octants &= octants_from(origin);
     }
     const unsigned octant = bits::lowest_bit(octants);
-    inside = inside && octant == first;
+    inside = inside && octant == origin;
     stack[level].octant = static_cast<uint8_t>(octant);
     state = path.child(state, octant);
   }
+}
+
+// Those of a node's children that are still ahead of the ray, mirrored. `inside`: the ray starts in the node.
+static inline uint32_t children_ahead(const MirroredRay& ray, uint32_t octants, int level, bool inside) {
+  if (octants != 0) {
+    octants = mirrored_octants(octants, ray.flip);
+    if (inside) {
+      octants &= octants_from(ray.origin_octant(level));
+    }
+  }
+  return octants;
 }
 
 struct Request {
@@ -116,54 +126,26 @@ struct Request {
   bool any;  // only the kind is wanted
 };
 
-// The rule of a walk to the first voxel that is solid, from where the ray enters the box of what is. Other rules have
-// what they do not say themselves from it. A rule hears which child the walk enters, when it keeps a node to come back
-// to, and when it is back.
-struct FirstSolid {
-  static constexpr bool kPasses = false;  // passes some of what is solid, and ends in what is empty
-
-  // Whether there is a walk: it begins at t = num / den (times 256).
-  template <class Int, class Nodes>
-  bool begins(const Nodes& nodes, const MirroredRay&, const Crossings<Int>& crossings, int32_t* num,
-              int32_t* den) const {
-    return !nodes.empty() && crossings.enter_box(num, den);
-  }
-  // Whether the walk begins in the world, and in which octant of the node of `level` that holds that place.
-  bool begins_inside(const MirroredRay& ray, int32_t side) const { return ray.within(side); }
-  unsigned first_octant(const MirroredRay& ray, int level) const { return ray.origin_octant(level); }
-
+// The rule of where a walk stops above the voxels: nowhere. A rule hears which child the walk enters, when it
+// keeps a node to come back to, and when it is back.
+struct GoesThrough {
   bool stops_at(const MirroredRay&, uint32_t, int) { return false; }
   void keep(int) {}
   void go_back(int) {}
   void enter(unsigned, int) {}
-  uint32_t wanted(uint32_t mask) const { return mask; }  // children to visit, as bits
 };
-
-// Those of a node's children that are still ahead of the ray, mirrored. `inside`: the walk begins in the node.
-template <class Rule>
-static inline uint32_t children_ahead(const MirroredRay& ray, const Rule& rule, uint32_t octants, int level,
-                                      bool inside) {
-  if (octants != 0) {
-    octants = mirrored_octants(octants, ray.flip);
-    if (inside) {
-      octants &= octants_from(rule.first_octant(ray, level));
-    }
-  }
-  return octants;
-}
 
 // The children along the ray's path, in order, are the set bits of (mask & path) from the lowest up: in the
 // mirrored numbering every crossing of a middle plane adds a bit to the octant. So the loop never steps
 // through empty octants: it takes the next bit, or goes up to the next level that has one left.
-template <class Int, class Unsigned, class Nodes, class Rule>
-static Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request, Rule& rule,
+template <class Int, class Unsigned, class Nodes, class Stop>
+static Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request& request, Stop& stop,
                        DirectionPath<Unsigned>* cache) {
   Hit hit;
   const Crossings<Int> crossings(ray);
-  // Of the whole function: in a scope of their own they cost a ray 1 per cent on a Cortex-M0.
   int32_t num;
   int32_t den;
-  if (!rule.begins(nodes, ray, crossings, &num, &den)) {
+  if (nodes.empty() || !crossings.enter_box(&num, &den)) {
     return hit;
   }
 
@@ -176,13 +158,13 @@ static Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request
   typename Path::State state = path.start(ray, world_level);
   uint32_t index = nodes.root();
   int level = world_level;
-  // While the node holds the place where the walk begins, only the octants ahead of it are on the ray.
-  bool inside = rule.begins_inside(ray, side);
+  // While the node holds the ray's origin, only the octants ahead of it are on the ray.
+  bool inside = ray.within(side);
 
   // Each turn arrives at the node `index` of `level`. The ray passes at most 3 * 2^k nodes of a level whose
   // nodes are 1/2^k of the world.
   for (uint32_t visits = 0;;) {
-    if (rule.stops_at(ray, index, level)) {
+    if (stop.stops_at(ray, index, level)) {
       hit.kind = HitKind::kHit;
       hit.visits = visits;
       report(ray, side, crossings, corner_of(stack, level, world_level), level, &hit);
@@ -197,23 +179,11 @@ static Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request
     NodeRef node;
     if (!nodes.load(index, &node)) {
       hit.visits = visits;
-      if constexpr (Rule::kPasses) {
-        if (rule.ends_in_empty()) {
-          hit.kind = HitKind::kHit;
-          descend_to_voxel(path, ray, rule, state, level, inside, stack);
-          report(ray, side, crossings, corner_of(stack, 0, world_level), 0, &hit);
-        }
-      }
       return hit;
     }
     const bool solid = node.mask == 0;
-    uint32_t rest = children_ahead(ray, rule, path.octants(state) & rule.wanted(node.mask), level, inside);
-    bool ends = false;
-    if constexpr (Rule::kPasses) {
-      ends = rule.ends(nodes, index, node, level, ray.flip, &rest);
-      hit.material = ends ? rule.material : hit.material;
-    }
-    if (Rule::kPasses ? ends : solid || (level == 1 && rest != 0)) {
+    uint32_t rest = children_ahead(ray, path.octants(state) & node.mask, level, inside);
+    if (solid || (level == 1 && rest != 0)) {
       hit.kind = HitKind::kHit;
       hit.visits = visits;
       if (request.any) {
@@ -221,17 +191,13 @@ static Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request
       }
       if (!solid) {  // a voxel
         const unsigned octant = bits::lowest_bit(rest);
-        if constexpr (!Rule::kPasses) {
-          hit.material = nodes.voxel_material(index, node.mask, octant ^ ray.flip);
-        }
+        hit.material = nodes.voxel_material(index, node.mask, octant ^ ray.flip);
         stack[level].octant = static_cast<uint8_t>(octant);
         level = 0;
       } else {
-        if constexpr (!Rule::kPasses) {
-          hit.material = nodes.block_material(index);
-        }
+        hit.material = nodes.block_material(index);
         if (!nodes.merged(index)) {
-          descend_to_voxel(path, ray, rule, state, level, inside, stack);
+          descend_to_voxel(path, ray, state, level, inside, stack);
           level = 0;
         }
       }
@@ -247,35 +213,25 @@ static Hit walk_octree(const Nodes& nodes, const MirroredRay& ray, const Request
       level = static_cast<int>(bits::lowest_bit(pending));
       inside = false;  // what holds the origin comes first
       state = stack[level].state;
-      node = {stack[level].link, stack[level].mask};
+      node = stack[level].node;
       rest = stack[level].rest;
-      rule.go_back(level);
+      stop.go_back(level);
     } else {
       nodes.find_children(index, &node);
       stack[level].state = state;
-      stack[level].link = node.link;
-      stack[level].mask = node.mask;
-      rule.keep(level);
+      stack[level].node = node;
+      stop.keep(level);
     }
     const unsigned octant = bits::lowest_bit(rest);
     rest &= rest - 1;
     stack[level].octant = static_cast<uint8_t>(octant);
     stack[level].rest = static_cast<uint8_t>(rest);
     pending = (pending & ~(uint32_t{1} << level)) | static_cast<uint32_t>(rest != 0) << level;
-    inside = inside && octant == rule.first_octant(ray, level);
+    inside = inside && octant == ray.origin_octant(level);
+    index = nodes.child(node, octant ^ ray.flip);
     state = path.child(state, octant);
     --level;
-    if constexpr (Rule::kPasses) {
-      if ((node.mask >> (octant ^ ray.flip) & 1U) == 0) {  // the rule wants what is empty
-        hit.kind = HitKind::kHit;
-        hit.visits = visits;
-        descend_to_voxel(path, ray, rule, state, level, inside, stack);
-        report(ray, side, crossings, corner_of(stack, 0, world_level), 0, &hit);
-        return hit;
-      }
-    }
-    index = nodes.child(node, octant ^ ray.flip);
-    rule.enter(octant, level);
+    stop.enter(octant, level);
   }
 }
 

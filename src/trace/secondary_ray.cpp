@@ -1,16 +1,50 @@
-// Secondary rays, which start at a hit. The walk through a medium is that of trace.cpp by another rule: there the octants
-// that hold something are visited, here all of them, and what ends the walk is the first cell that is not of the medium.
+// Secondary rays, which start at a hit. The walk through a medium is that of trace.cpp turned round: there the octants
+// that hold something are visited, here all of them, and what ends the walk is the first cell that is not of
+// the medium. Both starts at a point of a ray share the one loop.
 #include "thimble/trace/secondary_ray.h"
 
 #include "../base/bits.h"
 #include "../base/wide_arithmetic.h"
-#include "../tree/compact_header.h"
 #include "crossings.h"
 #include "descent.h"
 #include "width.h"
 
 namespace thimble {
 namespace {
+
+// What a walk looks for, and where it begins.
+struct Search {
+  bool medium;  // the first cell that is not of `material`; otherwise the first solid one
+  uint8_t material;
+  uint32_t max_visits;
+  int32_t numerator;  // of t, times 256
+  int32_t denominator;
+};
+
+template <class Path>
+struct SearchStep {
+  typename Path::State state;
+  uint32_t link;  // the first child
+  uint8_t mask;
+  uint8_t octant;  // the child that the walk is in; mirrored, as `rest`
+  uint8_t rest;    // children still to visit, as bits
+};
+
+unsigned octant_of(const Vec3i& cell, int level) {
+  const int shift = level - 1;
+  return (static_cast<uint32_t>(cell.x) >> shift & 1U) | (static_cast<uint32_t>(cell.y) >> shift & 1U) << 1 |
+         (static_cast<uint32_t>(cell.z) >> shift & 1U) << 2;
+}
+
+void add_octant(unsigned octant, int level, Vec3i* corner) {
+  corner->x |= static_cast<int32_t>((octant & 1U) << (level - 1));
+  corner->y |= static_cast<int32_t>((octant >> 1 & 1U) << (level - 1));
+  corner->z |= static_cast<int32_t>((octant >> 2 & 1U) << (level - 1));
+}
+
+uint32_t child_number(uint32_t link, uint8_t mask, unsigned octant) {
+  return link + bits::popcount8(mask & ((1U << octant) - 1));
+}
 
 // Whether the mirrored ray is in the world right after t = num / den.
 template <class Int>
@@ -25,103 +59,192 @@ bool in_world(const MirroredRay& ray, int32_t side, int32_t num, int32_t den) {
   return true;
 }
 
-// The rule of a walk that begins at a point of the ray: to the first solid voxel, or through a medium.
-struct Search : FirstSolid {
-  static constexpr bool kPasses = true;
+// One walk of one ray in one width.
+template <class Int, class Unsigned>
+class SearchWalk {
+ public:
+  SearchWalk(const CompactTree& tree, const MirroredRay& ray)
+      : tree_(tree),
+        ray_(ray),
+        level_(tree.level()),
+        side_(int32_t{1} << tree.level()),
+        crossings_(ray),
+        path_(ray, tree.level()) {}
 
-  bool medium;       // to the first cell that is not of `material`; otherwise the first solid one
-  uint8_t material;  // of the medium; afterwards of what the walk ends in
-  bool into_solid = false;
-  bool is_in_world = true;  // the ray is where the search begins
-  int32_t numerator = 0;    // of t, times 256
-  int32_t denominator = 1;
-  Vec3i start;  // the cell in which the search begins; mirrored
-
-  Search(bool through, uint8_t of) : medium(through), material(of) {}
-
-  template <class Int, class Nodes>
-  bool begins(const Nodes& nodes, const MirroredRay& ray, const Crossings<Int>& crossings, int32_t* num,
-              int32_t* den) {
-    *num = numerator;
-    *den = denominator;
-    is_in_world = in_world<Int>(ray, int32_t{1} << nodes.level(), *num, *den);
-    if (is_in_world) {
-      start = crossings.cell_at(*num, *den, nodes.level());
-    }
-    return is_in_world;
-  }
-  bool begins_inside(const MirroredRay&, int32_t) const { return true; }
-  unsigned first_octant(const MirroredRay&, int level) const { return octant_of(start, level); }
-  uint32_t wanted(uint32_t mask) const { return medium && mask != 0 ? 0xFFU : mask; }
-  bool ends_in_empty() const { return medium; }
-
-  // Whether the walk ends in the node; takes those of its voxels off `rest` that the ray goes through before.
-  template <class Nodes>
-  bool ends(const Nodes& nodes, uint32_t index, NodeRef node, int level, unsigned flip, uint32_t* rest) {
-    if (node.mask == 0) {
-      return stops_in(nodes.block_material(index));
-    }
-    if (level != 1 || *rest == 0) {
-      return false;
-    }
-    nodes.find_children(index, &node);
-    for (; *rest != 0; *rest &= *rest - 1) {
-      const unsigned octant = bits::lowest_bit(*rest) ^ flip;
-      if ((node.mask >> octant & 1U) == 0) {
-        material = 0;
-        return true;
-      }
-      if (stops_in(nodes.tree.voxel_material(nodes.child(node, octant)))) {
-        return true;
-      }
-    }
-    return false;
-  }
+  // False when the ray is not in the world where the search begins. `exit->hit.kind` is kMiss when the ray
+  // leaves the world without an answer.
+  bool run(const Search& search, MediumExit* exit);
+  // The cell outside the world that the ray comes to first.
+  void leave_world(Hit* hit) const;
 
  private:
-  bool stops_in(uint8_t solid) {
-    into_solid = !medium || solid != material;
-    material = solid;
-    return into_solid;
+  using Path = NodePath<Unsigned>;
+
+  // The block of `level` at `corner`, in which the walk ends; `state` is its. What is not merged is gone down
+  // into, to the voxel by which the ray enters it.
+  void report(typename Path::State state, Vec3i corner, int level, bool inside, bool merged, Hit* hit) const;
+  void report_cell(const Vec3i& corner, int level, Hit* hit) const {
+    hit->kind = HitKind::kHit;
+    thimble::report(ray_, side_, crossings_, corner, level, hit);
   }
+  Vec3i corner_of(int level) const { return thimble::corner_of(stack_, level, level_); }
+  uint8_t voxel_material(const SearchStep<Path>& step, unsigned octant) const {
+    return tree_.many_materials() ? tree_.voxel_material(child_number(step.link, step.mask, octant))
+                                  : tree_.uniform_material();
+  }
+
+  const CompactTree& tree_;
+  const MirroredRay& ray_;
+  int level_;
+  int32_t side_;
+  Crossings<Int> crossings_;
+  Path path_;
+  Vec3i start_;  // the cell in which the search begins; mirrored
+  SearchStep<Path> stack_[kMaxLevel + 1];
 };
 
-// The cell outside the world that the ray comes to first.
-template <class Int>
-void leave_world(const MirroredRay& ray, int level, Hit* hit) {
-  const int32_t side = int32_t{1} << level;
-  const Crossings<Int> crossings(ray);
+template <class Int, class Unsigned>
+void SearchWalk<Int, Unsigned>::report(typename Path::State state, Vec3i corner, int level, bool inside,
+                                       bool merged, Hit* hit) const {
+  for (; level > 0 && !merged; --level) {
+    uint32_t octants = mirrored_octants(path_.octants(state), ray_.flip);
+    const unsigned start = octant_of(start_, level);
+    if (inside) {
+      octants &= octants_from(start);
+    }
+    const unsigned octant = bits::lowest_bit(octants);
+    inside = inside && octant == start;
+    add_octant(octant, level, &corner);
+    state = path_.child(state, octant);
+  }
+  report_cell(corner, level, hit);
+}
+
+template <class Int, class Unsigned>
+void SearchWalk<Int, Unsigned>::leave_world(Hit* hit) const {
   int32_t num = 0;
   int32_t den = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const int32_t distance = ray.distance(axis, side);
-    const int32_t direction = ray.direction[axis];
+    const int32_t distance = ray_.distance(axis, side_);
+    const int32_t direction = ray_.direction[axis];
     if (direction != 0 && (den == 0 || product<Int>(distance, den) < product<Int>(num, direction))) {
       num = distance;
       den = direction;
     }
   }
-  Vec3i cell = crossings.cell_at(num, den, level);
+  Vec3i cell = crossings_.cell_at(num, den, level_);
   for (int axis = 0; axis < 3; ++axis) {
-    if (product<Int>(ray.distance(axis, side), den) <= product<Int>(num, ray.direction[axis])) {
-      cell[axis] = side;
+    if (product<Int>(ray_.distance(axis, side_), den) <= product<Int>(num, ray_.direction[axis])) {
+      cell[axis] = side_;
     }
   }
-  hit->kind = HitKind::kHit;
-  report(ray, side, crossings, cell, 0, hit);
+  report_cell(cell, 0, hit);
 }
 
-// Not inlined, so that a ray takes the stack of its own width only.
 template <class Int, class Unsigned>
-[[gnu::noinline]] void walk_search(const CompactTree& tree, const MirroredRay& ray, uint32_t max_visits,
-                                   Search* search, MediumExit* exit) {
-  DirectionPath<Unsigned> path;
-  exit->hit = walk_octree<Int>(CompactNodes{tree}, ray, {max_visits, false}, *search, &path);
-  exit->into_solid = search->into_solid;
-  if (search->medium && search->is_in_world && exit->hit.kind == HitKind::kMiss) {
-    exit->left_world = true;
-    leave_world<Int>(ray, tree.level(), &exit->hit);
+bool SearchWalk<Int, Unsigned>::run(const Search& search, MediumExit* exit) {
+  const int32_t num = search.numerator;
+  const int32_t den = search.denominator;
+  if (!in_world<Int>(ray_, side_, num, den)) {
+    return false;
   }
+  start_ = crossings_.cell_at(num, den, level_);
+  Hit* hit = &exit->hit;
+  uint32_t pending = 0;  // bit k: stack_[k].rest is not 0
+  typename Path::State state = path_.start(ray_, level_);
+  uint32_t index = 0;
+  int level = level_;
+  bool inside = true;  // the node holds the start: only the octants ahead of it are looked at
+
+  // Each turn arrives at the node `index` of `level`. The ray passes at most 3 * 2^k nodes of a level whose
+  // nodes are 1/2^k of the world.
+  for (;;) {
+    if (hit->visits == search.max_visits) {
+      hit->kind = HitKind::kStepLimit;
+      return true;
+    }
+    ++hit->visits;
+    SearchStep<Path>& arrived = stack_[level];
+    arrived.rest = 0;
+    if (index >= tree_.node_count()) {  // an empty or a damaged tree
+      if (search.medium) {
+        report(state, corner_of(level), level, inside, false, hit);
+      }
+      return true;
+    }
+    arrived.mask = tree_.mask(index);
+    if (arrived.mask == 0) {
+      const uint8_t material = tree_.block_material(index);
+      if (!search.medium || material != search.material) {
+        hit->material = material;
+        exit->into_solid = true;
+        report(state, corner_of(level), level, inside, tree_.is_merged(index), hit);
+        return true;
+      }
+    } else {
+      const uint32_t wanted = search.medium ? 0xFFU : arrived.mask;
+      uint32_t rest = mirrored_octants(path_.octants(state) & wanted, ray_.flip);
+      if (inside) {
+        rest &= octants_from(octant_of(start_, level));
+      }
+      arrived.state = state;
+      arrived.link = rest != 0 ? tree_.first_child(index) : 0;
+      arrived.rest = static_cast<uint8_t>(rest);
+      pending |= (rest != 0 ? 1U : 0U) << level;
+    }
+
+    // On to the next child that is a node; children that are cells are decided here, at most 4 of a node.
+    for (bool down = false; !down;) {
+      if (stack_[level].rest == 0) {
+        if (pending == 0) {
+          return true;
+        }
+        level = static_cast<int>(bits::lowest_bit(pending));
+        inside = false;  // what holds the start comes first
+      }
+      SearchStep<Path>& step = stack_[level];
+      const unsigned octant = bits::lowest_bit(step.rest);
+      step.rest = static_cast<uint8_t>(step.rest & (step.rest - 1));
+      step.octant = static_cast<uint8_t>(octant);
+      if (step.rest == 0) {
+        pending &= ~(1U << level);
+      }
+      const bool filled = ((uint32_t{step.mask} >> (octant ^ ray_.flip)) & 1U) != 0;
+      if (level == 1 && filled) {
+        const uint8_t material = voxel_material(step, octant ^ ray_.flip);
+        if (search.medium && material == search.material) {
+          continue;
+        }
+        hit->material = material;
+        exit->into_solid = true;
+      }
+      const bool child_inside = inside && octant == octant_of(start_, level);
+      state = path_.child(step.state, octant);
+      if (level == 1 || !filled) {
+        report(state, corner_of(level - 1), level - 1, child_inside, false, hit);
+        return true;
+      }
+      index = child_number(step.link, step.mask, octant ^ ray_.flip);
+      inside = child_inside;
+      --level;
+      down = true;
+    }
+  }
+}
+
+// Not inlined, so that a ray takes the stack of its own width only. False: not in the world there.
+template <class Int, class Unsigned>
+[[gnu::noinline]] bool walk_search(const CompactTree& tree, const MirroredRay& ray, const Search& search,
+                                   MediumExit* exit) {
+  SearchWalk<Int, Unsigned> walk(tree, ray);
+  if (!walk.run(search, exit)) {
+    return false;
+  }
+  if (search.medium && exit->hit.kind == HitKind::kMiss) {
+    exit->left_world = true;
+    walk.leave_world(&exit->hit);
+  }
+  return true;
 }
 
 // A ray as the walk takes it, or what is wrong with it.
@@ -146,26 +269,27 @@ bool accepts_32_from(const Ray& ray, int level, const Search& search) {
          bits::bit_length(static_cast<uint32_t>(search.numerator)) + bits::bit_length(directions) <= 31;
 }
 
+MirroredRay in_all_of(int level, const Ray& ray) {
+  const int32_t side = int32_t{1} << level;
+  return MirroredRay(ray, side, {{0, 0, 0}, {side, side, side}});
+}
+
 // Inlined, so that its callers have no frame of their own below them on a small stack.
 [[gnu::always_inline]] inline Status search_from(const CompactTree& tree, const Ray& ray,
-                                                 const RayPoint& from, const TraceOptions& options,
-                                                 Search* search, MediumExit* exit) {
+                                                 const RayPoint& from, Search search, Width width,
+                                                 bool* in_world, MediumExit* exit) {
   const int level = tree.level();
-  const Status status = begin_at(ray, level, from, search);
+  const Status status = begin_at(ray, level, from, &search);
   if (status != Status::kOk) {
     return status;
   }
   bool narrow = false;
-  if (!choose_width(options.width, &narrow, [&] { return accepts_32_from(ray, level, *search); })) {
+  if (!choose_width(width, &narrow, [&] { return accepts_32_from(ray, level, search); })) {
     return Status::kOutOfRange;
   }
-  const int32_t side = int32_t{1} << level;
-  const MirroredRay mirrored(ray, side, {{0, 0, 0}, {side, side, side}});
-  if (narrow) {
-    walk_search<int32_t, uint32_t>(tree, mirrored, options.max_visits, search, exit);
-  } else {
-    walk_search<int64_t, uint64_t>(tree, mirrored, options.max_visits, search, exit);
-  }
+  const MirroredRay mirrored = in_all_of(level, ray);
+  *in_world = narrow ? walk_search<int32_t, uint32_t>(tree, mirrored, search, exit)
+                     : walk_search<int64_t, uint64_t>(tree, mirrored, search, exit);
   return Status::kOk;
 }
 
@@ -253,7 +377,7 @@ bool material_at(const CompactTree& tree, const Vec3i& voxel, uint8_t* material)
     if ((mask >> octant & 1U) == 0) {
       return false;
     }
-    index = tree.first_child(index) + bits::popcount8(mask & ((1U << octant) - 1));
+    index = child_number(tree.first_child(index), mask, octant);
   }
   if (material != nullptr) {
     *material = tree.voxel_material(index);
@@ -264,11 +388,12 @@ bool material_at(const CompactTree& tree, const Vec3i& voxel, uint8_t* material)
 Status leave_medium(const CompactTree& tree, const Ray& ray, uint8_t material, MediumExit* exit,
                     const RayPoint& from, const TraceOptions& options) {
   MediumExit found;
-  Search search(true, material);
-  const Status status = search_from(tree, ray, from, options, &search, &found);
+  bool in_world = true;
+  const Status status = search_from(tree, ray, from, {true, material, options.max_visits, 0, 1},
+                                    options.width, &in_world, &found);
   if (status == Status::kOk) {
     *exit = found;
-    if (!search.is_in_world) {
+    if (!in_world) {
       exit->hit.kind = HitKind::kHit;
       exit->hit.voxel = starting_voxel(ray);
       exit->left_world = true;
@@ -280,9 +405,10 @@ Status leave_medium(const CompactTree& tree, const Ray& ray, uint8_t material, M
 Status closest_hit_from(const CompactTree& tree, const Ray& ray, const RayPoint& from, Hit* hit,
                         const TraceOptions& options) {
   MediumExit found;
-  Search search(false, 0);
-  Status status = search_from(tree, ray, from, options, &search, &found);
-  if (status == Status::kOk && !search.is_in_world) {
+  bool in_world = true;
+  Status status =
+      search_from(tree, ray, from, {false, 0, options.max_visits, 0, 1}, options.width, &in_world, &found);
+  if (status == Status::kOk && !in_world) {
     status = closest_hit(tree, ray, &found.hit, options);
     only_from(from, &found.hit);
   }

@@ -109,20 +109,20 @@ Hit walk_grid(const DenseGrid& grid, const MirroredRay& ray, const Request& requ
 template <class Int, class Unsigned>
 [[gnu::noinline]] Hit walk(const CompactTree& tree, const MirroredRay& ray, const Request& request,
                            DirectionPath<Unsigned>* cache) {
-  FirstSolid rule;
-  return walk_octree<Int>(CompactNodes{tree}, ray, request, rule, cache);
+  GoesThrough stop;
+  return walk_octree<Int>(CompactNodes{tree}, ray, request, stop, cache);
 }
 template <class Int, class Unsigned>
 [[gnu::noinline]] Hit walk(const Octree& tree, const MirroredRay& ray, const Request& request,
                            DirectionPath<Unsigned>* cache) {
-  FirstSolid rule;
-  return walk_octree<Int>(PoolNodes{tree}, ray, request, rule, cache);
+  GoesThrough stop;
+  return walk_octree<Int>(PoolNodes{tree}, ray, request, stop, cache);
 }
 template <class Int, class Unsigned>
 [[gnu::noinline]] Hit walk(const SharedTree& tree, const MirroredRay& ray, const Request& request,
                            DirectionPath<Unsigned>* cache) {
-  FirstSolid rule;
-  Hit hit = walk_octree<Int>(SharedNodes{tree}, ray, request, rule, cache);
+  GoesThrough stop;
+  Hit hit = walk_octree<Int>(SharedNodes{tree}, ray, request, stop, cache);
   if (hit.kind == HitKind::kHit && !request.any && tree.many_materials()) {
     hit.material = tree.material(hit.voxel);
   }
