@@ -35,20 +35,20 @@ inline constexpr EffectFlash kEffectFlash[] = {
     {Effect::kAmbientOcclusion, 592},
     {Effect::kEmission, 88},
     {Effect::kMirror, 1828},
-    {Effect::kGlass, 15784},
+    {Effect::kGlass, 15764},
     {Effect::kMedia, 11204},
-    {Effect::kWater, 11172},
+    {Effect::kWater, 11144},
     {Effect::kFog, 1228},
     {Effect::kSky, 776},
     {Effect::kDepthCue, 660},
     {Effect::kSmoothNormals, 5680},
     {Effect::kEmitterLight, 4},
     {Effect::kEdges, 1724},
-    {Effect::kRipples, 1440},
+    {Effect::kRipples, 1368},
 };
 // clang-format on
 
 /// All of them together, the base included: what the most general image takes beyond one without light.
-inline constexpr uint32_t kAllEffectsFlashBytes = 39808;
+inline constexpr uint32_t kAllEffectsFlashBytes = 39656;
 
 }  // namespace thimble
