@@ -11,6 +11,7 @@
 #include "commands/view_options.h"
 #include "output/c_header.h"
 #include "scene/baking.h"
+#include "scene/framing.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
