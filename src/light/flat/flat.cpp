@@ -27,8 +27,8 @@ THIMBLE_DRAW_FLAT(kFlatWithin<THIMBLE_FLAT_WITHIN> | kLamps)
 #if (THIMBLE_FLAT_WITHIN & 0x80) != 0
 THIMBLE_DRAW_FLAT(0x428B)
 #endif
-#elif defined( \
-    THIMBLE_FLAT_EFFECTS)  // a firmware image draws by the set of its scene, and compiles sooner without the others
+// A firmware image draws by the set of its scene, and compiles sooner without the others.
+#elif defined(THIMBLE_FLAT_EFFECTS)
 THIMBLE_FLAT_SUNS(THIMBLE_DRAW_FLAT)
 #if (THIMBLE_FLAT_EFFECTS & 0x94) != 0 || THIMBLE_FLAT_LAMPS != 0
 constexpr EffectSet kMoving = THIMBLE_FLAT_EFFECTS & ~(Effect::kEdges | kLamps);
