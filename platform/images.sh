@@ -37,7 +37,7 @@ program() {
   build/release/thimble bake "$4" --board "$board" --effects "$5" --quiet -o "$scene"
   if ! WITHIN=$(set_of "$3") sh platform/build.sh "$1" "$2" "$scene" >"$THIMBLE_FIRMWARE/$name.log" 2>&1; then
     # Too large for the flash is no fault: there is no such image then.
-    grep -q 'larger than the flash' "$THIMBLE_FIRMWARE/$name.log" || { cat "$THIMBLE_FIRMWARE/$name.log" >&2 && exit 1; }
+    grep -q 'larger than the flash\|overflowed by' "$THIMBLE_FIRMWARE/$name.log" || { cat "$THIMBLE_FIRMWARE/$name.log" >&2 && exit 1; }
     return 0
   fi
   for app in $(echo "$apps" | tr ';' ' '); do

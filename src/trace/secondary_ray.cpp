@@ -5,6 +5,7 @@
 
 #include "../base/bits.h"
 #include "../base/wide_arithmetic.h"
+#include "../tree/compact_header.h"
 #include "crossings.h"
 #include "descent.h"
 #include "width.h"
@@ -29,12 +30,6 @@ struct SearchStep {
   uint8_t octant;  // the child that the walk is in; mirrored, as `rest`
   uint8_t rest;    // children still to visit, as bits
 };
-
-unsigned octant_of(const Vec3i& cell, int level) {
-  const int shift = level - 1;
-  return (static_cast<uint32_t>(cell.x) >> shift & 1U) | (static_cast<uint32_t>(cell.y) >> shift & 1U) << 1 |
-         (static_cast<uint32_t>(cell.z) >> shift & 1U) << 2;
-}
 
 void add_octant(unsigned octant, int level, Vec3i* corner) {
   corner->x |= static_cast<int32_t>((octant & 1U) << (level - 1));
