@@ -52,7 +52,7 @@ program() {
 for board in ${*:-$(cd platform/boards && echo */board.cmake | sed 's,/board\.cmake,,g')}; do
   . platform/board_facts.sh
   case $(fact ARCH) in riscv) prefix=riscv64-unknown-elf- ;; *) prefix=arm-none-eabi- ;; esac
-  rm -f "$images/$board"-*
+  rm -f "$images/$board"-demo-* "$images/$board"-dig-* "$images/$board"-water-*
   program "$board" 'demo;dig' plain demo,depth=4 none
   program "$board" demo sun demo,depth=4 none
   program "$board" demo all demo,depth=4 none
