@@ -367,16 +367,17 @@ done
 formats() {
   mkdir -p "$tree/src/picture"
   {
-    echo 'constexpr bool has_format(int number) { return (THIMBLE_PANEL_FORMATS >> number & 1U) != 0; }'
+    echo 'template <int number> constexpr bool is_format() { return (THIMBLE_PANEL_FORMATS >> number & 1U) != 0; }'
     echo 'void store(volatile int* to) {'
     for number in 5 6 7 8 9 10 11 12 13; do
-      case " $* " in *" $number "*) echo "  *to = $number;" ;; *) echo "  if (has_format($number)) { *to = $number; }" ;; esac
+      case " $* " in *" $number "*) echo "  *to = $number;" ;; *) echo "  if (is_format<$number>()) { *to = $number; }" ;; esac
     done
     echo '  static_cast<void>(to);'
+    echo '  static_cast<void>(is_format<5>());'
     echo '}'
   } >"$tree/src/picture/panel_store.cpp"
 }
-catches panel_formats 'no source of src asks has_format'
+catches panel_formats 'no source of src asks is_format'
 formats
 passes panel_formats
 formats 7
