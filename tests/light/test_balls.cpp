@@ -204,24 +204,6 @@ TEST_CASE("balls: a camera within one -> the picture of a tree that has it, wher
   }
 }
 
-TEST_CASE("balls: a lamp between the floor and a ball -> light; a ball between them -> shadow") {
-  LitWorld world;
-  world.box({0, 0, 0}, {32, 32, 4}, 0);
-  world.lights = {lamp({16 * 256, 16 * 256, 12 * 256})};
-  set_ambient(&world.scene, 0);
-  world.finish();
-  world.look({40 * 256, 16 * 256 + 9, 9 * 256}, {16 * 256, 16 * 256, 4 * 256}, 8);
-  const auto middle = [&](int height, EffectSet effects) {
-    const Ball ball = ball_at({16, 16, height}, 2, {});
-    return draw_with(world, effects, {ball})[18 * 48 + 24];
-  };
-  for (const EffectSet effects : {kLight, kLight | Effect::kGlass}) {
-    CHECK(world.middle(effects).r > 60);
-    CHECK(middle(18, effects) == world.middle(effects));
-    CHECK(middle(8, effects).r == 0);
-  }
-}
-
 TEST_CASE("balls: slopes for the tree -> a ball keeps its faces") {
   LitWorld world;
   world.box({0, 0, 0}, {32, 32, 4}, 0);
@@ -307,37 +289,6 @@ TEST_CASE("balls: a sun aslant over a floor -> the shadow that was worked out by
     wanted += '\n';
   }
   CHECK(seen == wanted);
-}
-
-TEST_CASE(
-    "balls: behind the camera, before a mirror -> the mirror shows the ball's outline, and it alone "
-    "changes") {
-  LitWorld world;
-  world.box({28, 0, 0}, {32, 32, 32}, 1);
-  world.surfaces[1] = surface(SurfaceKind::kMetal, {255, 255, 255});
-  world.finish();
-  const Vec3Q8 eye = LitWorld::point({22 * 256, 16 * 256, 16 * 256});
-  REQUIRE(world.camera.set(OrthographicView{eye, {16, 0, 0}, {}, Q14::saturate(16), 16, 16, 0}, 5) ==
-          Status::kOk);
-  // Half a voxel to the side: no plane of it is a voxel's. From the front a ball is a square of 4.
-  Ball ball = ball_at({14, 16, 16}, 2, surface(SurfaceKind::kDiffuse, {250, 92, 64}));
-  ball.center.y += 128;
-  constexpr EffectSet kMirrors = Effect::kMirror;
-  const std::vector<Rgb8> empty = world.draw(kMirrors);
-  const std::vector<Rgb8> drawn = draw_with(world, kMirrors, {ball});
-  int changed = 0;
-  for (int y = 0; y < 16; ++y) {
-    for (int x = 0; x < 16; ++x) {
-      const auto at = static_cast<std::size_t>(y * 16 + x);
-      const bool is_ball = drawn[at].r > 2 * drawn[at].g;
-      CHECK(is_ball == (drawn[at] != empty[at]));
-      changed += is_ball ? 1 : 0;
-      // Image right is -y, pixel x is at 23.5 - x. The ball is 14.5 <= y < 18.5: the ray of pixel 9 runs within its
-      // lower plane and belongs to it, that of pixel 5 within its upper one and does not.
-      CHECK(is_ball == (y >= 6 && y < 10 && x >= 6 && x < 10));
-    }
-  }
-  CHECK(changed == 16);
 }
 
 TEST_CASE("balls: none, or none that is there -> picture and counts of a scene without") {

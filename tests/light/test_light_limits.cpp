@@ -108,23 +108,6 @@ TEST_CASE("light limits: lights of any channels -> direct light and shadows wher
   }
 }
 
-TEST_CASE("light limits: the first material behind the palette -> the default color, not what lies behind") {
-  testing::LitWorld world;
-  world.box({0, 0, 0}, {32, 32, 4}, 3);
-  world.finish();
-  world.look({16 * 256 + 3, 16 * 256 + 5, 20 * 256}, {16 * 256, 16 * 256, 4 * 256}, 20);
-  testing::set_ambient(&world.scene, 256);
-  world.scene.surfaces = {};
-  Rgb8 colors[4] = {{9, 9, 9}, {9, 9, 9}, {9, 9, 9}, {200, 30, 90}};
-  world.shading.default_color = {40, 180, 220};
-  world.shading.palette = {colors, 3};
-  const Rgb8 beyond = world.middle(Effect::kDirectLight);
-  world.shading.palette = {};
-  CHECK(beyond == world.middle(Effect::kDirectLight));
-  world.shading.palette = {colors, 4};
-  CHECK(beyond != world.middle(Effect::kDirectLight));
-}
-
 // Bricks here and there, in a box that need not be a cube.
 struct SunWorld {
   SunWorld(std::mt19937_64& random, unsigned share) {
@@ -263,25 +246,6 @@ TEST_CASE("light parts: a solid entered at t = 1/256 -> absorbs what it does for
     CHECK(weights[0].c[i] == weights[1].c[i]);
     CHECK(weights[0].c[i] > 0);
     CHECK(weights[0].c[i] < lit::kFullWeight);
-  }
-}
-
-TEST_CASE("light parts: a mirror of all light -> sends on the 65535 of 65536 that its color leaves") {
-  const Parts parts;
-  lit::Frame frame = parts.frame(Effect::kMirror);
-  lit::Spot spot;
-  spot.face = {2, false};
-  spot.at = LitWorld::point({4096, 4096, 1024});
-  spot.arriving = {0, 3, -4};
-  spot.surface = surface(SurfaceKind::kMetal, {255, 255, 255});
-  lit::PendingRay now = ray_from({4096, 0, 5120}, spot.arriving);
-  lit::PendingRay pending[lit::pending_rays(Effect::kMirror)];
-  std::size_t count = 0;
-  send_mirrored(frame, &now, spot, pending, &count);
-  REQUIRE(count == 1);
-  for (int i = 0; i < 3; ++i) {
-    CHECK(pending[0].weight.c[i] == lit::kFullWeight - 1);
-    CHECK(now.weight.c[i] == 0);
   }
 }
 

@@ -174,21 +174,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("shadows: what is behind a point light casts none, what is before it does") {
-  LitWorld world;
-  world.box({0, 0, 0}, {32, 32, 2}, 0);
-  world.box({8, 8, 20}, {24, 24, 21}, 0);
-  set_ambient(&world.scene, 0);
-  world.lights = {lamp({16 * 256, 16 * 256, 16 * 256}, 2000)};
-  world.finish();
-  world.look({16 * 256, -20 * 256, 8 * 256}, {16 * 256 + 37, 16 * 256, 2 * 256});
-  CHECK(world.middle(Effect::kDirectLight | Effect::kShadows).r > 100);
-  world.lights = {lamp({16 * 256, 16 * 256, 24 * 256}, 2000)};
-  world.finish();
-  CHECK(world.middle(Effect::kDirectLight | Effect::kShadows).r == 0);
-  CHECK(world.middle(Effect::kDirectLight).r > 100);
-}
-
 TEST_CASE("shadows: a lamp is not darkened by the voxels that shine around it") {
   LitWorld world;
   world.box({0, 0, 0}, {32, 32, 2}, 0);

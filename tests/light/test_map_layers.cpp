@@ -6,78 +6,41 @@
 #include <cstdint>
 #include <iterator>
 #include <random>
-#include <vector>
 
-#include "support/chip_worlds.h"
 #include "support/counts.h"
+#include "support/map_world.h"
 #include "support/ray_cases.h"
-#include "thimble/light/map_render.h"
 
+namespace thimble::testing::map_layers {
 namespace {
 
-using namespace thimble;
-using namespace thimble::tests;
+using tests::many_or_few;
+using tests::pick_int;
 
 constexpr int kWide = 44;
 constexpr int kHigh = 32;
 constexpr EffectSet kByLamps = Effect::kDirectLight | Effect::kShadows | Effect::kEmitterLight;
-
 constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
 
-struct Drawn {
-  std::vector<std::uint8_t> bytes;
-  LitCounts counts;
-  std::uint64_t visits_by_tree = 0;
-  std::uint64_t hits_by_tree = 0;
+struct LampWorld : MapWorld {
+  explicit LampWorld(int level) : MapWorld(level), side(1 << level) { lights.clear(); }
+  /// A wall through the world.
+  void wall(int place, int axis) {
+    Vec3i low{};
+    Vec3i high{side, side, side};
+    low[axis] = place;
+    high[axis] = place + 1;
+    box(low, high, 1);
+  }
+  /// The picture by the map is the tree's, and sends the same rays of light.
+  BothCounts compare() const {
+    const BothCounts both = draw_both<kByLamps>(*this);
+    REQUIRE(both.by_map.rays[kShadow] == both.by_tree.rays[kShadow]);
+    return both;
+  }
+
+  int side;
 };
-// The picture by the map, which is the tree's and sends the same rays of light.
-Drawn drawn(const ChipScene& scene, const Camera& camera, const LitScene& lit) {
-  Drawn both[2];
-  const Shading shading;
-  for (int by_map = 0; by_map < 2; ++by_map) {
-    Drawn& made = both[by_map];
-    made.bytes.resize(band_bytes(PixelFormat::kRgb888, camera.width_px(), camera.height_px()));
-    const Band band{{made.bytes.data(), made.bytes.size()}, PixelFormat::kRgb888, 0, 0, camera.height_px()};
-    REQUIRE((by_map != 0 ? render_lit_band<kByLamps>(scene.tree, scene.map, camera, shading, lit, {}, band,
-                                                     &made.counts)
-                         : render_lit_band<kByLamps>(scene.tree, camera, shading, lit, band, &made.counts)) ==
-            Status::kOk);
-  }
-  REQUIRE(both[1].bytes == both[0].bytes);
-  REQUIRE(both[1].counts.rays[kShadow] == both[0].counts.rays[kShadow]);
-  both[1].visits_by_tree = both[0].counts.node_visits[kShadow];
-  both[1].hits_by_tree = both[0].counts.hits[kShadow];
-  return both[1];
-}
-
-/// A wall through the world.
-std::vector<Vec3i> wall_at(int place, int side, int axis) {
-  std::vector<Vec3i> voxels;
-  voxels.reserve(static_cast<std::size_t>(side * side));
-  for (int i = 0; i < side * side; ++i) {
-    Vec3i at{};
-    at[axis] = place;
-    at[(axis + 1) % 3] = i / side;
-    at[(axis + 2) % 3] = i % side;
-    voxels.push_back(at);
-  }
-  return voxels;
-}
-
-/// A wall all over one side of the world, and a few voxels in the air before it, in clusters.
-std::vector<Vec3i> hang_before_a_wall(std::mt19937_64& random, int side, int axis, bool high, int count) {
-  std::vector<Vec3i> voxels = wall_at(high ? side - 1 : 0, side, axis);
-  Vec3i at{};
-  for (int i = 0; i < count; ++i) {
-    const bool anew = i % 12 == 0;
-    for (int other = 0; other < 3; ++other) {
-      at[other] = anew ? pick_int(random, 0, side - 1)
-                       : std::min(std::max(at[other] + pick_int(random, -1, 1), 0), side - 1);
-    }
-    voxels.push_back(at);
-  }
-  return voxels;
-}
 
 TEST_CASE("lamps by the map: voxels that hang in the air, empty bricks around them -> the tree's shadows") {
   std::mt19937_64 random(20261125);
@@ -89,39 +52,39 @@ TEST_CASE("lamps by the map: voxels that hang in the air, empty bricks around th
     const int side = 1 << level;
     const int axis = turn % 3;
     const bool high = turn / 3 % 2 != 0;
-    const ChipScene scene =
-        make_chip_scene(level, hang_before_a_wall(random, side, axis, high, turn % 40 * 4));
+    // A wall all over one side of the world, and a few voxels in the air before it, in clusters.
+    LampWorld world(level);
+    world.wall(high ? side - 1 : 0, axis);
+    Vec3i hanging{};
+    for (int i = 0; i < turn % 40 * 4; ++i) {
+      for (int other = 0; other < 3; ++other) {
+        hanging[other] = i % 12 == 0 ? pick_int(random, 0, side - 1)
+                                     : std::clamp(hanging[other] + pick_int(random, -1, 1), 0, side - 1);
+      }
+      world.voxel(hanging, 1);
+    }
     const auto anywhere = [&](int grain) { return pick_int(random, 0, 256 * side) / grain * grain; };
     // From across the world towards some place of the wall.
-    Vec3Q8 eye{};
-    Vec3i forward{};
+    Vec3i eye{};
+    Vec3i target{};
     for (int i = 0; i < 3; ++i) {
-      const int from = i == axis ? (high ? 0 : 256 * side) : anywhere(1);
-      const int to = i == axis ? (high ? 256 * side : 0) : anywhere(1);
-      eye[i] = Q8::from_raw(from);
-      forward[i] = to - from;
+      eye[i] = i == axis ? (high ? 0 : 256 * side) : anywhere(1);
+      target[i] = i == axis ? (high ? 256 * side : 0) : anywhere(1);
     }
-    Camera camera;
-    REQUIRE(camera.set(PerspectiveView{eye, forward, {}, Q16::saturate(50), kWide, kHigh, 0}, level) ==
-            Status::kOk);
-    std::vector<Light> lamps(turn / 6 % 2 == 0 ? 1 : 2);
-    for (Light& lamp : lamps) {
-      lamp.is_point = true;
-      lamp.reach = 60;
+    for (int lamps = turn / 6 % 2 == 0 ? 1 : 2; lamps > 0; --lamps) {
       const int grain = turn % 4 == 0 ? 256 : turn % 4 == 1 ? 1024 : 1;
       Vec3i place{};
       for (int i = 0; i < 3; ++i) {
         place[i] = anywhere(grain);
       }
-      lamp.place = place;
-      lamp.color_q8[0] = lamp.color_q8[1] = lamp.color_q8[2] = 900;
+      world.lights.push_back(lamp(place, 900, 60));
     }
-    LitScene lit;
-    lit.lights = {lamps.data(), lamps.size()};
-    const Drawn got = drawn(scene, camera, lit);
-    CHECK(got.counts.node_visits[kShadow] <= got.visits_by_tree / 4);
-    hidden += got.counts.hits[kShadow];
-    reached += got.counts.rays[kShadow] - got.counts.hits[kShadow];
+    world.map_it();
+    world.look(eye, target, 50, kWide, kHigh);
+    const BothCounts both = world.compare();
+    CHECK(both.by_map.node_visits[kShadow] <= both.by_tree.node_visits[kShadow] / 4);
+    hidden += both.by_map.hits[kShadow];
+    reached += both.by_map.rays[kShadow] - both.by_map.hits[kShadow];
   }
   // Both happen often, or else nothing was tested.
   CHECK(hidden > 10000);
@@ -133,24 +96,16 @@ TEST_CASE("lamps by the map: a wall two voxels behind a lamp, near and far -> no
   constexpr int kNear = 3;
   for (int way = 6; way <= 40; ++way) {
     CAPTURE(way);
-    std::vector<Vec3i> voxels = wall_at(kNear, 64, 0);
-    const std::vector<Vec3i> behind = wall_at(kNear + way + 3, 64, 0);
-    voxels.insert(voxels.end(), behind.begin(), behind.end());
-    const ChipScene scene = make_chip_scene(6, voxels);
-    Light lamp;
-    lamp.is_point = true;
-    lamp.reach = 60;
-    lamp.place = Vec3i{256 * (kNear + 1 + way) + 100, 32 * 256 + 30, 32 * 256 - 50};
-    lamp.color_q8[0] = lamp.color_q8[1] = lamp.color_q8[2] = 900;
-    LitScene lit;
-    lit.lights = {&lamp, 1};
-    Camera camera;
-    const Vec3Q8 eye{Q8::saturate(kNear + 3), Q8::saturate(32), Q8::saturate(32)};
-    REQUIRE(camera.set(PerspectiveView{eye, {-1, 0, 0}, {}, Q16::saturate(20), kWide, kHigh, 0}, 6) ==
-            Status::kOk);
-    const Drawn got = drawn(scene, camera, lit);
-    CHECK(got.counts.rays[kShadow] == kWide * kHigh);
-    CHECK(got.counts.hits[kShadow] == 0);
+    LampWorld world(6);
+    world.wall(kNear, 0);
+    world.wall(kNear + way + 3, 0);
+    world.lights = {lamp({256 * (kNear + 1 + way) + 100, 32 * 256 + 30, 32 * 256 - 50}, 900, 60)};
+    world.map_it();
+    const Vec3i eye{256 * (kNear + 3), 32 * 256, 32 * 256};
+    world.look(eye, {0, eye.y, eye.z}, 20, kWide, kHigh);
+    const BothCounts both = world.compare();
+    CHECK(both.by_map.rays[kShadow] == kWide * kHigh);
+    CHECK(both.by_map.hits[kShadow] == 0);
   }
 }
 
@@ -199,7 +154,8 @@ TEST_CASE("lamps by the map: planes of bricks crossed at the same time -> the tr
     }
     REQUIRE(times > 0);
     // The wall, and voxels that touch the ray's way or stand in it.
-    std::vector<Vec3i> voxels = wall_at(high ? kSide - 4 : 3, kSide, axis);
+    LampWorld world(kLevel);
+    world.wall(high ? kSide - 4 : 3, axis);
     for (int i = pick_int(random, 1, 3); i > 0; --i) {
       const int along = pick_int(random, 1, 4 * times);
       Vec3i at{};
@@ -210,31 +166,22 @@ TEST_CASE("lamps by the map: planes of bricks crossed at the same time -> the tr
       }
       in_air = in_air && (high ? at[axis] < kSide - 4 : at[axis] > 3);
       if (in_air) {
-        voxels.push_back(at);
+        world.voxel(at, 1);
       }
     }
-    const ChipScene scene = make_chip_scene(kLevel, voxels);
+    const auto on_way = [&](int count) {
+      return Vec3i{256 * (start.x + count * step.x), 256 * (start.y + count * step.y),
+                   256 * (start.z + count * step.z)};
+    };
+    world.lights = {lamp(on_way(times), 2000, 200)};
+    world.map_it();
     // The eye looks straight at the wall from before everything that hangs.
-    Vec3Q8 eye{};
-    Vec3i forward{};
-    for (int i = 0; i < 3; ++i) {
-      eye[i] = Q8::from_raw(256 * (i == axis ? start[i] + (high ? -1 : 1) : start[i]));
-    }
-    forward[axis] = high ? 1 : -1;
-    Camera camera;
-    REQUIRE(camera.set(PerspectiveView{eye, forward, {}, Q16::saturate(10), kPicture, kPicture, 0}, kLevel) ==
-            Status::kOk);
-    Light lamp;
-    lamp.is_point = true;
-    lamp.reach = 200;
-    lamp.place = Vec3i{256 * (start.x + times * step.x), 256 * (start.y + times * step.y),
-                       256 * (start.z + times * step.z)};
-    lamp.color_q8[0] = lamp.color_q8[1] = lamp.color_q8[2] = 2000;
-    LitScene lit;
-    lit.lights = {&lamp, 1};
-    const Drawn got = drawn(scene, camera, lit);
-    hidden += got.hits_by_tree != 0 ? 1 : 0;
-    reached += got.counts.rays[kShadow] != got.hits_by_tree ? 1 : 0;
+    Vec3i eye = on_way(0);
+    eye[axis] += high ? -256 : 256;
+    world.look(eye, on_way(0), 10, kPicture, kPicture);
+    const BothCounts both = world.compare();
+    hidden += both.by_tree.hits[kShadow] != 0 ? 1 : 0;
+    reached += both.by_map.rays[kShadow] != both.by_tree.hits[kShadow] ? 1 : 0;
   }
   CAPTURE(hidden);
   CAPTURE(reached);
@@ -243,3 +190,4 @@ TEST_CASE("lamps by the map: planes of bricks crossed at the same time -> the tr
 }
 
 }  // namespace
+}  // namespace thimble::testing::map_layers

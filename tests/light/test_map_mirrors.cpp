@@ -1,5 +1,4 @@
-// What metals mirror, by the brick map: the tree's bytes and rays, wherever a ray comes through an edge, begins in a
-// crease, or goes from mirror to mirror.
+// What metals mirror, by the brick map: the tree's bytes and rays, wherever a ray comes through an edge.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -9,13 +8,10 @@
 #include "support/counts.h"
 #include "support/map_world.h"
 #include "support/ray_cases.h"
-#include "support/scene_under_test.h"
-#include "thimble/light/host/optics.h"
 
 namespace thimble::testing::map_mirrors {
 namespace {
 
-using tests::HeapBytes;
 using tests::many_or_few;
 using tests::pick_int;
 
@@ -53,76 +49,6 @@ LitCounts compare(const MirrorWorld& world, PixelFormat format = PixelFormat::kR
   return counts;
 }
 
-TEST_CASE(
-    "mirrors by the map: two that face each other, by as many bounces as there may be -> the tree's "
-    "picture") {
-  for (const int share : {255, 254, 200, 12, 0}) {
-    MirrorWorld world;
-    world.surfaces[kMetal].mirror = static_cast<std::uint8_t>(share);
-    world.box({0, 0, 0}, {32, 32, 2}, kStone);
-    world.box({4, 0, 2}, {6, 32, 24}, kMetal);
-    world.box({20, 0, 2}, {23, 32, 24}, kMetal);
-    world.box({11, 9, 2}, {13, 12, 9}, 4);
-    world.map_it();
-    world.look({9 * 256 + 31, 2 * 256 + 77, 12 * 256 + 5}, {20 * 256, 14 * 256, 8 * 256}, 70);
-    std::uint64_t before = 0;
-    for (std::uint8_t bounces = 0; bounces <= kMaxBounces; ++bounces) {
-      CAPTURE(share);
-      CAPTURE(bounces);
-      world.scene.bounces = bounces;
-      const LitCounts counts = compare(world);
-      const std::uint64_t rays = counts.rays[kMirrorRay];
-      CHECK((rays != 0) == (share != 0 && bounces != 0));
-      if (share > 100 && bounces != 0) {
-        CHECK(rays > before);
-      }
-      before = rays;
-      CHECK(counts.node_visits[kMirrorRay] < 200);
-    }
-  }
-}
-
-TEST_CASE(
-    "mirrors by the map: a wall close by at each side of the world, from within -> the tree's picture") {
-  MirrorWorld world;
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3i low{0, 0, 0};
-    Vec3i high{32, 32, 32};
-    high[axis] = 1;
-    world.box(low, high, kMetal);
-    low[axis] = 31;
-    high[axis] = 32;
-    world.box(low, high, kStone);
-  }
-  world.map_it();
-  for (int side = 0; side < 6; ++side) {
-    CAPTURE(side);
-    Vec3i eye{16 * 256 + 31, 15 * 256 + 77, 17 * 256 + 5};
-    eye[side / 2] = side % 2 == 0 ? 3 * 256 + 9 : 29 * 256 + 9;
-    Vec3i target{15 * 256, 17 * 256, 16 * 256};
-    target[side / 2] = side % 2 == 0 ? 0 : 32 * 256;
-    world.look(eye, target, 60, 49, 37);
-    CHECK(compare(world).hits[static_cast<int>(LitRayKind::kPrimary)] == 49 * 37);
-  }
-}
-
-TEST_CASE("mirrors by the map: metals of one channel, seen straight on -> what they mirror of each other") {
-  for (int channel = 0; channel < 3; ++channel) {
-    CAPTURE(channel);
-    MirrorWorld world;
-    world.surfaces[kMetal].albedo = {static_cast<std::uint8_t>(channel == 0 ? 250 : 0),
-                                     static_cast<std::uint8_t>(channel == 1 ? 250 : 0),
-                                     static_cast<std::uint8_t>(channel == 2 ? 250 : 0)};
-    world.surfaces[kMetal].mirror = 120;
-    set_ambient(&world.scene, 256);
-    world.box({4, 0, 0}, {6, 32, 32}, kMetal);
-    world.box({20, 0, 0}, {23, 32, 32}, kMetal);
-    world.map_it();
-    world.look({12 * 256 + 3, 15 * 256 + 31, 16 * 256 + 77}, {4 * 256, 15 * 256 + 41, 16 * 256 + 71}, 20);
-    CHECK(compare(world).rays[kMirrorRay] > 1000);
-  }
-}
-
 TEST_CASE("mirrors by the map: more suns than go through the map -> the tree's picture") {
   for (std::size_t suns = kMaxFlatSuns - 1; suns < kMaxFlatSuns + 4; ++suns) {
     CAPTURE(suns);
@@ -148,23 +74,6 @@ TEST_CASE("mirrors by the map: all light mirrored -> the metal's own light is sk
   const LitCounts counts = compare(world);
   CHECK(counts.rays[kMirrorRay] > 1000);
   CHECK(counts.rays[kShadow] == 0);
-}
-
-TEST_CASE("mirrors by the map: no surface, no bounce, no share -> none, and the tree's picture") {
-  MirrorWorld world;
-  world.box({0, 0, 0}, {32, 32, 2}, kMetal);
-  world.box({4, 8, 2}, {9, 20, 12}, 15);
-  world.map_it();
-  world.look({16 * 256 + 31, -2 * 256 + 77, 22 * 256 + 5}, {16 * 256, 14 * 256, 2 * 256}, 50);
-  CHECK(compare(world).rays[kMirrorRay] != 0);
-  world.scene.bounces = 0;
-  CHECK(compare(world).rays[kMirrorRay] == 0);
-  world.scene.bounces = 1;
-  world.surfaces[kMetal].mirror = 0;
-  CHECK(compare(world).rays[kMirrorRay] == 0);
-  world.surfaces[kMetal].mirror = 9;
-  world.scene.surfaces = {world.surfaces.data(), 1};
-  CHECK(compare(world).rays[kMirrorRay] == 0);
 }
 
 // The middle pixel's ray meets a mirror in the middle of a face, or on a half or a quarter of it, and leaves along a
@@ -238,72 +147,6 @@ TEST_CASE("mirrors by the map: reflected rays through edges and corners -> the t
   CHECK(seen > turns / 2);
   CHECK(asked > turns / 20);
   CHECK(passed > turns / 8);
-}
-
-// A ray that leaves towards the wall from within 1/256 voxel of it begins in it; its fastest axis runs across the crease
-// or along it.
-TEST_CASE("mirrors by the map: the crease of a mirror and a wall, closely seen -> the tree's picture") {
-  int in_crease = 0;
-  for (int turn = 0; turn < 24; ++turn) {
-    CAPTURE(turn);
-    const bool left = turn % 2 == 0;
-    const bool near = turn % 4 < 2;
-    MirrorWorld world;
-    world.box({0, 0, 0}, {32, 32, 8}, kMetal);
-    world.box({left ? 0 : 20, 0, 8}, {left ? 12 : 32, 32, 20}, turn % 5 == 0 ? kMetal : kStone);
-    world.box({0, near ? 0 : 20, 8}, {32, near ? 12 : 32, 20}, kStone);
-    world.map_it();
-    const Vec3i corner{(left ? 12 : 20) * 256, (near ? 12 : 20) * 256, 8 * 256};
-    Vec3i eye{16 * 256 + 5 * turn, 16 * 256 + 11, 13 * 256 + turn};
-    if (turn >= 8) {
-      const bool along_y = turn < 16;
-      eye[along_y ? 0 : 1] = corner[along_y ? 0 : 1] + ((along_y ? left : near) ? 300 : -300);
-      eye.z = 9 * 256 + 40 + turn;
-    }
-    world.look(eye, corner, turn % 3 == 0 ? 3 : 9, 64, 64);
-    in_crease += compare(world).node_visits[kMirrorRay] != 0 ? 1 : 0;
-  }
-  CHECK(in_crease > 10);
-}
-
-// A rough metal bends what it mirrors by 20 units of roughness along its face's axis, here into the face's plane.
-TEST_CASE(
-    "mirrors by the map: a ray of a rough metal that runs within its face -> is not sent, as by the tree") {
-  std::mt19937_64 random(20261128);
-  int within = 0;
-  for (int turn = 0; turn < 600; ++turn) {
-    CAPTURE(turn);
-    MirrorWorld world;
-    world.box({0, 0, 0}, {32, 32, 8}, kRough);
-    world.box({0, 0, 8}, {6, 32, 20}, kStone);
-    world.map_it();
-    const Vec3i eye{16 * 256 + 5, 16 * 256 + 11, 10 * 256};
-    const Vec3i target{pick_int(random, 8, 24) * 256, pick_int(random, 8, 24) * 256, 8 * 256};
-    world.look(eye, target, 4, 3, 3);
-    const int down = -unit_q14(world.camera.ray(1, 1).direction).z;
-    if (down % 20 == 0 && down > 0 && down / 20 <= 255) {
-      world.surfaces[kRough].roughness = static_cast<std::uint8_t>(down / 20);
-      compare(world);
-      ++within;
-    }
-  }
-  CHECK(within > 5);
-}
-
-TEST_CASE("mirrors by the map: the eye in something solid, on a mirror and behind it -> the tree's picture") {
-  MirrorWorld world;
-  world.box({0, 0, 0}, {32, 32, 8}, kMetal);
-  world.box({10, 10, 8}, {20, 20, 14}, kRough);
-  world.box({4, 4, 8}, {6, 28, 30}, kStone);
-  world.map_it();
-  for (const Vec3i& eye : {Vec3i{15 * 256, 15 * 256, 12 * 256}, Vec3i{15 * 256, 15 * 256, 14 * 256},
-                           Vec3i{8 * 256, 16 * 256, 8 * 256}, Vec3i{8 * 256 + 9, 16 * 256 + 3, 8 * 256 - 1},
-                           Vec3i{16 * 256, 16 * 256, -3 * 256}, Vec3i{-40 * 256, 9 * 256 + 1, 60 * 256}}) {
-    for (const Vec3i& target : {Vec3i{5 * 256, 16 * 256 + 1, 10 * 256}, Vec3i{16 * 256, 15 * 256, 8 * 256}}) {
-      world.look(eye, target, 80);
-      compare(world);
-    }
-  }
 }
 
 TEST_CASE(

@@ -274,26 +274,6 @@ TEST_CASE("water: pools of every kind -> energy never grows, volume and limits a
   CHECK(clamped > 1000 / kShare);
 }
 
-TEST_CASE("water: nothing disturbs it -> the same bytes for ever, and not one column is looked at") {
-  Pool pool;
-  make_pool(pool, 20, 30, 1111, 5000);
-  pool.block(3, 4);
-  REQUIRE(pool.open() == Status::kOk);
-  const std::vector<std::uint8_t> bytes = pool.bytes;
-  const std::uint32_t crc = pool.water.state_crc32();
-  for (int step = 0; step < 10000; ++step) {
-    pool.water.step();
-  }
-  CHECK(pool.water.is_still());
-  CHECK(pool.water.steps_done() == 0);
-  CHECK(pool.water.columns_updated() == 0);
-  CHECK(pool.bytes == bytes);
-  CHECK(pool.water.state_crc32() == crc);
-  CHECK(pool.water.height_q8(0, 0) == 1111);
-  CHECK(pool.water.height_q8(3, 4) == 0);
-  CHECK(pool.water.volume_q16() == std::uint64_t{599} * 256 * 1111);
-}
-
 TEST_CASE(
     "water: about to be laid flat -> nothing that can be seen is left, or the bound of WATER.md holds") {
   for (const std::int32_t damping : {0, 4, 24, 200}) {
@@ -347,64 +327,6 @@ TEST_CASE("water: two columns that swing -> a turn that falls between two steps 
   CHECK(turns > 0);
 }
 
-// The image of a column under symmetry 0 .. 7 in a pool of side n: bit 0 mirrors x, bit 1 mirrors y, bit 2
-// swaps them afterwards.
-std::pair<std::int32_t, std::int32_t> image(int symmetry, std::int32_t x, std::int32_t y, std::int32_t last) {
-  if ((symmetry & 1) != 0) {
-    x = last - x;
-  }
-  if ((symmetry & 2) != 0) {
-    y = last - y;
-  }
-  if ((symmetry & 4) != 0) {
-    std::swap(x, y);
-  }
-  return {x, y};
-}
-
-TEST_CASE("water: mirrored and turned disturbances -> mirrored and turned waves, bit for bit") {
-  constexpr std::int32_t kSide = 21;
-  for (int symmetry = 0; symmetry < 8; ++symmetry) {
-    CAPTURE(symmetry);
-    std::mt19937 random(4711);
-    Pool one;
-    Pool other;
-    make_pool(one, kSide, kSide);
-    make_pool(other, kSide, kSide);
-    for (int i = 0; i < 30; ++i) {
-      const std::int32_t x = static_cast<std::int32_t>(random() % kSide);
-      const std::int32_t y = static_cast<std::int32_t>(random() % kSide);
-      one.block(x, y);
-      const auto [to_x, to_y] = image(symmetry, x, y, kSide - 1);
-      other.block(to_x, to_y);
-    }
-    REQUIRE(one.open() == Status::kOk);
-    REQUIRE(other.open() == Status::kOk);
-    for (int step = 0; step < 200; ++step) {
-      if (step % 40 == 0) {
-        // Points on the borders of columns too.
-        const std::int32_t x = static_cast<std::int32_t>(random() % (2 * kSide)) * 128 + (step == 0 ? 0 : 3);
-        const std::int32_t y = static_cast<std::int32_t>(random() % (2 * kSide)) * 128;
-        const auto [to_x, to_y] = image(symmetry, x, y, kSide * 256);
-        REQUIRE(one.water.touch(x, y, 900, 700) == Status::kOk);
-        REQUIRE(other.water.touch(to_x, to_y, 900, 700) == Status::kOk);
-        REQUIRE(one.water.drop(y, x, 700, 2000, 900) == Status::kOk);
-        const auto [drop_x, drop_y] = image(symmetry, y, x, kSide * 256);
-        REQUIRE(other.water.drop(drop_x, drop_y, 700, 2000, 900) == Status::kOk);
-      }
-      one.water.step();
-      other.water.step();
-      for (std::int32_t y = 0; y < kSide; ++y) {
-        for (std::int32_t x = 0; x < kSide; ++x) {
-          const auto [to_x, to_y] = image(symmetry, x, y, kSide - 1);
-          REQUIRE(one.water.height_q16(x, y) == other.water.height_q16(to_x, to_y));
-        }
-      }
-      CHECK(one.water.columns_updated() > 0);
-    }
-  }
-}
-
 TEST_CASE("water: a touch -> sinks as deep as asked, rises around, nothing is lost") {
   Pool pool;
   make_pool(pool, 40, 40);
@@ -428,17 +350,6 @@ TEST_CASE("water: a touch -> sinks as deep as asked, rises around, nothing is lo
       CHECK(pool.water.steps_done() == 0);
     }
   }
-}
-
-TEST_CASE("water: a touch deeper than the water -> as deep as it can be, heights within their limits") {
-  Pool pool;
-  make_pool(pool, 16, 16, 300, 400);
-  pool.config.least_q8 = 250;
-  REQUIRE(pool.open() == Status::kOk);
-  REQUIRE(pool.water.touch(8 * 256, 8 * 256, 1024, 1 << 14) == Status::kOk);
-  CHECK(pool.water.lowest_q8() >= 250);
-  CHECK(pool.water.lowest_q8() < 285);
-  CHECK(pool.water.highest_q8() <= 400);
 }
 
 TEST_CASE(
@@ -466,28 +377,6 @@ TEST_CASE(
     CHECK(Plain(lower.water).height != wanted.height);
   }
   CHECK(found == 3);
-}
-
-TEST_CASE("water: a wall across the pool -> the other basin stays still, bit for bit") {
-  Pool pool;
-  make_pool(pool, 30, 20);
-  for (std::int32_t y = 0; y < 20; ++y) {
-    pool.block(15, y);
-  }
-  REQUIRE(pool.open() == Status::kOk);
-  // The bowl reaches over the wall; what it presses away there has no way from one basin to the other.
-  REQUIRE(pool.water.touch(12 * 256, 10 * 256, 700, 300) == Status::kOk);
-  REQUIRE(pool.water.drop(12 * 256, 10 * 256, 500, 3000, 300) == Status::kOk);
-  for (int step = 0; step < 300; ++step) {
-    pool.water.step();
-    for (std::int32_t y = 0; y < 20; ++y) {
-      CHECK(pool.water.height_q16(15, y) == -1);
-      for (std::int32_t x = 16; x < 30; ++x) {
-        REQUIRE(pool.water.height_q16(x, y) == 8 * 65536);
-      }
-    }
-  }
-  CHECK(pool.water.volume_q16() == std::uint64_t{29} * 20 * 8 * 65536);
 }
 
 TEST_CASE("water: a thing falls in -> the water yields under it and rises around, more with more momentum") {
@@ -584,40 +473,6 @@ TEST_CASE("water: set-up beyond the limits -> refused, the stability limit too, 
   CHECK(status([](Pool& p) { p.mask.resize(7); }) == Status::kBadArgument);
   CHECK(status([](Pool& p) { p.mask.resize(9); }) == Status::kBadArgument);
   CHECK(status([](Pool& p) { p.mask.resize(8); }) == Status::kOk);
-}
-
-TEST_CASE("water: bytes at any address and too few of them -> in bounds, or refused") {
-  for (const std::int32_t width : {1, 3, 8}) {
-    for (const std::int32_t depth : {1, 5}) {
-      WaterConfig config;
-      config.width = width;
-      config.depth = depth;
-      config.rest_q8 = 256;
-      config.greatest_q8 = 512;
-      const std::size_t needed = water_bytes(width, depth);
-      CHECK(needed == static_cast<std::size_t>(8 * width * depth + 4 * depth + 3));
-      for (std::size_t offset = 0; offset < 4; ++offset) {
-        std::vector<std::uint8_t> bytes(needed + 16, 0x5A);
-        Water water;
-        CHECK(Water::make(config, {bytes.data() + 8 + offset, needed - 1}, &water) == Status::kOutOfMemory);
-        REQUIRE(Water::make(config, {bytes.data() + 8 + offset, needed}, &water) == Status::kOk);
-        REQUIRE(water.touch(128, 128, 600, 50) == Status::kOk);
-        for (int step = 0; step < 20; ++step) {
-          water.step();
-        }
-        for (std::size_t i = 0; i < bytes.size(); ++i) {
-          if (i < 8 + offset || i >= 8 + offset + needed) {
-            REQUIRE(bytes[i] == 0x5A);
-          }
-        }
-      }
-    }
-  }
-  CHECK(water_bytes(32, 32) == 8323);
-  CHECK(water_bytes(64, 64) == 33027);
-  CHECK(water_bytes(0, 64) == 0);
-  CHECK(water_bytes(64, 4097) == 0);
-  static_assert(water_bytes(4096, 4096) == 134234115);
 }
 
 }  // namespace

@@ -403,27 +403,6 @@ Ray ray_of(std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t dx, std:
   return {{Q8::from_raw(x), Q8::from_raw(y), Q8::from_raw(z)}, {dx, dy, dz}};
 }
 
-TEST_CASE("water surface: camera exactly on the surface -> inside only when it looks down") {
-  const WaterSurface surface = still_water({10, 20, 5}, 4, 4, 300);
-  const Vec3Q8 point{Q8::from_raw(12 * 256), Q8::from_raw(22 * 256), Q8::from_raw(5 * 256 + 300)};
-  CHECK(water_holds(surface, point, {0, 0, -1}));
-  CHECK(water_holds(surface, point, {100, -5, -1}));
-  CHECK_FALSE(water_holds(surface, point, {1, 0, 0}));
-  CHECK_FALSE(water_holds(surface, point, {0, 0, 1}));
-  WaterHit hit;
-  CHECK_FALSE(water_enter(surface, {point, {7, 3, 0}}, &hit));
-  CHECK_FALSE(water_enter(surface, {point, {7, 3, 1}}, &hit));
-  REQUIRE(water_enter(surface, {point, {7, 3, -1}}, &hit));
-  CHECK(hit.axis == -1);
-  // One unit below, level rays are in it; on the floor too, as the box owns its lower face.
-  const Vec3Q8 below{point.x, point.y, Q8::from_raw(5 * 256 + 299)};
-  CHECK(water_holds(surface, below, {1, 0, 0}));
-  const Vec3Q8 floor{point.x, point.y, Q8::from_raw(5 * 256)};
-  CHECK(water_holds(surface, floor, {1, 0, 0}));
-  CHECK(water_holds(surface, floor, {0, 0, 1}));
-  CHECK_FALSE(water_holds(surface, floor, {0, 0, -1}));
-}
-
 TEST_CASE("water surface: a long way in large moving water -> at most the columns that are crossed") {
   Columns columns;
   columns.width = 4096;
@@ -486,43 +465,6 @@ TEST_CASE(
     REQUIRE(normal.x == -mirrored.x);
     REQUIRE(std::abs(normal.x - before.x) < 64);
     before = normal;
-  }
-}
-
-TEST_CASE(
-    "water surface: waves that move -> the view's bounds hold all heights, rays are exact in every step") {
-  Columns columns;
-  columns.corner = {3, 2, 1};
-  columns.width = 9;
-  columns.depth = 7;
-  columns.q16.assign(63, 0);
-  std::vector<std::uint8_t> mask(8, 0);
-  for (const bool islands : {false, true}) {
-    mask[2] = islands ? 0x30 : 0;
-    WaterConfig config;
-    config.width = 9;
-    config.depth = 7;
-    config.rest_q8 = 600;
-    config.greatest_q8 = 1500;
-    config.blocked = {mask.data(), mask.size()};
-    std::vector<std::uint8_t> bytes(water_bytes(9, 7));
-    Water water;
-    REQUIRE(Water::make(config, {bytes.data(), bytes.size()}, &water) == Status::kOk);
-    REQUIRE(water.touch(1000, 900, 600, 300) == Status::kOk);
-    Cases cases(5);
-    Tally tally;
-    for (int step = 0; step < 60; ++step) {
-      for (std::int32_t y = 0; y < 7; ++y) {
-        for (std::int32_t x = 0; x < 9; ++x) {
-          columns.q16[static_cast<std::uint32_t>(9 * y + x)] = water.height_q16(x, y);
-        }
-      }
-      for (int i = 0; i < 100; ++i) {
-        REQUIRE(fault(columns, water.surface(columns.corner), cases.ray(columns), &tally) == "");
-      }
-      water.step();
-    }
-    CHECK(tally.hits > 1000);
   }
 }
 

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 #include <vector>
 
 #include "golden/scenes.h"
 #include "scene/random.h"
-#include "support/deadline.h"
 #include "support/formats.h"
 #include "thimble/picture/anytime.h"
 
@@ -355,64 +353,6 @@ TEST_CASE("anytime: random scenes, cameras, shadings, formats, sizes and slices 
   }
 }
 
-TEST_CASE("anytime: a frame done -> each pixel was traced once, or proved to be background") {
-  for_golden(golden::Structure::kCompact, [](const golden::Frame&, const auto& drawn) {
-    Drawing drawing(drawn);
-    const std::uint32_t to_trace = drawing.frame.inexact();
-    std::uint64_t visits = 0;
-    std::uint64_t hits = 0;
-    std::uint32_t most = 0;
-    int proved_wrongly = 0;
-    for (int y = 0; y < drawn.camera.height_px(); ++y) {
-      for (int x = 0; x < drawn.camera.width_px(); ++x) {
-        Hit hit;
-        REQUIRE(closest_hit(drawn.structure, drawn.camera.ray(x, y), &hit) == Status::kOk);
-        most = std::max(most, hit.visits);
-        visits += hit.visits;
-        hits += hit.kind == HitKind::kHit ? 1U : 0U;
-        proved_wrongly += drawing.frame.exact(x, y) && hit.visits != 0 ? 1 : 0;
-      }
-    }
-    // The reserve holds for all of them.
-    CHECK(most <= drawing.frame.reserve_visits());
-    CHECK(proved_wrongly == 0);
-    drawing.refine(UINT32_MAX);
-    CHECK(drawing.frame.counts().rays == to_trace);
-    CHECK(drawing.frame.counts().hits == hits);
-    CHECK(drawing.frame.counts().node_visits == visits);
-    // Done is done.
-    const auto bytes = drawing.bytes();
-    drawing.refine(UINT32_MAX);
-    drawing.refine(0);
-    CHECK(drawing.frame.counts().rays == to_trace);
-    CHECK(bytes == drawing.bytes());
-  });
-}
-
-TEST_CASE("anytime: no visits, or less than a ray may need -> background, and what was given is kept") {
-  for_golden(golden::Structure::kCompact, [](const golden::Frame& frame, const auto& drawn) {
-    Drawing drawing(drawn);
-    drawing.refine(0);
-    drawing.refine(drawing.frame.reserve_visits() - 1);
-    CHECK(drawing.frame.spent_visits() == 0);
-    const Rgb8 background = frame.shade == ShadeMode::kMono ? Rgb8{0, 0, 0} : drawn.shading.background;
-    int others = 0;
-    for (int y = 0; y < drawn.camera.height_px(); ++y) {
-      for (int x = 0; x < drawn.camera.width_px(); ++x) {
-        std::uint8_t row[256] = {};
-        store_pixel(row, x, y, frame.format, background);
-        const bool equal = shown(row, drawn.camera.width_px(), x, 0, frame.format) ==
-                           shown(drawing.picture(), drawn.camera.width_px(), x, y, frame.format);
-        others += equal ? 0 : 1;
-      }
-    }
-    CHECK(others == 0);
-    const bool was_done = drawing.frame.done();
-    drawing.refine(1);
-    CHECK((was_done || drawing.frame.spent_visits() > 0));
-  });
-}
-
 TEST_CASE("anytime: nothing solid, or nothing in view -> done at once") {
   std::vector<std::uint8_t> bytes(Octree::octree_bytes(100));
   Octree pool;
@@ -569,22 +509,4 @@ TEST_CASE("anytime: bytes -> picture and bits") {
   static_assert(anytime_bytes(1, 1, PixelFormat::kMono1) == 2);
   static_assert(anytime_bytes(9, 3, PixelFormat::kRgb888) == 81 + 6);
   CHECK(sizeof(AnytimeFrame) <= 320);
-}
-
-TEST_CASE("anytime: a deadline -> asked before each slice, and done where it does not pass") {
-  SplitMix64 random(13);
-  const RandomScene scene(random);
-  const Case<Octree> drawn(scene.pool, random_camera(random, 40, 31), {}, PixelFormat::kGray8);
-  Drawing drawing(drawn);
-  int asked = 0;
-  REQUIRE(testing::refine_until(
-              &drawing.frame, scene.pool, [&asked] { return ++asked == 4; }, 100) == Status::kOk);
-  CHECK(asked == 4);
-  CHECK(drawing.frame.given_visits() == 300);
-  drawing.check();
-  REQUIRE(testing::refine_for(&drawing.frame, scene.pool, std::chrono::microseconds(0)) == Status::kOk);
-  CHECK(drawing.frame.given_visits() == 300);
-  REQUIRE(testing::refine_for(&drawing.frame, scene.pool, std::chrono::seconds(60)) == Status::kOk);
-  CHECK(drawing.frame.done());
-  CHECK(drawing.equals_wanted());
 }

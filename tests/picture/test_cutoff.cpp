@@ -7,10 +7,8 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
-#include <string>
 #include <vector>
 
-#include "golden/scenes.h"
 #include "reference/reference.h"
 #include "support/counts.h"
 #include "support/ray_cases.h"
@@ -287,84 +285,6 @@ TEST_CASE("cutoff: limits -> kOutOfRange or kBadArgument, and nothing changed") 
   CHECK(!cutoff.cuts_nothing());
   CHECK(cutoff.set(camera, Q16()) == Status::kOk);
   CHECK(cutoff.cuts_nothing());
-}
-
-// A golden frame's picture, whole, with a cut-off.
-struct Drawn {
-  std::vector<std::uint8_t> pixels;
-  RenderCounts counts;
-};
-Drawn draw(const golden::Frame& frame, const golden::World& world, const Cutoff* cutoff,
-           const NodeColors& colors, std::int32_t band_rows, Width width = Width::k64) {
-  Camera camera;
-  Shading shading;
-  REQUIRE(golden::set_up(frame, &camera, &shading) == Status::kOk);
-  Drawn drawn;
-  const std::size_t row = row_bytes(frame.format, frame.width_px);
-  drawn.pixels.resize(row * static_cast<std::size_t>(frame.height_px));
-  for (std::int32_t y = 0; y < frame.height_px; y += band_rows) {
-    Band band;
-    band.first_row = y;
-    band.rows = std::min<std::int32_t>(band_rows, frame.height_px - y);
-    band.format = frame.format;
-    band.pixels = Bytes(drawn.pixels.data() + row * static_cast<std::size_t>(y),
-                        row * static_cast<std::size_t>(band.rows));
-    const TraceOptions options{UINT32_MAX, width};
-    const Status status =
-        cutoff == nullptr
-            ? render_band(world.compact, camera, shading, band, &drawn.counts, options)
-            : render_band_cut(world.compact, camera, shading, *cutoff, colors, band, &drawn.counts, options);
-    REQUIRE(status == Status::kOk);
-  }
-  return drawn;
-}
-
-TEST_CASE(
-    "cutoff: 0 pixels, every golden frame -> its bytes and counts; more -> fewer visits, no fewer hits") {
-  std::vector<std::uint8_t> memory(1 << 20);
-  std::uint64_t visits_without = 0;
-  std::uint64_t visits_with = 0;
-  for (int i = 0; i < golden::frame_count(); ++i) {
-    const golden::Frame& frame = golden::frame(i);
-    INFO(frame.name);
-    Arena arena(Bytes(memory.data(), memory.size()));
-    golden::World world;
-    REQUIRE(golden::build_scene(frame.scene, golden::Structure::kCompact, &arena, &world) == Status::kOk);
-    Camera camera;
-    Shading shading;
-    REQUIRE(golden::set_up(frame, &camera, &shading) == Status::kOk);
-    std::vector<std::uint8_t> table(node_colors_bytes(world.compact));
-    NodeColors colors;
-    if (!table.empty()) {
-      REQUIRE(NodeColors::make(world.compact, shading.palette, shading.default_color,
-                               Bytes(table.data(), table.size()), &colors) == Status::kOk);
-    }
-    const Drawn plain = draw(frame, world, nullptr, colors, frame.height_px);
-    const Cutoff none;
-    for (const std::int32_t rows : {1, 7, int{frame.height_px}}) {
-      const Drawn same = draw(frame, world, &none, NodeColors(), rows);
-      CHECK(same.pixels == plain.pixels);
-      CHECK(same.counts.node_visits == plain.counts.node_visits);
-      CHECK(same.counts.hits == plain.counts.hits);
-      CHECK(same.counts.rays == plain.counts.rays);
-    }
-    std::uint64_t visits = plain.counts.node_visits;
-    for (const int pixels : {1, 2, 4, 8, 16}) {
-      Cutoff cutoff;
-      REQUIRE(cutoff.set(camera, Q16::saturate(pixels)) == Status::kOk);
-      const Drawn cut = draw(frame, world, &cutoff, colors, 5);
-      CHECK(cut.counts.node_visits <= visits);
-      CHECK(cut.counts.hits >= plain.counts.hits);
-      CHECK(cut.pixels == draw(frame, world, &cutoff, colors, frame.height_px).pixels);
-      if (frame.narrow) {
-        CHECK(cut.pixels == draw(frame, world, &cutoff, colors, 3, Width::k32).pixels);
-      }
-      visits = cut.counts.node_visits;
-    }
-    visits_without += plain.counts.node_visits;
-    visits_with += visits;
-  }
-  CHECK(visits_with * 2 < visits_without);
 }
 
 TEST_CASE("cutoff: a band that cannot be drawn -> an error and nothing drawn") {

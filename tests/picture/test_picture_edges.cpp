@@ -2,7 +2,6 @@
 // in damaged trees, frames that show one colour only. Each answer is worked out by hand.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
@@ -37,9 +36,6 @@ struct Picture {
   Picture(const Camera& camera, PixelFormat format)
       : bytes(band_bytes(format, camera.width_px(), camera.height_px()), 0x5A),
         band{{bytes.data(), bytes.size()}, format, 0, 0, camera.height_px()} {}
-  bool untouched() const {
-    return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == 0x5A; });
-  }
   std::vector<std::uint8_t> bytes;
   Band band;
 };
@@ -100,91 +96,7 @@ TEST_CASE("picture edges: eyes from farther and farther away -> fast frames up t
   }
 }
 
-TEST_CASE("picture edges: cameras that no frame by bricks takes -> told, and refused or drawn ray by ray") {
-  OwnedPool pool(4);
-  REQUIRE(pool.octree.insert_block({4, 4, 4}, 2, 1) == Status::kOk);
-  const HeapBytes bytes = compact_of(pool.octree);
-  const CompactTree tree = open_or_throw(bytes);
-  const Bricks bricks(tree);
-  CHECK(draws_fast(bricks.map, ahead(4)));
-  CHECK_FALSE(draws_fast(bricks.map, Camera()));
-  CHECK_FALSE(draws_fast(bricks.map, ahead(5)));
-  CHECK_FALSE(draws_fast(bricks.map, ahead(3)));
-  CHECK(draws_fast(bricks.map, ahead(4, 24, 24, 14)));
-  CHECK_FALSE(draws_fast(bricks.map, ahead(4, 24, 24, 20)));
-  OrthographicView flat;
-  flat.eye = {Q8::saturate(8), Q8::saturate(-8), Q8::saturate(8)};
-  flat.forward = {0, 1, 0};
-  flat.span = Q14::saturate(20);
-  flat.width_px = 24;
-  flat.height_px = 24;
-  Camera parallel;
-  REQUIRE(parallel.set(flat, 4) == Status::kOk);
-  CHECK_FALSE(draws_fast(bricks.map, parallel));
-
-  Shading shading;
-  for (const Camera& camera : {ahead(5), ahead(4, 24, 24, 20), parallel}) {
-    Picture fast(camera, PixelFormat::kGray8);
-    CHECK(render_band_32(tree, bricks.map, camera, shading, fast.band) == Status::kBadArgument);
-    CHECK(fast.untouched());
-    Picture any(camera, PixelFormat::kGray8);
-    const Status status = render_band(tree, bricks.map, camera, shading, any.band);
-    CHECK(status == (camera.level() == 4 ? Status::kOk : Status::kBadArgument));
-    if (status == Status::kOk) {
-      REQUIRE(render_band(tree, camera, shading, fast.band) == Status::kOk);
-      CHECK(any.bytes == fast.bytes);
-    }
-  }
-  // Without pixels there is nothing to ask for.
-  Band nothing;
-  CHECK(render_band_32(tree, bricks.map, Camera(), shading, nothing) == Status::kBadArgument);
-  CHECK(render_band(tree, bricks.map, Camera(), shading, nothing) == Status::kBadArgument);
-}
-
 // ---- with a cut-off
-
-TEST_CASE("picture edges: a ray with a cut-off that no path takes -> a status, and the hit as it was") {
-  OwnedPool pool(12);
-  REQUIRE(pool.octree.insert({5, 1, 1}, 3) == Status::kOk);
-  const HeapBytes bytes = compact_of(pool.octree);
-  const CompactTree tree = open_or_throw(bytes);
-  Ray ray;
-  ray.origin = {Q8::from_raw(-256), Q8::from_raw(300), Q8::from_raw(300)};
-  CutHit found;
-  found.node = 77;
-  CHECK(closest_hit_cut(tree, ray, Cutoff(), &found) == Status::kBadArgument);
-  ray.direction = {1024, 0, 0};
-  CHECK(closest_hit_cut(tree, ray, Cutoff(), &found, {UINT32_MAX, Width::k32}) == Status::kOutOfRange);
-  CHECK(found.node == 77);
-  ray.direction = {1023, 0, 0};
-  REQUIRE(closest_hit_cut(tree, ray, Cutoff(), &found, {UINT32_MAX, Width::k32}) == Status::kOk);
-  CHECK_FALSE(found.cut);
-  CHECK(found.hit.voxel == Vec3i{5, 1, 1});
-  // 21 bits to the far plane: of cameras in this world those of 11 bits are none for 32 bits.
-  Cutoff cutoff;
-  const Camera camera = ahead(12, 24, 24, 14);
-  REQUIRE(cutoff.set(camera, Q16::saturate(1)) == Status::kOk);
-  Picture picture(camera, PixelFormat::kGray8);
-  CHECK(render_band_cut(tree, camera, {}, cutoff, NodeColors(), picture.band, nullptr,
-                        {UINT32_MAX, Width::k32}) == Status::kBadArgument);
-  CHECK(picture.untouched());
-}
-
-TEST_CASE("picture edges: a level to cut that is below the one set -> the higher one stays") {
-  Cutoff cutoff;
-  REQUIRE(cutoff.set_level(3) == Status::kOk);
-  CHECK(cutoff.level() == 3);
-  for (const int level : {2, 0, 3}) {
-    REQUIRE(cutoff.set_level(level) == Status::kOk);
-    CHECK(cutoff.level() == 3);
-  }
-  for (const int level : {-1, kMaxLevel + 1, INT32_MIN, INT32_MAX}) {
-    CHECK(cutoff.set_level(level) == Status::kOutOfRange);
-    CHECK(cutoff.level() == 3);
-  }
-  REQUIRE(cutoff.set_level(kMaxLevel) == Status::kOk);
-  CHECK(cutoff.level() == kMaxLevel);
-}
 
 // The root says that it has eight children, of which there is one; the others lead behind the nodes.
 TEST_CASE("picture edges: a cut node that a damaged tree does not have -> in the default colour") {
@@ -239,53 +151,6 @@ TEST_CASE("picture edges: a cut node that a damaged tree does not have -> in the
 }
 
 // ---- any-time frames
-
-TEST_CASE(
-    "picture edges: an any-time frame in which all looks alike -> no range of greys; of two colours -> one") {
-  OwnedPool pool(3);
-  REQUIRE(pool.octree.insert_block({0, 0, 0}, 2, 0) == Status::kOk);
-  const HeapBytes bytes = compact_of(pool.octree);
-  const CompactTree tree = open_or_throw(bytes);
-  const Camera camera = ahead(3);
-  struct Row {
-    PixelFormat format;
-    Rgb8 color;  // beside a background of 100, 100, 100
-    int range;
-  };
-  // A paper's pixel may be black or white; two bits have greys 85 apart, 100 and 101 lie between two, 60 and
-  // 200 among four.
-  for (const Row& row :
-       {Row{PixelFormat::kPaper3, {100, 100, 100}, 0}, Row{PixelFormat::kPaper3, {100, 100, 101}, 255},
-        Row{PixelFormat::kPaper7, {100, 100, 100}, 0}, Row{PixelFormat::kPaper7, {101, 100, 100}, 255},
-        Row{PixelFormat::kGray2, {100, 100, 100}, 0}, Row{PixelFormat::kGray2, {101, 101, 101}, 85},
-        Row{PixelFormat::kGray2, {200, 200, 200}, 170}, Row{PixelFormat::kGray8, {100, 100, 100}, 0},
-        Row{PixelFormat::kGray8, {103, 103, 103}, 3}}) {
-    Shading shading;
-    shading.mode = ShadeMode::kColor;
-    shading.palette = {&row.color, 1};
-    shading.default_color = row.color;
-    shading.background = {100, 100, 100};
-    for (std::uint16_t& light : shading.face_light) {
-      light = 256;
-    }
-    std::vector<std::uint8_t> memory(anytime_bytes(24, 24, row.format));
-    AnytimeFrame frame;
-    REQUIRE(AnytimeFrame::make(tree, camera, shading, row.format, {memory.data(), memory.size()}, &frame) ==
-            Status::kOk);
-    CAPTURE(static_cast<int>(row.format));
-    CAPTURE(row.range);
-    CHECK(frame.gray_range() == row.range);
-    CHECK((frame.mean_error_bound_q8() == 0) == (row.range == 0));
-    // And rows: none, some, more than there are.
-    CHECK(frame.band(0, -1).rows == 0);
-    CHECK(frame.band(0, -1).pixels.size == 0);
-    CHECK(frame.band(0, INT32_MIN).rows == 0);
-    CHECK(frame.band(8, 8).rows == 8);
-    CHECK(frame.band(8, 800).rows == 16);
-    CHECK(frame.band(-5, 8).first_row == 0);
-    CHECK(frame.band(1000, 8).rows == 0);
-  }
-}
 
 // A tree of two nodes lets a ray visit two. In damaged bytes each of the root's eight children is the other
 // node, which has voxels where no ray of the picture's middle passes: it is read four times and more.

@@ -1,5 +1,4 @@
-// Cameras and edge samples of many kinds, and the CRC-32 of each that was written down: whatever changes a ray or a sample
-// is seen here first. Whether they are right others say. The portable cases do the same for any-time frames and cut-offs.
+// Cameras of many kinds, and the CRC-32 of their rays that was written down: whatever changes a ray is seen here first. Whether they are right others say. The portable cases do the same for any-time frames and cut-offs.
 #include <doctest/doctest.h>
 
 #include <cstdint>
@@ -28,7 +27,6 @@ struct Written {
       add(vector[axis]);
     }
   }
-  void add(ConstBytes bytes) { crc = crc32(bytes, crc); }
   std::uint32_t crc = 0;
 };
 
@@ -108,47 +106,6 @@ std::uint32_t cameras(bool perspective, std::uint64_t seed) {
 TEST_CASE("picture written: cameras of numbers of every size -> the CRC-32 of rays, depths and cut-offs") {
   CHECK(cameras(true, 20260901) == 401325518U);
   CHECK(cameras(false, 20260902) == 102344967U);
-}
-
-TEST_CASE("picture written: edges of rows of every kind -> the CRC-32 of their strengths and samples") {
-  std::mt19937_64 random(20260931);
-  Written written;
-  for (int number = 0; number < 500; ++number) {
-    const auto width = static_cast<std::int32_t>(1 + random() % 300);
-    const int channels = number % 2 == 0 ? 3 : 1;
-    std::vector<std::vector<std::uint8_t>> rows(3);
-    const unsigned spread = 1U << (random() % 9);
-    for (std::vector<std::uint8_t>& row : rows) {
-      std::uint8_t value = 128;
-      for (std::int32_t i = 0; i < width * channels; ++i) {
-        value = random() % 4 == 0 ? static_cast<std::uint8_t>(random() % spread) : value;
-        row.push_back(value);
-      }
-    }
-    std::vector<std::uint8_t> strengths(static_cast<std::size_t>(width));
-    std::vector<std::uint8_t> samples(static_cast<std::size_t>(width));
-    const auto view = [](const std::vector<std::uint8_t>& row) { return ConstBytes{row.data(), row.size()}; };
-    written.add(static_cast<int>(edge_strengths(view(rows[0]), view(rows[1]), view(rows[2]), channels, width,
-                                                {strengths.data(), strengths.size()})));
-    written.add(view(strengths));
-    written.add(
-        static_cast<int>(place_edge_samples(view(strengths), width, {samples.data(), samples.size()})));
-    written.add(view(samples));
-  }
-  // Strengths of every size, many of them the greatest.
-  for (int number = 0; number < 300; ++number) {
-    std::vector<std::uint8_t> strengths(1 + random() % 200);
-    for (std::uint8_t& strength : strengths) {
-      const bool greatest = random() % 3 == 0;
-      strength = static_cast<std::uint8_t>(greatest ? 255U : random() % (number % 4 == 0 ? 17U : 256U));
-    }
-    std::vector<std::uint8_t> samples(strengths.size());
-    written.add(static_cast<int>(place_edge_samples({strengths.data(), strengths.size()},
-                                                    static_cast<std::int32_t>(strengths.size()),
-                                                    {samples.data(), samples.size()})));
-    written.add(ConstBytes{samples.data(), samples.size()});
-  }
-  CHECK(written.crc == 289210412U);
 }
 
 // Which cameras bricks draw: by how far off they stand and how long their directions are.

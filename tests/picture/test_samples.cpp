@@ -48,52 +48,6 @@ TEST_CASE("samples: random fine rows -> each channel's mean to the nearest, halv
   }
 }
 
-TEST_CASE("samples: one a pixel -> the picture itself; sixteen -> edges between, the rest unchanged") {
-  const SceneUnderTest world({16, 16, 16}, {{3, 3, 3}, {4, 3, 3}, {8, 9, 10}, {12, 1, 2}});
-  Shading shading;
-  shading.mode = ShadeMode::kMono;
-  const std::int32_t width = 40;
-  const std::int32_t height = 30;
-  const auto draw = [&](int across) {
-    PerspectiveView view;
-    view.eye = {Q8::saturate(-10), Q8::saturate(-12), Q8::saturate(14)};
-    view.forward = {17, 19, -9};
-    view.fov_degrees = Q16::saturate(25);
-    view.width_px = width * across;
-    view.height_px = height * across;
-    Camera camera;
-    REQUIRE(camera.set(view, world.level()) == Status::kOk);
-    std::vector<std::uint8_t> picture;
-    for (std::int32_t y = 0; y < height; ++y) {
-      const HeapBytes fine(samples_bytes(width, across));
-      REQUIRE(render_band(world.compact(), camera, shading,
-                          {fine.span(), PixelFormat::kRgb888, 0, y * across, across}) == Status::kOk);
-      const HeapBytes row(row_bytes(PixelFormat::kRgb888, width));
-      REQUIRE(average_samples(fine.view(), across, width, y, PixelFormat::kRgb888, row.span()) ==
-              Status::kOk);
-      picture.insert(picture.end(), row.view().begin(), row.view().end());
-    }
-    std::vector<std::uint8_t> whole(band_bytes(PixelFormat::kRgb888, width, height));
-    if (across == 1) {
-      REQUIRE(render_band(world.compact(), camera, shading,
-                          {Bytes(whole.data(), whole.size()), PixelFormat::kRgb888, 0, 0, height}) ==
-              Status::kOk);
-      CHECK(whole == picture);
-    }
-    return picture;
-  };
-  const auto one = draw(1);
-  const auto sixteen = draw(4);
-  std::size_t between = 0;
-  std::size_t white = 0;
-  for (std::size_t i = 0; i < sixteen.size(); i += 3) {
-    between += sixteen[i] != 0 && sixteen[i] != 255 ? 1U : 0U;
-    white += sixteen[i] == 255 && one[i] == 255 ? 1U : 0U;
-  }
-  CHECK(between > 20);
-  CHECK(white > 20);
-}
-
 TEST_CASE("samples: limits -> an error and nothing written") {
   const HeapBytes fine(samples_bytes(10, 2));
   const HeapBytes row(row_bytes(PixelFormat::kRgb888, 10));

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
@@ -187,28 +186,6 @@ TEST_CASE("init: sides beyond the limits and odd addresses -> refused") {
   CHECK(field.width() == 0);
 }
 
-TEST_CASE("a field without cells: everything is called -> nothing is there, nothing breaks") {
-  for (const auto& [width, height] : {std::pair{0, 0}, {0, 5}, {5, 0}}) {
-    BitField field;
-    REQUIRE(BitField::make(width, height, {}, &field) == Status::kOk);
-    CHECK(field.used_bytes() == 0);
-    const DiscStamp disc = disc_stamp(5);
-    field.set(Vec2i{0, 0});
-    field.clear(Vec2i{0, 0});
-    field.set(CellBox{{-9, -9}, {9, 9}});
-    field.clear(CellBox{{-9, -9}, {9, 9}});
-    field.set(disc, {-2, -2});
-    field.clear(disc, {-2, -2});
-    field.clear_all();
-    CHECK(!field.test({0, 0}));
-    CHECK(!field.any(CellBox{{-9, -9}, {9, 9}}));
-    CHECK(!field.any(disc, {-2, -2}));
-    CHECK(field.count() == 0);
-    CHECK(field.window(0, 0) == 0);
-    CHECK(!field.holds(disc, {0, 0}));
-  }
-}
-
 // --- Cells and boxes
 
 TEST_CASE(
@@ -259,29 +236,6 @@ TEST_CASE(
     CHECK(both.field.count() ==
           static_cast<std::uint32_t>(std::count(both.picture.cells.begin(), both.picture.cells.end(), 1)));
   }
-}
-
-TEST_CASE("cells: places far outside, up to the ends of the integers -> clear, and writing does nothing") {
-  Both both(40, 20);
-  both.field.set(both.field.bounds());
-  both.put(cells_of({{0, 0}, {40, 20}}), true);
-  for (const int far : {INT32_MIN, INT32_MIN / 2, -1, 40, 1 << 30, INT32_MAX}) {
-    for (const Vec2i& place : {Vec2i{far, 3}, {3, far}, {far, far}}) {
-      CHECK(!both.field.test(place) == !both.picture.contains(place.x, place.y));
-      if (!both.picture.contains(place.x, place.y)) {
-        both.field.clear(place);
-        for (const int diameter : {1, 12, 16, 17, 300}) {
-          if (std::abs(static_cast<std::int64_t>(far)) > 300) {
-            CHECK(!both.field.any(disc_stamp(diameter), place));
-            both.field.clear(disc_stamp(diameter), place);
-          }
-        }
-        CHECK(both.field.window(place.x, place.y) == (place.x == -1 && place.y == 3 ? 0xFFFFFFFEU : 0U));
-      }
-    }
-  }
-  CHECK(both.field.count({{INT32_MIN, INT32_MIN}, {INT32_MAX, INT32_MAX}}) == 800);
-  CHECK(both.difference() == "");
 }
 
 // --- Discs

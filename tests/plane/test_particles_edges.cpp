@@ -3,61 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
-#include <vector>
 
 #include "support/particle_shadow.h"
 #include "thimble/plane/particles.h"
 
 namespace thimble::tools {
 namespace {
-
-TEST_CASE("particles edges: numbers of no ball -> nothing there holds them, nothing is known of them") {
-  OwnedParticles owned(weightless(40, 30, 5));
-  ParticleWorld& world = owned.world;
-  std::uint32_t id = 99;
-  REQUIRE(world.spawn(10 << 16, 10 << 16, 0, 0, 4, &id) == Status::kOk);
-  std::uint32_t other = 99;
-  REQUIRE(world.spawn(20 << 16, 20 << 16, 0, 0, 4, &other) == Status::kOk);
-  REQUIRE(world.remove(id) == Status::kOk);
-  Particle one;
-  one.diameter = 77;
-  for (const std::uint32_t nobody : {id, 2U, 5U, 1000000U, kNoBall}) {
-    CAPTURE(nobody);
-    CHECK_FALSE(world.is_held(nobody));
-    CHECK_FALSE(world.particle(nobody, &one));
-    CHECK(world.remove(nobody) == Status::kOutOfRange);
-    CHECK(world.set_velocity(nobody, 1, 1) == Status::kOutOfRange);
-  }
-  CHECK(one.diameter == 77);
-  // Without gravity each ball is held; under it those that lie on something.
-  CHECK(world.is_held(other));
-  REQUIRE(world.set_gravity({0, 6554}) == Status::kOk);
-  CHECK_FALSE(world.is_held(other));
-  world.draw_wall({20, 22}, 1);
-  CHECK(world.is_held(other));
-}
-
-TEST_CASE("particles edges: walls in worlds of no cells, or by a brush of none -> nothing is drawn") {
-  for (const Vec2i size : {Vec2i{0, 20}, Vec2i{20, 0}, Vec2i{0, 0}}) {
-    OwnedParticles owned(weightless(size.x, size.y, 2));
-    const std::uint32_t before = owned.world.state_crc32();
-    owned.world.draw_wall({-3, -3}, {30, 30}, 5);
-    owned.world.erase_wall({-3, -3}, {30, 30}, 5);
-    CHECK(owned.world.state_crc32() == before);
-    CHECK(owned.world.ball_at({0, 0}) == kNoBall);
-  }
-  OwnedParticles owned(weightless(20, 20, 2));
-  const std::uint32_t before = owned.world.state_crc32();
-  for (const std::int32_t diameter : {0, -1, INT32_MIN}) {
-    owned.world.draw_wall({5, 5}, {9, 9}, diameter);
-    CHECK(owned.world.state_crc32() == before);
-  }
-  owned.world.draw_wall({5, 5}, {9, 9}, 1);
-  CHECK(owned.world.state_crc32() != before);
-  for (std::int32_t i = 0; i < 20; ++i) {
-    CHECK(owned.world.field().test({i, i}) == (i >= 5 && i <= 9));
-  }
-}
 
 // One ball grazes another of its size, so fast and along a line so near to the tangent that the impulse, a few units,
 // rounded on each axis, would be work along the way: 2^32 units of energy and more. It is left out.

@@ -98,37 +98,6 @@ TEST_CASE("particles exact: drag -> a quarter of the way to the cell's middle, 3
   }
 }
 
-TEST_CASE("particles exact: a brush of every diameter -> so many cells each way around its place") {
-  for (std::int32_t diameter = 1; diameter <= 40; ++diameter) {
-    OwnedParticles exact(weightless(128, 128));
-    exact.world.draw_wall({60, 50}, diameter);
-    const BitField& field = exact.world.field();
-    const std::int32_t before = (diameter - 1) / 2;
-    const auto column = [&](std::int32_t x) {
-      bool any = false;
-      for (std::int32_t y = 0; y < 128; ++y) {
-        any = any || field.test({x, y});
-      }
-      return any;
-    };
-    const auto row = [&](std::int32_t y) {
-      bool any = false;
-      for (std::int32_t x = 0; x < 128; ++x) {
-        any = any || field.test({x, y});
-      }
-      return any;
-    };
-    CHECK(column(60 - before));
-    CHECK_FALSE(column(60 - before - 1));
-    CHECK(column(60 - before + diameter - 1));
-    CHECK_FALSE(column(60 - before + diameter));
-    CHECK(row(50 - before));
-    CHECK_FALSE(row(50 - before - 1));
-    CHECK(row(50 - before + diameter - 1));
-    CHECK_FALSE(row(50 - before + diameter));
-  }
-}
-
 TEST_CASE("particles exact: a floor erased from any end -> the ball on it wakes") {
   for (int turn = 0; turn < 4; ++turn) {
     ParticleConfig config = weightless(100, 60);
@@ -145,46 +114,6 @@ TEST_CASE("particles exact: a floor erased from any end -> the ball on it wakes"
     exact.world.erase_wall((turn & 1) != 0 ? right : left, (turn & 1) != 0 ? left : right, 5);
     CHECK(exact.world.asleep() == 0);
   }
-}
-
-TEST_CASE("particles exact: counters -> each move, wall and ball once; nothing of the last step") {
-  for (const std::int32_t substeps_log2 : {0, 2}) {
-    ParticleConfig config = weightless(200, 100);
-    config.substeps_log2 = substeps_log2;
-    config.restitution_q16 = 65536;
-    OwnedParticles exact(config);
-    // One flies to the right wall, two meet in the middle, a fourth stays where it is and sleeps.
-    REQUIRE(exact.world.spawn(150 * 65536, 10 * 65536, 65536, 0, 4, nullptr) == Status::kOk);
-    REQUIRE(exact.world.spawn(80 * 65536, 50 * 65536, 65536, 0, 4, nullptr) == Status::kOk);
-    REQUIRE(exact.world.spawn(120 * 65536, 50 * 65536, -65536, 0, 4, nullptr) == Status::kOk);
-    std::uint32_t walls = 0;
-    std::uint32_t balls = 0;
-    for (int step = 0; step < 60; ++step) {
-      exact.world.step();
-      const StepCounters& counters = exact.world.counters();
-      walls += counters.wall_hits;
-      balls += counters.ball_hits;
-      CHECK(counters.woken == 0);
-      CHECK(counters.moves >= 3U << substeps_log2);
-      CHECK(counters.moves <= (3U << substeps_log2) + 2);
-    }
-    CHECK(walls == 1);
-    CHECK(balls == 1);
-  }
-  // A sleeper that is hit is woken, once.
-  OwnedParticles exact(weightless(200, 100));
-  REQUIRE(exact.world.spawn(100 * 65536, 50 * 65536, 0, 0, 4, nullptr) == Status::kOk);
-  for (int step = 0; step < 300 && exact.world.awake() != 0; ++step) {
-    exact.world.step();
-  }
-  REQUIRE(exact.world.asleep() == 1);
-  REQUIRE(exact.world.spawn(90 * 65536, 50 * 65536, 65536, 0, 4, nullptr) == Status::kOk);
-  std::uint32_t woken = 0;
-  for (int step = 0; step < 20; ++step) {
-    exact.world.step();
-    woken += exact.world.counters().woken;
-  }
-  CHECK(woken == 1);
 }
 
 TEST_CASE("particles exact: the state's CRC-32 -> of the bytes that its definition lists") {

@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
@@ -553,37 +552,6 @@ TEST_CASE("leave_medium: merged blocks -> crossed whole as media, entered as blo
   CHECK(merged > 100);
 }
 
-TEST_CASE(
-    "occlusion: an open plane -> no ray of the pattern is stopped; at the bottom of a deep pit -> all but "
-    "the steepest") {
-  Cells cells(6);
-  cells.fill({0, 0, 0}, {64, 64, 40}, 1);
-  cells.fill({31, 31, 3}, {32, 32, 40}, kAir);
-  const HeapBytes bytes = cells.tree();
-  const CompactTree tree = open_or_throw(bytes);
-  int open = 0;
-  int pit = 0;
-  int near = 0;
-  for (int i = 0; i < kOcclusionDirections; ++i) {
-    const Vec3i direction = occlusion_direction(i, 2, false);
-    HitKind kind = HitKind::kStepLimit;
-    REQUIRE(any_hit_before(tree,
-                           {{Q8::from_raw(2600), Q8::from_raw(2600), Q8::from_raw(40 * 256)}, direction},
-                           {64, kOcclusionLength}, &kind) == Status::kOk);
-    open += kind == HitKind::kHit ? 1 : 0;
-    const Ray up{{Q8::from_raw(31 * 256 + 128), Q8::from_raw(31 * 256 + 128), Q8::from_raw(3 * 256)},
-                 direction};
-    REQUIRE(any_hit_before(tree, up, {64, kOcclusionLength}, &kind) == Status::kOk);
-    pit += kind == HitKind::kHit ? 1 : 0;
-    // Nothing is as near as a tenth of a voxel.
-    REQUIRE(any_hit_before(tree, up, {1, 10 * kOcclusionLength}, &kind) == Status::kOk);
-    near += kind == HitKind::kHit ? 1 : 0;
-  }
-  CHECK(open == 0);
-  CHECK(pit == kOcclusionDirections);
-  CHECK(near == 0);
-}
-
 TEST_CASE("ray_towards: two points -> a ray that is at the second at the t given") {
   std::mt19937_64 random(seed_or(9));
   int wrong = 0;
@@ -617,19 +585,6 @@ TEST_CASE("ray_towards: two points -> a ray that is at the second at the t given
     wrong += place.t_numerator == 1 || most >= (std::int64_t{1} << (bits - 1)) ? 0 : 1;
   }
   CHECK(wrong == 0);
-}
-
-TEST_CASE("faces: directions -> leave, enter or neither, by one sign") {
-  CHECK(leaves_face({-1, 9, 9}, 0, true));
-  CHECK_FALSE(leaves_face({1, -9, -9}, 0, true));
-  CHECK(leaves_face({0, 0, 1}, 2, false));
-  CHECK_FALSE(leaves_face({5, 5, 0}, 2, false));
-  CHECK_FALSE(enters_face({5, 5, 0}, 2, false));
-  CHECK(enters_face({5, 5, -1}, 2, false));
-  CHECK(enters_face({1, 0, 0}, 0, true));
-  CHECK_FALSE(enters_face({-1, 0, 0}, 0, true));
-  CHECK(leaves_face({1, 2, 3}, -1, false));
-  CHECK(enters_face({1, 2, 3}, -1, true));
 }
 
 TEST_CASE("leave_medium: rays beyond the limits, step limits, an empty tree -> as closest_hit says") {

@@ -1,7 +1,6 @@
 // The compact tree's bytes: how many, and which; and the Morton keys that they are made from.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -96,68 +95,6 @@ TEST_CASE("compact tree: one material, whichever -> no byte more than with none"
 
 namespace {
 
-template <class Key>
-void check_sort(std::uint64_t seed) {
-  constexpr int kKeyBits = 8 * static_cast<int>(sizeof(Key));
-  std::mt19937_64 random(seed);
-  const std::size_t sizes[] = {0, 1, 2, 3, 47, 48, 49, 50, 255, 256, 257, 1000, 5000, 20000};
-  for (const std::size_t size : sizes) {
-    for (int key_bits = 1; key_bits <= kKeyBits; key_bits += size > 1000 ? 7 : 1) {
-      for (int pattern = 0; pattern < 6; ++pattern) {
-        std::vector<Key> keys(size);
-        for (std::size_t i = 0; i < size; ++i) {
-          std::uint64_t key = random();
-          switch (pattern) {
-            case 1:  // few values
-              key = key % 3 * 0x0123456789ABCDEFULL;
-              break;
-            case 2:  // ascending
-              key = i;
-              break;
-            case 3:  // descending, in the upper bits
-              key = ~std::uint64_t{i} << (key_bits > 16 ? key_bits - 16 : 0);
-              break;
-            case 4:  // all the same
-              key = 0x5555555555555555ULL;
-              break;
-            case 5:  // log-uniform
-              key >>= key % 64;
-              break;
-            default:
-              break;
-          }
-          keys[i] = static_cast<Key>(key & (~std::uint64_t{0} >> (64 - key_bits)));
-        }
-        std::vector<Key> expected = keys;
-        std::sort(expected.begin(), expected.end());
-        sort_keys(Span<Key>{keys.data(), keys.size()}, key_bits);
-        REQUIRE_MESSAGE(keys == expected,
-                        "size " << size << ", bits " << key_bits << ", pattern " << pattern);
-
-        // Unique: bare codes once; of codes with a material the greatest.
-        std::vector<Key> unique;
-        for (std::size_t i = 0; i < size; ++i) {
-          constexpr int kShift = sizeof(Key) == 4 ? 0 : 8;
-          if (i + 1 == size || (expected[i] >> kShift) != (expected[i + 1] >> kShift)) {
-            unique.push_back(expected[i]);
-          }
-        }
-        keys.resize(unique_keys(Span<Key>{keys.data(), keys.size()}));
-        REQUIRE(keys == unique);
-      }
-    }
-  }
-}
-
-}  // namespace
-
-TEST_CASE("sort_keys, unique_keys: any size, key bits and pattern -> what std::sort gives, each once") {
-  check_sort<std::uint32_t>(111);
-  check_sort<std::uint64_t>(112);
-}
-
-namespace {
-
 // The compact bytes of a pool.
 std::vector<std::uint8_t> compacted(const Octree& pool) {
   std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(pool)));
@@ -244,33 +181,6 @@ TEST_CASE("compact tree: a world joined from its parts -> the bytes of the whole
       CHECK(joined == compacted(whole.octree));
     }
   }
-}
-
-TEST_CASE("compact tree: parts that were coarsened -> merged blocks, volume and added volume come along") {
-  std::mt19937_64 random(5);
-  Parts parts;
-  std::uint64_t volume = 0;
-  std::uint64_t added = 0;
-  for (int part = 0; part < 8; ++part) {
-    OwnedPool piece(4, 40000);
-    for (int i = 0; i < 300; ++i) {
-      const auto place = [&] { return static_cast<std::int32_t>(random() % 16); };
-      REQUIRE(piece.octree.insert({place(), place(), place()}, 7) == Status::kOk);
-    }
-    REQUIRE(piece.octree.coarsen_to(20) == Status::kOk);
-    volume += piece.octree.voxels();
-    added += piece.octree.solid_added();
-    parts.add(piece.octree);
-  }
-  std::vector<std::uint8_t> joined;
-  REQUIRE(parts.join(&joined) == Status::kOk);
-  CHECK(CompactTree::validate({joined.data(), joined.size()}) == nullptr);
-  CompactTree tree;
-  REQUIRE(CompactTree::open({joined.data(), joined.size()}, &tree) == Status::kOk);
-  CHECK(tree.merged());
-  CHECK(tree.level() == 5);
-  CHECK(tree.voxel_count() == volume);
-  CHECK(tree.solid_added() == added);
 }
 
 TEST_CASE("compact tree: parts that do not fit together -> refused") {

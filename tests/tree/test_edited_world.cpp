@@ -28,7 +28,6 @@ class VoxelModel {
   explicit VoxelModel(int level)
       : level_(level), side_(1 << level), voxels_(static_cast<std::size_t>(side_ * side_ * side_), -1) {}
 
-  int level() const { return level_; }
   int side() const { return side_; }
   std::int16_t& at(const Vec3i& voxel) {
     return voxels_[static_cast<std::size_t>((voxel.z * side_ + voxel.y) * side_ + voxel.x)];
@@ -358,29 +357,6 @@ TEST_CASE("edited worlds: one of no tree, of a level without maps, of too much r
   CHECK(world.pack({}) == Status::kBadArgument);
   REQUIRE(make(tree, room, memory) == Status::kOk);
   CHECK(world.tree().voxel_count() == 1);
-}
-
-TEST_CASE("edited worlds: edits outside, on each side of it -> out of range, nothing changed") {
-  OwnedPool pool(3);
-  REQUIRE(pool.octree.insert({1, 2, 3}, 2) == Status::kOk);
-  const HeapBytes bytes = compact_of(pool.octree);
-  const CompactTree tree = open_or_throw(bytes);
-  const EditRoom room{100, 100, 10};
-  std::vector<std::uint64_t> words(edited_world_bytes(3, room) / 8 + 1);
-  EditedWorld world;
-  REQUIRE(EditedWorld::make(tree, room, {reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size()},
-                            &world) == Status::kOk);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const std::int32_t outside : {-1, 8, INT32_MIN, INT32_MAX}) {
-      Vec3i at{4, 4, 4};
-      at[axis] = outside;
-      CHECK(world.set(at, 3) == Status::kOutOfRange);
-      CHECK(world.clear(at) == Status::kOutOfRange);
-    }
-  }
-  HeapBytes packed(bytes.view().size);
-  REQUIRE(world.pack(packed.span()) == Status::kOk);
-  CHECK(std::equal(packed.view().begin(), packed.view().end(), bytes.view().begin()));
 }
 
 TEST_CASE("edited worlds: a tree with solid bricks of 32 materials -> one of it; of 33 -> out of memory") {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <random>
 #include <string>
@@ -594,25 +593,6 @@ TEST_CASE("octree: edits between coarsenings -> only the edit changes, and the t
 }
 
 TEST_CASE(
-    "octree: a merged block that was split, and filled again -> its pieces, and it merges for nothing") {
-  Pool pool = Pool::of_nodes(100);
-  Octree tree;
-  REQUIRE(Octree::make(3, pool.bytes(), &tree) == Status::kOk);
-  REQUIRE(tree.insert({0, 0, 0}, 3) == Status::kOk);
-  REQUIRE(tree.insert({7, 7, 7}, 4) == Status::kOk);
-  REQUIRE(tree.coarsen_to(1) == Status::kOk);
-  REQUIRE(text_of(tree) == "M3");
-  REQUIRE(tree.remove({0, 0, 0}) == Status::kOk);
-  CHECK(text_of(tree) == "(255 (255 (254:3) M3 M3 M3 M3 M3 M3 M3) M3 M3 M3 M3 M3 M3 M3)");
-  CHECK(tree.insert({0, 0, 0}, 3) == Status::kOk);
-  CHECK(text_of(tree) == "(255 (255 S3 M3 M3 M3 M3 M3 M3 M3) M3 M3 M3 M3 M3 M3 M3)");
-  // Truly full and merged of one material: merging them again adds nothing, so it comes first.
-  CHECK(tree.make_room(99) == Status::kOk);
-  CHECK(text_of(tree) == "M3");
-  CHECK(tree.solid_added() == 510);
-}
-
-TEST_CASE(
     "octree: merging makes eight merged blocks of one material -> one block, and edits elsewhere stay "
     "right") {
   Pool pool = Pool::of_nodes(200);
@@ -629,55 +609,6 @@ TEST_CASE(
   CHECK(tree.insert({6, 7, 7}, 3) == Status::kOk);
   CHECK(text_of(tree) == "(129 M1 (128 (192:3)))");
   CHECK(tree.solid_added() == 0);
-}
-
-TEST_CASE("octree: pieces of a merged block that was split -> no larger than the block they stand for") {
-  Pool pool = Pool::of_nodes(100);
-  Octree tree;
-  REQUIRE(Octree::make(4, pool.bytes(), &tree) == Status::kOk);
-  // Half the world of material 1, merged; what is left of it after a removal are blocks of 1 to 4^3 voxels.
-  REQUIRE(tree.insert_block({0, 0, 0}, 3, 1) == Status::kOk);
-  REQUIRE(tree.insert({1, 1, 1}, 2) == Status::kOk);
-  REQUIRE(tree.make_room(99) == Status::kOk);
-  REQUIRE(text_of(tree) == "M1");
-  REQUIRE(tree.remove({0, 0, 0}) == Status::kOk);
-  // All but one small merged block in the lowest 4 x 4 x 4 go; then comes a true block as large as that one
-  // was.
-  for (std::uint64_t block = 2; block < 8; ++block) {
-    for (std::uint64_t index = block * 8; index < block * 8 + 8; ++index) {
-      REQUIRE(tree.remove(position(index)) == Status::kOk);
-    }
-  }
-  for (std::uint64_t index = 1; index < 8; ++index) {
-    REQUIRE(tree.remove(position(index)) == Status::kOk);
-  }
-  REQUIRE(tree.insert_block({0, 0, 0}, 1, 6) == Status::kOk);
-  CHECK(tree.material({2, 0, 0}) == 1);
-  // A tie of two blocks of eight voxels: the lower one's material.
-  for (std::uint64_t octant = 1; octant < 8; ++octant) {
-    for (std::uint64_t index = octant * 64; index < (octant + 1) * 64; ++index) {
-      REQUIRE(tree.remove(position(index)) == Status::kOk);
-    }
-    for (std::uint64_t index = octant * 512; index < (octant + 1) * 512; ++index) {
-      REQUIRE(tree.remove(position(index)) == Status::kOk);
-    }
-  }
-  CHECK(text_of(tree) == "(1 (1 (3 S6 M1)))");
-  REQUIRE(tree.coarsen_to(3) == Status::kOk);
-  CHECK(text_of(tree) == "(1 (1 M6))");
-  // And a block merged from single voxels stays that small a piece: two true voxels outweigh its parts.
-  REQUIRE(Octree::make(2, pool.bytes(), &tree) == Status::kOk);
-  REQUIRE(tree.insert({0, 0, 0}, 3) == Status::kOk);
-  REQUIRE(tree.insert({3, 3, 3}, 4) == Status::kOk);
-  REQUIRE(tree.coarsen_to(1) == Status::kOk);
-  for (std::uint64_t index = 0; index < 8; ++index) {
-    REQUIRE(tree.remove(position(index)) == Status::kOk);
-  }
-  REQUIRE(tree.insert({0, 0, 0}, 6) == Status::kOk);
-  REQUIRE(tree.insert({1, 0, 0}, 6) == Status::kOk);
-  CHECK(text_of(tree) == "(255 (3:6) M3 M3 M3 M3 M3 M3 M3)");
-  REQUIRE(tree.coarsen_to(1) == Status::kOk);
-  CHECK(text_of(tree) == "M6");
 }
 
 }  // namespace thimble::tools

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,74 +25,6 @@ void put(std::uint8_t* at, std::uint64_t value, int bytes) {
 
 std::string text_of(const char* text) {
   return text == nullptr ? "" : text;
-}
-
-// ---- the octree
-
-TEST_CASE("tree edges: the children of a voxel, of a solid block, of an octant that is empty -> none") {
-  OwnedPool pool(2);
-  REQUIRE(pool.octree.insert_block({0, 0, 0}, 1, 4) == Status::kOk);
-  REQUIRE(pool.octree.insert({2, 0, 0}, 5) == Status::kOk);
-  const Octree::NodeView root = pool.octree.node(pool.octree.root());
-  REQUIRE(root.mask == 3);
-  const Octree::NodeView block = pool.octree.node(pool.octree.child(root, 0));
-  const Octree::NodeView voxels = pool.octree.node(pool.octree.child(root, 1));
-  CHECK(block.solid());
-  CHECK(block.material == 4);
-  CHECK(voxels.mask == 1);
-  CHECK(voxels.material == 5);
-  for (int octant = 0; octant < 8; ++octant) {
-    CHECK(pool.octree.child(block, octant) == Octree::kNone);
-    CHECK(pool.octree.child(voxels, octant) == Octree::kNone);
-    CHECK((pool.octree.child(root, octant) == Octree::kNone) == (octant > 1));
-  }
-}
-
-TEST_CASE("tree edges: a pool whose chain leads out of it -> no child there, and a view of nothing") {
-  OwnedPool pool(2);
-  for (const std::int32_t octant : {0, 1, 2}) {
-    REQUIRE(pool.octree.insert({octant % 2 * 2, octant / 2 * 2, 0}, 4) == Status::kOk);
-  }
-  const Octree::NodeView root = pool.octree.node(pool.octree.root());
-  REQUIRE(root.mask == 7);
-  pool.cut_chain(root.first_child, 1000000);
-  CHECK(pool.octree.child(root, 0) == root.first_child);
-  CHECK(pool.octree.child(root, 1) == 1000000);
-  CHECK(pool.octree.node(1000000).first_child == Octree::kNone);
-  CHECK(pool.octree.child(root, 2) == Octree::kNone);
-}
-
-// Seven truly full blocks and one that merging filled make no solid block: a hit on that one reports its
-// corner.
-TEST_CASE("tree edges: a block that completes seven others, one of them merged -> eight blocks stay") {
-  for (const bool merges : {true, false}) {
-    OwnedPool pool(2);
-    Octree& octree = pool.octree;
-    for (std::int32_t i = 0; i < 7; ++i) {  // 7 of the first octant's voxels, of two materials
-      REQUIRE(octree.insert({i & 1, i >> 1 & 1, i >> 2}, i == 3 ? 6 : 4) == Status::kOk);
-    }
-    for (std::int32_t i = 1; i < 7; ++i) {
-      REQUIRE(octree.insert_block({(i & 1) * 2, (i >> 1 & 1) * 2, (i >> 2) * 2}, 1, 4) == Status::kOk);
-    }
-    REQUIRE(octree.nodes_used() == 1 + 7 + 7);
-    if (merges) {
-      REQUIRE(octree.coarsen_to(8) == Status::kOk);  // adds 1 voxel and saves 7 nodes
-      REQUIRE(octree.solid_added() == 1);
-    } else {
-      REQUIRE(octree.insert_block({0, 0, 0}, 1, 4) == Status::kOk);
-    }
-    REQUIRE(octree.nodes_used() == 8);
-    REQUIRE(octree.insert_block({2, 2, 2}, 1, 4) == Status::kOk);
-    CHECK(octree.voxels() == 64);
-    CHECK(octree.nodes_used() == (merges ? 9 : 1));
-    const HeapBytes bytes = compact_of(octree);
-    const CompactTree tree = open_or_throw(bytes);
-    REQUIRE(tree.node_count() == (merges ? 9 : 1));
-    CHECK(tree.mask(0) == (merges ? 0xFF : 0));
-    for (std::uint32_t node = 0; node < tree.node_count(); ++node) {
-      CHECK(tree.is_merged(node) == (merges && node == 1));
-    }
-  }
 }
 
 // ---- compact trees
@@ -125,65 +56,6 @@ TEST_CASE("tree edges: views of no tree -> nothing in them, and no part of a wor
   CHECK(CompactTree::make(many, out.span(), nullptr) == Status::kBadArgument);
 }
 
-TEST_CASE("tree edges: solid parts, one of them merged -> eight blocks, as each part was") {
-  for (int merged = -1; merged < 8; ++merged) {
-    OwnedPool solid(2);
-    REQUIRE(solid.octree.insert_block({0, 0, 0}, 2, 3) == Status::kOk);
-    OwnedPool coarse(2);
-    REQUIRE(coarse.octree.insert({1, 1, 1}, 3) == Status::kOk);
-    REQUIRE(coarse.octree.coarsen_to(1) == Status::kOk);
-    const HeapBytes solid_bytes = compact_of(solid.octree);
-    const HeapBytes coarse_bytes = compact_of(coarse.octree);
-    std::vector<CompactTree> parts(8, open_or_throw(solid_bytes));
-    if (merged >= 0) {
-      parts[static_cast<std::size_t>(merged)] = open_or_throw(coarse_bytes);
-    }
-    HeapBytes out(500);
-    CompactTree whole;
-    REQUIRE(CompactTree::make({parts.data(), parts.size()}, out.span(), &whole) == Status::kOk);
-    CHECK(CompactTree::validate(out.view()) == nullptr);
-    CHECK(whole.voxel_count() == 512);
-    CHECK(whole.solid_added() == (merged < 0 ? 0 : 63));
-    REQUIRE(whole.node_count() == (merged < 0 ? 1 : 9));
-    for (std::uint32_t node = 0; node < whole.node_count(); ++node) {
-      CHECK(whole.is_merged(node) == (merged >= 0 && node == static_cast<std::uint32_t>(merged) + 1));
-    }
-  }
-}
-
-TEST_CASE("tree edges: a pool whose chains break off -> what is left of it, with fewer nodes than promised") {
-  OwnedPool pool(2);
-  for (const std::int32_t octant : {0, 1, 2}) {
-    REQUIRE(pool.octree.insert({octant % 2 * 2, octant / 2 * 2, 0}, 4) == Status::kOk);
-  }
-  REQUIRE(CompactTree::validate(compact_of(pool.octree).view()) == nullptr);
-  pool.cut_chain(pool.octree.node(pool.octree.root()).first_child, Octree::kNone);
-  const HeapBytes bytes = compact_of(pool.octree);
-  const CompactTree tree = open_or_throw(bytes);
-  CHECK(tree.node_count() == 2);
-  CHECK(tree.mask(0) == 7);
-  CHECK(tree.mask(1) == 1);
-  CHECK(tree.voxel_count() == 1);
-  CHECK(text_of(CompactTree::validate(bytes.view())) == "fewer nodes than the masks call for");
-
-  // Of voxels, materials: those that are lost are 0.
-  OwnedPool voxels(1);
-  for (std::int32_t i = 0; i < 4; ++i) {
-    REQUIRE(voxels.octree.insert({i & 1, i >> 1, 0}, static_cast<std::uint8_t>(11 + i)) == Status::kOk);
-  }
-  const Octree::NodeView root = voxels.octree.node(voxels.octree.root());
-  REQUIRE(root.has_children);
-  voxels.cut_chain(voxels.octree.child(root, 1), Octree::kNone);
-  const HeapBytes cut = compact_of(voxels.octree);
-  const CompactTree left = open_or_throw(cut);
-  REQUIRE(left.node_count() == 1);
-  CHECK(left.mask(0) == 0x0F);
-  CHECK(left.voxel_material(1) == 11);
-  CHECK(left.voxel_material(2) == 12);
-  CHECK(left.voxel_material(3) == 0);
-  CHECK(left.voxel_material(4) == 0);
-}
-
 // A part whose masks promise more nodes than it has is solid where they lack: four nodes, and children 1 to 8.
 TEST_CASE("tree edges: a part of a world with fewer nodes than its masks call for -> solid there") {
   OwnedPool pool(2);
@@ -205,22 +77,6 @@ TEST_CASE("tree edges: a part of a world with fewer nodes than its masks call fo
   }
   CHECK(whole.voxel_count() == 3 + 5 * 8);
   CHECK(CompactTree::validate(out.view()) == nullptr);
-}
-
-// Keys that lie in no world of that level: the header asks for others. What comes of them is no tree, and
-// told.
-TEST_CASE("tree edges: keys beyond the world -> not a byte too many, and no sound tree") {
-  for (int level = 1; level <= 9; ++level) {
-    for (const std::uint32_t beyond : {std::uint32_t{1} << (3 * level), std::uint32_t{1} << 29}) {
-      const std::array<std::uint32_t, 3> keys{0, 1, beyond};
-      std::size_t size = 0;
-      REQUIRE(CompactTree::make({keys.data(), keys.size()}, level, 3, {}, nullptr, &size) ==
-              Status::kOutOfMemory);
-      HeapBytes out(size);
-      REQUIRE(CompactTree::make({keys.data(), keys.size()}, level, 3, out.span(), nullptr) == Status::kOk);
-      CHECK(CompactTree::validate(out.view()) != nullptr);
-    }
-  }
 }
 
 // ---- shared trees
@@ -311,62 +167,6 @@ TEST_CASE("tree edges: a shared tree written by hand -> sound, each material whe
   for (const Vec3i& at : {Vec3i{1, 0, 0}, Vec3i{2, 0, 0}, Vec3i{0, 4, 0}, Vec3i{8, 0, 0}, Vec3i{0, 8, 0},
                           Vec3i{0, 0, 8}, Vec3i{-1, 0, 0}, Vec3i{0, -1, 0}, Vec3i{0, 0, INT32_MIN}}) {
     CHECK(tree.material(at) == 0);
-  }
-}
-
-TEST_CASE(
-    "tree edges: a shared tree with links into its last bytes -> read to the end of the nodes, no farther") {
-  // The first child is byte 75, a mask of 8 children of which the root's 4 bytes are there: 3, 9, 75, 74 have
-  // 2, 2, 4 and 3 bits, so that 11 leaves come before the other child's, more than there are.
-  SharedByHand tree = two_nodes();
-  tree.node_bytes[6] = 75;
-  HeapBytes bytes = tree.bytes();
-  CHECK(opened(bytes).material({4, 0, 0}) == 0);
-  CHECK_FALSE(tree.fault().empty());
-  // Were there more leaves, it would be the twelfth's.
-  tree.leaves = 14;
-  bytes = tree.bytes();
-  CHECK(opened(bytes).material({4, 0, 0}) == 111);
-  tree.leaves = 9;
-  // A child before the first node has no leaves: the other child's are the first.
-  tree.node_bytes[6] = 1;
-  bytes = tree.bytes();
-  CHECK(opened(bytes).material({4, 0, 0}) == 100);
-  CHECK(opened(bytes).material({0, 0, 0}) == 0);
-  CHECK(tree.fault() == "a link that leads to no node of the level below");
-  // One behind them, likewise.
-  tree.node_bytes[6] = 80;
-  bytes = tree.bytes();
-  CHECK(opened(bytes).material({4, 0, 0}) == 100);
-  CHECK(opened(bytes).material({0, 0, 0}) == 0);
-  // The root's own count and links cut off: nothing is before the second child, and it is nowhere.
-  tree = two_nodes();
-  tree.node_bytes.resize(5);
-  bytes = tree.bytes();
-  CHECK(opened(bytes).material({4, 0, 0}) == 0);
-  CHECK(tree.fault() == "a node that is no node");
-}
-
-TEST_CASE("tree edges: a node that is the last byte of a tree with merged blocks -> it has no children") {
-  SharedByHand tree;
-  tree.level = 2;
-  tree.merged = true;
-  tree.nodes = 1;
-  tree.begins = {68};
-  tree.node_bytes = {1, 0, 1};
-  tree.root = 68;
-  CHECK(tree.fault().empty());
-  HeapBytes bytes = tree.bytes();
-  CHECK(opened(bytes).child(68, 1, 0) == (SharedTree::kInline | 1));
-  tree.node_bytes = {1, 0};
-  bytes = tree.bytes();
-  CHECK(opened(bytes).child(68, 1, 0) == SharedTree::kNowhere);
-  tree.node_bytes = {1};
-  bytes = tree.bytes();
-  CHECK(opened(bytes).child(68, 1, 0) == SharedTree::kNowhere);
-  CHECK(opened(bytes).material({0, 0, 0}) == 0);
-  for (const std::uint32_t node : {0U, 67U, 69U, 1U << 20, SharedTree::kNowhere, SharedTree::kInline | 1U}) {
-    CHECK(opened(bytes).child(node, 1, 0) == SharedTree::kNowhere);
   }
 }
 
@@ -552,29 +352,6 @@ TEST_CASE(
   for (std::size_t i = 0; i < 8; ++i) {
     CHECK(fault_with(kBrickMapHeaderBytes + 8 + i, 0x80) == "brick 0 is not empty");
     CHECK(fault_with(kBrickMapHeaderBytes + 16 + i, 0x80).empty());
-  }
-}
-
-// 65,280 bricks of one voxel, and solid ones of as many materials as are given.
-TEST_CASE("tree edges: 65,535 bricks, the empty one included -> a map; one more -> out of range") {
-  constexpr std::uint64_t kBricks = 65280;
-  for (const std::uint64_t kinds : {254U, 255U}) {
-    std::vector<std::uint64_t> keys;
-    for (std::uint64_t brick = 0; brick < kBricks + kinds; ++brick) {
-      const std::uint64_t voxels = brick < kBricks ? 1 : 64;
-      for (std::uint64_t i = 0; i < voxels; ++i) {
-        keys.push_back((64 * brick + i) << 8 | (brick < kBricks ? 0 : brick - kBricks + 1));
-      }
-    }
-    const Span<const std::uint64_t> span{keys.data(), keys.size()};
-    std::size_t size = 0;
-    REQUIRE(CompactTree::make(span, 8, {}, nullptr, &size) == Status::kOutOfMemory);
-    HeapBytes bytes(size);
-    CompactTree tree;
-    REQUIRE(CompactTree::make(span, 8, bytes.span(), &tree) == Status::kOk);
-    const OwnedMap made(tree, most_brick_map_bytes(8));
-    CHECK(made.status == (kinds == 254 ? Status::kOk : Status::kOutOfRange));
-    CHECK(made.map.brick_count() == (kinds == 254 ? kMaxBricks : 0));
   }
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
@@ -21,19 +20,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-
-bool equal_bytes(const HeapBytes& a, const HeapBytes& b) {
-  return std::equal(a.view().begin(), a.view().end(), b.view().begin(), b.view().end());
-}
-
-std::uint32_t load_32(const std::uint8_t* at) {
-  return at[0] | std::uint32_t{at[1]} << 8 | std::uint32_t{at[2]} << 16 | std::uint32_t{at[3]} << 24;
-}
-void store_32(std::uint8_t* at, std::uint32_t value) {
-  for (int i = 0; i < 4; ++i) {
-    at[i] = static_cast<std::uint8_t>(value >> (8 * i));
-  }
-}
 
 // ---- the octree
 
@@ -187,49 +173,6 @@ TEST_CASE("tree limits: a map's header with a number beyond its range -> damaged
   CHECK(counts > 100);
 }
 
-// Bounds are in the header, under no other care than the checksum's: what lies beyond them is left out.
-TEST_CASE("tree limits: a map of a tree whose bounds are too small -> within them each voxel, nothing else") {
-  OwnedPool owned(5);
-  Octree& octree = owned.octree;
-  for (const Vec3i& at : {Vec3i{0, 0, 0}, Vec3i{16, 16, 16}, Vec3i{8, 24, 8}}) {
-    REQUIRE(octree.insert_block(at, 3, 4) == Status::kOk);
-  }
-  REQUIRE(octree.insert_block({16, 0, 0}, 4, 2) == Status::kOk);
-  REQUIRE(octree.insert({31, 31, 31}, 1) == Status::kOk);
-  const HeapBytes sound = compact_of(octree);
-  const OwnedMap whole(open_or_throw(sound), most_brick_map_bytes(5));
-  REQUIRE(whole.status == Status::kOk);
-  constexpr std::size_t kBounds = 28;  // low, then high: 2 bytes an axis
-  std::mt19937_64 random(20260813);
-  for (int number = 0; number < 60; ++number) {
-    HeapBytes damaged(sound.view().size);
-    std::copy(sound.view().begin(), sound.view().end(), damaged.span().begin());
-    Vec3i low;
-    Vec3i high;
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = 4 * pick_int(random, 0, 6);
-      high[axis] = pick_int(random, low[axis] / 4 + 1, 8) * 4;
-      damaged.span()[kBounds + 2 * static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(low[axis]);
-      damaged.span()[kBounds + 6 + 2 * static_cast<std::size_t>(axis)] =
-          static_cast<std::uint8_t>(high[axis]);
-    }
-    repair_checksum(damaged.span());
-    const OwnedMap made(open_or_throw(damaged), most_brick_map_bytes(5));
-    REQUIRE(made.status == Status::kOk);
-    REQUIRE(made.map.box() ==
-            VoxelBox{{low.x / 4, low.y / 4, low.z / 4}, {high.x / 4, high.y / 4, high.z / 4}});
-    CAPTURE(number);
-    bool same = true;
-    for (std::int32_t i = 0; i < 32 * 32 * 32; ++i) {
-      const Vec3i at{i % 32, i / 32 % 32, i / 1024};
-      const bool within =
-          at.x >= low.x && at.y >= low.y && at.z >= low.z && at.x < high.x && at.y < high.y && at.z < high.z;
-      same = same && map_has(made.map, at) == (within && map_has(whole.map, at));
-    }
-    REQUIRE(same);
-  }
-}
-
 // ---- shared trees
 
 HeapBytes shared_bytes(const CompactTree& compact) {
@@ -263,9 +206,6 @@ HeapBytes some_shared(int level, int materials, std::uint64_t seed) {
 
 // Where things stand in a shared tree's header: src/FORMAT.md.
 constexpr std::size_t kLinkBytes = 5;
-constexpr std::size_t kNodeCount = 16;
-constexpr std::size_t kRoot = 24;
-constexpr std::size_t kNodesEnd = 56;
 constexpr std::size_t kCountBytes = 60;
 
 TEST_CASE("tree limits: a shared tree's header -> links of 1 to 4 bytes, counts of 1 to 4 or of none") {
@@ -291,76 +231,6 @@ TEST_CASE("tree limits: a shared tree's header -> links of 1 to 4 bytes, counts 
       CHECK((shared_fault(bytes) == "counts of no such size") == !fine);
       byte = before;
     }
-  }
-}
-
-TEST_CASE("tree limits: a shared tree that says another number of nodes -> told") {
-  for (int level = 1; level <= 6; ++level) {
-    const HeapBytes bytes = some_shared(level, 1, 12);
-    const std::uint32_t nodes = load_32(bytes.view().data + kNodeCount);
-    for (const std::uint32_t other : {nodes + 1, nodes - 1, nodes + 256, UINT32_MAX}) {
-      store_32(bytes.span().data + kNodeCount, other);
-      repair_checksum(bytes.span());
-      CAPTURE(level);
-      CHECK(shared_fault(bytes) == "another number of nodes");
-    }
-    store_32(bytes.span().data + kNodeCount, nodes);
-    repair_checksum(bytes.span());
-    CHECK(shared_fault(bytes).empty());
-  }
-}
-
-// The root is the last node: children that its mask promises beyond its links are nothing, whatever follows.
-TEST_CASE("tree limits: a shared tree's root with more children than it has links -> nothing is hit there") {
-  int zero_follows = 0;
-  for (int number = 0; number < 24; ++number) {
-    // All in the first octant; how many decides where the nodes end.
-    OwnedPool owned(4);
-    for (std::int32_t i = 0; i <= number / 2; ++i) {
-      REQUIRE(owned.octree.insert({i * 3 % 7, i * 5 % 8, i % 8},
-                                  static_cast<std::uint8_t>(i * (number % 2))) == Status::kOk);
-    }
-    const HeapBytes compact = compact_of(owned.octree);
-    const HeapBytes made = shared_bytes(open_or_throw(compact));
-    // More bytes follow, of which each would be a solid block.
-    HeapBytes bytes(made.view().size + 64);
-    std::fill(bytes.span().begin(), bytes.span().end(), std::uint8_t{0});
-    std::copy(made.view().begin(), made.view().end(), bytes.span().begin());
-    const std::uint32_t root = load_32(bytes.view().data + kRoot);
-    REQUIRE(bytes.view()[root] == 1);
-    zero_follows += bytes.view()[load_32(bytes.view().data + kNodesEnd)] == 0 ? 1 : 0;
-    bytes.span()[root] = 0xFF;
-    repair_checksum(bytes.span());
-    CHECK(shared_fault(bytes) == "a node that is no node");
-    SharedTree tree;
-    REQUIRE(SharedTree::open(bytes.view(), &tree) == Status::kOk);
-    for (std::int32_t i = 0; i < 256; ++i) {
-      Ray ray;
-      ray.origin = {Q8::from_raw(4200), Q8::from_raw(i % 16 * 256 + 100), Q8::from_raw(i / 16 * 256 + 90)};
-      ray.direction = {-1000, 0, 0};
-      Hit hit;
-      REQUIRE(closest_hit(tree, ray, &hit) == Status::kOk);
-      CHECK((hit.kind == HitKind::kMiss || (hit.voxel.x < 8 && hit.voxel.y < 8 && hit.voxel.z < 8)));
-    }
-  }
-  CHECK(zero_follows > 4);
-}
-
-TEST_CASE("tree limits: a shared tree's workspace at any address -> the same bytes") {
-  OwnedPool owned(4);
-  for (std::int32_t i = 0; i < 50; ++i) {
-    REQUIRE(owned.octree.insert({i * 7 % 16, i * 3 % 16, i % 16}, static_cast<std::uint8_t>(i % 2)) ==
-            Status::kOk);
-  }
-  const HeapBytes compact = compact_of(owned.octree);
-  const CompactTree tree = open_or_throw(compact);
-  const HeapBytes wanted = shared_bytes(tree);
-  std::vector<std::uint64_t> words(shared_work_bytes(tree.node_count()) / 8 + 4);
-  for (std::size_t offset = 0; offset < 8; ++offset) {
-    HeapBytes out(wanted.view().size);
-    auto* const work = reinterpret_cast<std::uint8_t*>(words.data()) + offset;
-    REQUIRE(SharedTree::make(tree, out.span(), {work, 8 * words.size() - 8}, nullptr) == Status::kOk);
-    CHECK(equal_bytes(out, wanted));
   }
 }
 
