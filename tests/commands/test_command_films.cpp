@@ -75,6 +75,20 @@ TEST_CASE("render: frames of an animation -> one camera, that of all of them") {
   CHECK(red[0] == red[2]);
 }
 
+TEST_CASE("bake: frames of an animation -> one camera, that of all of them") {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("a.vox", animation(3));
+  std::vector<thimble::Vec3Q8> eyes;
+  for (const char* const frame : {"0", "2"}) {
+    const std::string path = folder.path("f.oct");
+    check_done({"bake", file, "--frame", frame, "-o", path, "--quiet"});
+    SceneArguments baked;
+    baked.scene = path;
+    eyes.push_back(open_scene(baked)->camera()->eye);
+  }
+  CHECK(eyes[0] == eyes[1]);
+}
+
 TEST_CASE("view: frames of an animation -> framed alike, also by a key") {
   const TemporaryFolder folder;
   SceneArguments arguments;
@@ -162,6 +176,49 @@ TEST_CASE("render: a picture of a sequence that the run reads -> stays as it is,
   check_refused(Words{"render", "spheres", "--camera-path", path, "-o", folder.path("f%d.png")} + kSmall, 1,
                 {"f1.png", "is an input"});
   CHECK(read_text(path) == text);
+  CHECK(folder.names() == Words{"f1.png"});
+}
+
+TEST_CASE(
+    "render: a picture of a sequence with the name of another output, or of a file read late -> refused at "
+    "once") {
+  const TemporaryFolder folder;
+  const auto at = [&](const std::string& name) { return folder.path(name); };
+  const Words film = Words{"render", "spheres", "--turntable", "3", "-o", at("f%d.png")} + kSmall;
+  check_refused(film + Words{"--stats", at("f2.png")}, 1, {"f2.png", "two outputs"});
+  CHECK(folder.names().empty());
+  check_done(film + Words{"--stats", at("f3.png")});
+  check_done(Words{"render", "spheres", "--turntable", "3", "--part", "0:3", "-o", at("f2.png.part")} +
+             kSmall);
+  check_refused({"join", at("f2.png.part"), "-o", at("f%d.png.part")}, 2, {"f%d.png.part"});
+  // What a scene names is read after the outputs are claimed.
+  const std::string picture = read_text(at("f2.png"));
+  folder.write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+  folder.write("m.mtl", "newmtl m\nmap_Kd f2.png\n");
+  const Words before = folder.names();
+  check_refused(Words{"render", at("m.obj"), "--turntable", "3", "-o", at("f%d.png")} + kSmall, 1,
+                {"f2.png", "is an input"});
+  CHECK(read_text(at("f2.png")) == picture);
+  CHECK(folder.names() == before);
+}
+
+TEST_CASE("render: an animation whose later frame is broken -> said before the first picture is written") {
+  const TemporaryFolder folder;
+  const auto model = [](std::size_t number, char frame) {
+    return u32(number) + u32(1) + u32(2) + "_f" + u32(1) + frame;
+  };
+  const std::string one =
+      chunk("SIZE", u32(2) + u32(2) + u32(2)) + chunk("XYZI", u32(1) + std::string("\0\0\0\1", 4));
+  const std::string graph = chunk("nTRN", u32(0) + u32(0) + u32(1) + u32(~std::size_t{0}) +
+                                              u32(~std::size_t{0}) + u32(1) + u32(0)) +
+                            chunk("nSHP", u32(1) + u32(0) + u32(2) + model(0, '0') + model(9, '2'));
+  const std::string chunks = one + graph;
+  const std::string file =
+      folder.write("b.vox", std::string("VOX ") + u32(150) + "MAIN" + u32(0) + u32(chunks.size()) + chunks);
+  const Words render = Words{"render", file, "-o", folder.path("f%d.png")} + kSmall;
+  check_refused(render + Words{"--frames", "0:2"}, 1, {"b.vox", "frame 2", "model 9"});
+  CHECK(folder.names() == Words{"b.vox"});
+  check_done(render + Words{"--frames", "0:1"});
 }
 
 TEST_CASE(

@@ -3,20 +3,27 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "readers/block_colors.h"
 #include "readers/formats.h"
 #include "readers/read_any.h"
+#include "scene/random.h"
+#include "scene/scene_source.h"
 #include "support/file_bytes.h"
 #include "support/reader_inputs.h"
+#include "support/run_command.h"
 
 using namespace thimble::tools;
 using namespace thimble::tools::test;
+using thimble::Vec3i;
 using thimble::tests::deflated;
 using thimble::tests::little;
+using thimble::tests::TemporaryFolder;
 
 namespace {
 
@@ -155,10 +162,11 @@ std::string repeated(const std::string& part, int times) {
 
 // ---- Qubicle, Voxlap
 
-std::string qb(bool packed, const std::string& voxels, std::int32_t x = 0) {
-  return little(0x101, 4) + little(0, 4) + little(1, 4) + little(packed ? 1 : 0, 4) + little(0, 4) +
-         little(1, 4) + "\x02" + "ab" + little(2, 4) + little(1, 4) + little(2, 4) +
-         little(static_cast<std::uint32_t>(x), 4) + little(0, 8) + voxels;
+std::string qb(bool packed, const std::string& voxels, std::int32_t x = 0, bool left_handed = false,
+               const std::string& name = "ab") {
+  return little(0x101, 4) + little(0, 4) + little(left_handed ? 0 : 1, 4) + little(packed ? 1 : 0, 4) +
+         little(0, 4) + little(1, 4) + little(name.size(), 1) + name + little(2, 4) + little(1, 4) +
+         little(2, 4) + little(static_cast<std::uint32_t>(x), 4) + little(0, 8) + voxels;
 }
 
 std::string kvx() {
@@ -637,6 +645,70 @@ TEST_CASE("qb: packed or not -> the same voxels") {
   CHECK(contains(error_of(read_qb, qb(true, little(2, 4) + little(0xFFFFFFFF, 4) + red)), "more than its 2"));
   CHECK(contains(error_of(read_qb, qb(false, little(0, 16))), "no voxels"));
   CHECK(contains(error_of(read_qb, "text"), "1, 1, 0, 0"));
+}
+
+TEST_CASE(
+    "qb: a left-handed z axis -> goes away from the eye; Goxel's, which says right-handed, too, with a "
+    "note") {
+  const std::string red = std::string("\xff\0\0\xff", 4);
+  const std::string voxels = red + little(0, 12);
+  CHECK(read_voxels(read_qb, qb(false, voxels)) == std::vector<GridVoxel>{{0, 1, 0, {255, 0, 0}}});
+  CHECK(read_voxels(read_qb, qb(false, voxels, 0, true)) == std::vector<GridVoxel>{{0, 0, 0, {255, 0, 0}}});
+  const auto source = [](const std::string& file) { return read_qb(SharedBytes::own(file), {}, {}); };
+  CHECK(notes_of(source(qb(false, voxels, 0, true))).empty());
+  for (const std::string name : {"Layer.1", "background"}) {
+    const std::string file = qb(false, voxels, 0, false, name);
+    CHECK(read_voxels(read_qb, file) == std::vector<GridVoxel>{{0, 0, 0, {255, 0, 0}}});
+    REQUIRE(notes_of(source(file)).size() == 1);
+    CHECK(contains(notes_of(source(file))[0], "Goxel"));
+  }
+  CHECK(notes_of(source(qb(true, red + little(6, 4) + little(6, 4), 0, false, "Layer.1"))).empty());
+}
+
+TEST_CASE("grid: as blocks -> the same voxels, materials and all; what is solid in a few cubes") {
+  const TemporaryFolder folder;
+  const auto matrix = [](std::uint32_t x, std::uint32_t y, std::uint32_t z, const std::string& voxels) {
+    return little(0, 1) + little(x, 4) + little(y, 4) + little(z, 4) + little(0, 12) + voxels;
+  };
+  const auto open = [&](const std::vector<std::string>& matrices) {
+    SceneArguments arguments;
+    std::string text =
+        little(0x101, 4) + little(0, 4) + little(1, 4) + little(0, 8) + little(matrices.size(), 4);
+    for (const std::string& each : matrices) {
+      text += each;
+    }
+    arguments.scene = folder.write("a.qb", text);
+    return open_scene(arguments);
+  };
+  using Voxels = std::map<std::array<std::int32_t, 3>, std::uint8_t>;
+  const auto both = [](const SceneSource& source, int* calls) {
+    std::array<Voxels, 2> all;
+    source.stream([&](auto x, auto y, auto z, std::uint8_t m) { all[0][{x, y, z}] = m; }, {});
+    source.stream_blocks(
+        [&](const Vec3i& corner, int level, std::uint8_t m) {
+          ++*calls;
+          for_voxels(corner, level, [&](auto x, auto y, auto z) { all[1][{x, y, z}] = m; });
+        },
+        {});
+    CHECK(all[0] == all[1]);
+    return all[0].size();
+  };
+  int calls = 0;
+  CHECK(both(*open({matrix(8, 12, 16, repeated(little(0xFF0000FF, 4), 8 * 12 * 16))}), &calls) ==
+        8 * 12 * 16);
+  CHECK(calls == 2 * 3 * 4);
+  SplitMix64 random(5);
+  std::vector<std::string> layers;  // each over the one before
+  for (int layer = 0; layer < 2; ++layer) {
+    std::string mixed;
+    for (int i = 0; i < 9 * 7 * 10; ++i) {
+      mixed += little(std::array{0U, 0xFF0000FFU, 0xFF00FF00U, 0xFFFF0000U}[random.next() % 4], 4);
+    }
+    layers.push_back(matrix(9, 7, 10, mixed));
+  }
+  const std::size_t solid = both(*open(layers), &calls);
+  CHECK(solid > 500);
+  CHECK(solid < 630);
 }
 
 TEST_CASE("kvx: slabs -> voxels with z up and six-bit colours") {

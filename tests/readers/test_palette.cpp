@@ -26,6 +26,8 @@ ColorHistogram histogram_of(const std::vector<Rgb>& colors) {
   return histogram;
 }
 
+constexpr std::uint32_t kColorBins = 32768;  // of 5 bits a channel
+
 /// The colour of bin number `bin`'s lowest corner.
 Rgb bin_color(std::uint32_t bin) {
   return {static_cast<std::uint8_t>(bin >> 10 << 3), static_cast<std::uint8_t>((bin >> 5 & 31) << 3),
@@ -83,12 +85,54 @@ TEST_CASE("palette: lights of several powers -> each its own; of one entry the m
   CHECK(map.palette()[map.index({0, 255, 0}, true)].flux == 2);
 }
 
-TEST_CASE("palette: a bin of several colours -> their rounded average") {
-  const PaletteMap map(histogram_of({{16, 16, 16}, {16, 16, 17}, {16, 23, 17}}));
-  CHECK(map.colors() == 1);
-  CHECK(map.palette()[1].color == Rgb{16, 18, 17});
-  const PaletteMap rounded(histogram_of({{0, 0, 0}, {4, 4, 4}}));
-  CHECK(rounded.error() == 2);
+TEST_CASE("palette: colours that differ by one -> each exactly; 256 greys -> one pair shares an entry") {
+  const std::vector<Rgb> close{{16, 16, 16}, {16, 16, 17}, {16, 17, 17}};
+  const PaletteMap map(histogram_of(close));
+  CHECK(map.colors() == 3);
+  CHECK(map.error() == 0);
+  for (const Rgb& color : close) {
+    CHECK(map.palette()[map.index(color)].color == color);
+  }
+  std::vector<Rgb> greys;
+  for (int i = 0; i < 256; ++i) {
+    const auto level = static_cast<std::uint8_t>(i);
+    greys.push_back({level, level, level});
+  }
+  const PaletteMap ramp(histogram_of(greys));
+  CHECK(ramp.colors() == 255);
+  CHECK(ramp.error() == doctest::Approx(std::sqrt(1.0 / 256)));
+}
+
+TEST_CASE("palette: more colours than are counted one by one -> bins, whatever the order; no entry far off") {
+  // All colours of 6 bits a channel: 262,144, which are counted in bins of 5.
+  ColorHistogram forward;
+  ColorHistogram backward;
+  for (std::uint32_t i = 0; i < 1U << 18; ++i) {
+    const auto add = [](ColorHistogram& to, std::uint32_t number) {
+      to.add({static_cast<std::uint8_t>(number >> 12 << 2),
+              static_cast<std::uint8_t>((number >> 6 & 63) << 2),
+              static_cast<std::uint8_t>((number & 63) << 2)});
+    };
+    add(forward, i);
+    add(backward, (1U << 18) - 1 - i);
+  }
+  CHECK(forward.index().bits() == 5);
+  CHECK(forward.bins().size() == kColorBins);
+  const PaletteMap map(forward);
+  const PaletteMap other(backward);
+  for (std::size_t i = 0; i < 256; ++i) {
+    CHECK(map.palette()[i].color == other.palette()[i].color);
+  }
+  CHECK(map.error() < 15);
+  // A light beside them leaves room for bins of 4 only.
+  forward.add({255, 0, 0}, 512);
+  CHECK(forward.index().bits() == 4);
+  CHECK(PaletteMap(forward).palette()[PaletteMap(forward).index({255, 0, 0}, true)].color == Rgb{255, 0, 0});
+  ColorHistogram pair(5);
+  pair.add({0, 0, 0});
+  pair.add({4, 4, 4});
+  CHECK(PaletteMap(pair).colors() == 1);
+  CHECK(PaletteMap(pair).error() == 2);
 }
 
 TEST_CASE("palette: 255 bins -> exact; 256 -> median cut within a bin's distance") {

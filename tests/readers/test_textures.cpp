@@ -316,6 +316,73 @@ TEST_CASE(
   CHECK(columns_of(quad.source()) == "rrrrrrrrbbbbbbbb");
 }
 
+TEST_CASE("gltf: unlit materials -> their base colour, and one note that they are lit") {
+  Quad quad;
+  quad.material =
+      R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"extensions":{"KHR_materials_unlit":{}}})";
+  quad.more = R"("extensionsRequired":["KHR_materials_unlit"],)";
+  CHECK(columns_of(quad.source()) == "rrrrrrrrbbbbbbbb");
+  CHECK(notes_of(quad.source()).size() == 1);
+  CHECK(notes_hold(quad.source(), "1 material is unlit"));
+}
+
+TEST_CASE("mesh: colours of vertices alone -> mixed as light where the voxel lies, from each format") {
+  const auto check = [](const Source& source) {
+    const auto voxels = voxels_of(source, 5);
+    REQUIRE(voxels.size() == 32 * 32);
+    for (const auto& [place, color] : voxels) {
+      // Black on the left, white on the right; the world's sides are half a voxel beyond the quad's.
+      const double light = std::clamp((place[0] + 0.5) / 32, 0.0, 1.0);
+      CHECK(std::abs(light_of(color.r) - light) < 0.04);
+      CHECK(color.g == color.r);
+    }
+    CHECK(voxels.at({20, 3}) == voxels.at({20, 28}));  // of two triangles
+  };
+  Quad quad;
+  quad.material = "{}";
+  quad.attributes = R"(,"COLOR_0":2)";
+  quad.colors = {0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1};
+  check(quad.source());
+  const auto bytes = [](const std::string& text) { return SharedBytes::own(text); };
+  check(read_obj(bytes("v 0 0 0 0 0 0\nv 1 0 0 1 1 1\nv 1 1 0 1 1 1\nv 0 1 0 0 0 0\nf 1 2 3 4\n"), {}, {}));
+  check(read_off(
+      bytes("COFF\n4 1 0\n0 0 0 0 0 0 255\n1 0 0 255 255 255 255\n1 1 0 255 255 255 255\n0 1 0 0 0 0 255\n"
+            "4 0 1 2 3\n"),
+      {}, {}));
+  check(read_ply(bytes("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                       "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 0\n"
+                       "1 0 0 255 255 255\n1 1 0 255 255 255\n0 1 0 0 0 0\n4 0 1 2 3\n"),
+                 {}, {}));
+}
+
+TEST_CASE("mesh: colours of vertices finer than voxels -> their average as light; of a large face never") {
+  TriangleMesh mesh;
+  constexpr std::uint32_t kSide = 129;
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+    mesh.positions.push_back({static_cast<double>(i % kSide), static_cast<double>(i / kSide), 0});
+    mesh.colors.push_back((i % kSide + i / kSide) % 2 == 0 ? Rgb{0, 0, 0} : Rgb{});
+    if (i % kSide + 1 < kSide && i / kSide + 1 < kSide) {
+      mesh.triangles.push_back({i, i + 1, i + kSide + 1});
+      mesh.triangles.push_back({i, i + kSide + 1, i + kSide});
+    }
+  }
+  for (const auto& [place, color] : voxels_of(mesh)) {
+    CHECK(std::abs(color.g - 188) <= 6);
+  }
+  // Two triangles in a red and a blue half, whose corners lie in the same voxels.
+  TriangleMesh halves;
+  for (const double from : {0.0, 1.0}) {
+    const auto first = static_cast<std::uint32_t>(halves.positions.size());
+    halves.positions.insert(halves.positions.end(),
+                            {{from, 0, 0}, {from + 1, 0, 0}, {from + 1, 2, 0}, {from, 2, 0}});
+    halves.colors.insert(halves.colors.end(), 4, from == 0 ? kRed : kBlue);
+    halves.triangles.push_back({first, first + 1, first + 2});
+    halves.triangles.push_back({first, first + 2, first + 3});
+  }
+  CHECK(columns_of(halves) == "rrrrrrrrbbbbbbbb");
+}
+
 TEST_CASE("texture: at the border of a picture -> nothing of the opposite border, whatever its wrap mode") {
   constexpr Pixel kClearPixel{0, 0, 0, 0};
   for (const char* const mode : {"OPAQUE", "MASK", "BLEND"}) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/mesh_shade.h"
 #include "scene/random.h"
 #include "scene/voxelise.h"
 #include "scene/world_fit.h"
@@ -500,17 +501,14 @@ TEST_CASE("voxelise: a vertex that no triangle uses -> does not shrink the rest"
   CHECK(voxels_of(mesh, 4) == voxels_of(tetrahedron(), 4));
 }
 
-TEST_CASE("voxelise: vertex colours -> palette index of their average") {
+TEST_CASE("voxelise: vertex colours without a palette -> material 0") {
   TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {{255, 0, 30}, {0, 255, 30}, {0, 0, 31}}};
-  CHECK(triangle_color(mesh, 0) == Rgb{85, 85, 30});
-  const PaletteMap colors(triangle_colors(mesh));
   int voxels = 0;
-  voxelise(mesh, 3, false, &colors, [&](int, int, int, std::uint8_t material) {
+  voxelise(mesh, 3, false, nullptr, [&](int, int, int, std::uint8_t material) {
     ++voxels;
-    CHECK(colors.palette()[material].color == Rgb{85, 85, 30});
+    CHECK(material == 0);
   });
   CHECK(voxels > 0);
-  voxelise(mesh, 3, false, nullptr, [](int, int, int, std::uint8_t material) { CHECK(material == 0); });
 }
 
 TEST_CASE("voxelise: repeated triangles -> voxelised once, the last material as ever") {
@@ -539,7 +537,7 @@ TEST_CASE("voxelise: repeated triangles -> voxelised once, the last material as 
     if (!red_last) {
       mesh.triangles.push_back({3, 4, 5});
     }
-    const PaletteMap colors(triangle_colors(mesh));
+    const PaletteMap colors(mesh_colors(mesh, 6, true));
     std::map<std::array<std::int32_t, 3>, std::uint8_t> last;
     voxelise(mesh, 6, true, &colors, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t m) {
       last[{x, y, z}] = m;

@@ -30,7 +30,7 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
     options.display = DisplayFacts{PixelFormat::kRgb888, command.view.width_px, command.view.height_px};
   }
   options.camera = [&command, &source, note](const CompactTree& tree) {
-    const SceneShape shape = shape_of(tree);
+    const SceneShape shape = shape_of(source, tree);
     const bool for_board = command.scene.board != nullptr;
     Framing framing =
         for_board ? frame_round(command.view, source, shape) : frame_scene(command.view, source, shape);

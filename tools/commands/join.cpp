@@ -189,7 +189,9 @@ void run(const JoinCommand& command) {
   const Whole whole(command.parts);
   check_kind(command, whole.header());
   const bool is_picture = whole.header().kind == PartKind::kRows;
-  OutputSet outputs({is_picture || !is_sequence(command.output) ? command.output : ""}, command.parts);
+  OutputSet outputs(
+      {is_picture || !is_sequence(command.output) ? command.output : ""}, command.parts,
+      is_picture ? std::vector<std::string>() : sequence_names(command.output, whole.header().all));
   if (is_picture) {
     join_picture(command, whole, outputs[0]);
   } else {

@@ -346,7 +346,7 @@ void run(const RenderCommand& given) {
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
   OutputSet outputs({command.output.whole_path(), command.output.hits_path, command.output.depth_path,
                      command.scene.stats_path},
-                    {command.scene.arguments.scene, command.output.camera_path});
+                    {command.scene.arguments.scene, command.output.camera_path}, command.output.sequence());
   const ImageKind kind = command.output.kind(ImageKind::kPpm);
   // A board's picture is drawn as its display takes it.
   const PixelFormat display =

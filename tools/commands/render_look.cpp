@@ -224,6 +224,17 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
   finish(command, stats, studio.framing().note, outputs);
 }
 
+// One of the frames that a film plays, counted from its first.
+std::unique_ptr<SceneSource> open_frame(const RenderCommand& command, std::int64_t number) {
+  SceneArguments arguments = command.scene.arguments;
+  *arguments.frame += static_cast<std::uint32_t>(number);
+  try {
+    return open_scene(arguments);
+  } catch (const InputError& error) {
+    throw InputError("frame " + std::to_string(*arguments.frame) + ": " + error.what());
+  }
+}
+
 // A film's frames, each drawn on demand.
 class Filming {
  public:
@@ -238,9 +249,7 @@ class Filming {
   const Image& draw(std::size_t number) {
     bar_.update(static_cast<double>(number) / static_cast<double>(framings_.size()));
     if (command_.output.played && number != 0) {
-      SceneArguments arguments = command_.scene.arguments;
-      *arguments.frame += static_cast<std::uint32_t>(number);
-      const auto source = open_scene(arguments);
+      const auto source = open_frame(command_, static_cast<std::int64_t>(number));
       LookStudio studio(command_, *source, &studio_);
       paint(studio, number);
     } else {
@@ -307,6 +316,11 @@ std::vector<Framing> film_framings(const RenderCommand& command, const SceneSour
     throw InputError(
         "there is no frame " + std::to_string(last) + " for --frames; " +
         (source.frames() == 1 ? "it holds still" : "the last is " + std::to_string(source.frames() - 1)));
+  }
+  // What is wrong with a later frame is said before the first is drawn.
+  const RowRange drawn = output.frames.value_or(RowRange{0, output.played->count});
+  for (std::int64_t i = std::max(drawn.first, 1); i < std::int64_t{drawn.first} + drawn.count; ++i) {
+    open_frame(command, i);
   }
   return std::vector<Framing>(static_cast<std::size_t>(output.played->count),
                               frame_scene(command.view, source, shape));

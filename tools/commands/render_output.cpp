@@ -116,6 +116,11 @@ std::string RenderOutput::whole_path() const {
   return is_film() && is_sequence(path) ? "" : path;
 }
 
+std::vector<std::string> RenderOutput::sequence() const {
+  return is_film() && !frames ? sequence_names(path, static_cast<std::size_t>(film_frames()))
+                              : std::vector<std::string>();
+}
+
 ImageKind RenderOutput::kind(ImageKind of_rows) const {
   if (rows) {
     return is_mono_part(path) ? ImageKind::kPbm : of_rows;
@@ -156,9 +161,7 @@ void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
     cameras = smoothed(camera_path, cameras, static_cast<int>(std::lround(rate * *seconds)));
   }
   if (frames) {
-    const std::int64_t all = turntable != 0 ? turntable
-                             : played       ? played->count
-                                            : static_cast<std::int64_t>(cameras.cameras.size());
+    const std::int64_t all = film_frames();
     check_range("--part", *frames, all, "the film of " + std::to_string(all) + " frames");
   }
 }

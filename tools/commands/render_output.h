@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "commands/camera_path.h"
 #include "output/image.h"
@@ -46,6 +47,14 @@ struct RenderOutput {
   }
   /// The one file that holds it all; empty for a picture a frame.
   std::string whole_path() const;
+  /// Of the whole film, once its cameras are read.
+  std::int64_t film_frames() const {
+    return turntable != 0 ? turntable
+           : played       ? played->count
+                          : static_cast<std::int64_t>(cameras.cameras.size());
+  }
+  /// The names of a picture a frame.
+  std::vector<std::string> sequence() const;
   /// How the picture is kept: `of_rows` for a part of one, unless it is to be rows of a .pbm.
   ImageKind kind(ImageKind of_rows) const;
   /// Ends the command as wrong usage where --output, --rows, --part and what makes a film do not go together,

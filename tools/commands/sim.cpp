@@ -108,7 +108,9 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.display = DisplayFacts{board.format, board.width_px, board.height_px};
     view.side = NamedView::kBest;
     view.fov_degrees = kPictureFov;
-    options.camera = [&](const CompactTree& tree) { return frame_round(view, *source, shape_of(tree)).kept; };
+    options.camera = [&](const CompactTree& tree) {
+      return frame_round(view, *source, shape_of(*source, tree)).kept;
+    };
     Baked made = with_progress("baking", command.scene.quiet, [&](const Progress& progress) {
       return bake_within({&board, std::nullopt}, *source, &options, progress);
     });

@@ -106,29 +106,41 @@ bool is_one_file(const FilePlace& a, const FilePlace& b) {
          ::stat((second.parent_path() / ".").c_str(), &other) == 0 && is_same_inode(folder, other);
 }
 
-OutputClaim::OutputClaim(const std::vector<std::string>& paths, const std::vector<std::string>& inputs) {
+OutputClaim::OutputClaim(const std::vector<std::string>& paths, const std::vector<std::string>& inputs,
+                         const std::vector<std::string>& sequence) {
   Claims& all = claims();
   const std::lock_guard lock(all.mutex);
   std::vector<std::string> read = all.inputs;
   read.insert(read.end(), inputs.begin(), inputs.end());
   std::erase(read, "");
-  for (const std::string& path : paths) {
-    if (path.empty()) {
-      continue;
-    }
+  std::vector<FilePlace> read_places;
+  for (const std::string& input : read) {
+    read_places.emplace_back(input == "-" ? "./-" : input);
+  }
+  const auto claim = [&](const std::string& path, std::size_t others) {
     const FilePlace place(path);
-    for (const FilePlace& other : places_) {
+    for (std::size_t i = 0; i < others; ++i) {
+      const FilePlace& other = places_[i];
       const bool is_one_descriptor = place.descriptor >= 0 && place.descriptor == other.descriptor;
       if ((is_one_descriptor || !is_device(place)) && is_one_file(place, other)) {
         throw OutputError((path == "-" ? "standard output" : path) + ": two outputs cannot share it");
       }
     }
-    for (const std::string& input : read) {
-      if (spoils(place, FilePlace(input == "-" ? "./-" : input))) {
+    for (const FilePlace& input : read_places) {
+      if (spoils(place, input)) {
         refuse_input(place);
       }
     }
     places_.push_back(place);
+  };
+  for (const std::string& path : paths) {
+    if (!path.empty()) {
+      claim(path, places_.size());
+    }
+  }
+  const std::size_t single = places_.size();
+  for (const std::string& path : sequence) {
+    claim(path, single);
   }
   for (const FilePlace& place : places_) {
     all.outputs.push_back(&place);

@@ -28,7 +28,9 @@ class OutputClaim {
  public:
   /// Throws OutputError when two of `paths` are one file, for whoever writes there last would win, or when one of them
   /// is among `inputs` or what was read before (below). Empty paths are skipped.
-  OutputClaim(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
+  /// `sequence`: further outputs, whose names differ from one another and are not compared.
+  OutputClaim(const std::vector<std::string>& paths, const std::vector<std::string>& inputs,
+              const std::vector<std::string>& sequence = {});
   ~OutputClaim();
   OutputClaim(const OutputClaim&) = delete;
   OutputClaim& operator=(const OutputClaim&) = delete;

@@ -4,8 +4,9 @@
 
 namespace thimble::tools {
 
-OutputSet::OutputSet(const std::vector<std::string>& paths, const std::vector<std::string>& inputs)
-    : claim_(paths, inputs) {
+OutputSet::OutputSet(const std::vector<std::string>& paths, const std::vector<std::string>& inputs,
+                     const std::vector<std::string>& sequence)
+    : claim_(paths, inputs, sequence) {
   for (const std::string& path : paths) {
     files_.push_back(path.empty() ? nullptr : std::make_unique<OutputFile>(path));
     has_standard_output_ = has_standard_output_ || (!path.empty() && files_.back()->is_standard_output());

@@ -16,8 +16,10 @@ namespace thimble::tools {
 class OutputSet {
  public:
   /// An output for each of `paths`; an empty one is not wanted. Throws OutputError when one cannot be opened,
-  /// or when two are one file, or one is among `inputs` (OutputClaim).
-  OutputSet(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
+  /// or when two are one file, or one is among `inputs` (OutputClaim). Nothing of a `sequence` is opened here, only
+  /// claimed.
+  OutputSet(const std::vector<std::string>& paths, const std::vector<std::string>& inputs,
+            const std::vector<std::string>& sequence = {});
 
   /// The output of that path, by its place among `paths`; null where there is none.
   OutputFile* operator[](std::size_t index) const { return files_[index].get(); }

@@ -479,6 +479,7 @@ class Scene {
     Look& look = looks_[*material];
     const std::string place = "material " + std::to_string(*material);
     const json& entry = file_.entry("materials", *material);
+    unlit_ += gltf_extension(entry, "KHR_materials_unlit") != nullptr ? 1U : 0U;
     const json* glossy = gltf_extension(entry, "KHR_materials_pbrSpecularGlossiness");
     const json* surface = glossy != nullptr ? glossy : gltf_member(entry, "pbrMetallicRoughness");
     const json* texture = nullptr;
@@ -599,6 +600,10 @@ class Scene {
 
   void add_notes() {
     textures_.add_notes(mesh_.notes);
+    if (unlit_ != 0) {
+      mesh_.notes.push_back(std::to_string(unlit_) + (unlit_ == 1 ? " material is" : " materials are") +
+                            " unlit in the file and drawn in the scene's light like others");
+    }
     if (file_.count("animations") != 0 || file_.count("skins") != 0) {
       mesh_.notes.push_back("its animations and skins are not drawn: all stands as it does at rest");
     }
@@ -617,6 +622,7 @@ class Scene {
   std::uint64_t bytes_ = 0;
   TriangleMesh mesh_;
   bool is_colored_ = false;
+  std::size_t unlit_ = 0;  ///< materials
   bool is_clear_ = false;  ///< some triangles are
   Textures textures_;
   std::map<std::uint64_t, Look> looks_;  ///< by material

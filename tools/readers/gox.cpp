@@ -6,15 +6,18 @@
 // and the picture of the whole are passed over. z is up in the file, too; the lowest corner of what is solid is 0,0,0.
 //
 // A file holds blocks of 16 x 16 x 16 voxels as pictures of 64 x 64 pixels, x the fastest, then y; layers say which
-// block lies where. Blocks are decoded each time that they are streamed: constant ones take a hundredth of their
-// bytes in the file, which memory is not to take.
+// block lies where. Blocks are decoded each time that they are streamed, for they take many times their bytes in the
+// file; but constant ones, which take least there, once.
 //
 // Source of the format: Guillaume Chereau, the head of Goxel's "gox.c".
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +45,7 @@ class GoxGrid final : public VoxelGrid {
       notes.push_back(std::to_string(left_out_) + (left_out_ == 1 ? " layer is" : " layers are") +
                       " not drawn: a shape, or a copy of another that is more than moved by whole voxels");
     }
+    place_blocks();
     measure();
   }
 
@@ -60,6 +64,12 @@ class GoxGrid final : public VoxelGrid {
     ByteReader blocks;
     Corner moved_by{};
     bool is_drawn = true;
+  };
+
+  struct Block {
+    std::uint32_t picture = 0;
+    Corner corner{};
+    auto operator<=>(const Block&) const = default;
   };
 
   void read_chunks() {
@@ -151,36 +161,61 @@ class GoxGrid final : public VoxelGrid {
     return is_only_moved;
   }
 
+  /// The blocks of all layers, but for those that come again later at the same place.
+  void place_blocks() {
+    constant_.resize(pictures_.size());
+    for (const Layer& layer : layers_) {
+      for (ByteReader reader = layer.blocks; reader.remaining() > 0;) {
+        Block block{reader.u32(), layer.moved_by};
+        for (std::int64_t& coordinate : block.corner) {
+          coordinate +=
+              reader.i32();  // version 1 counts from the middle, which moving to 0,0,0 makes the same
+        }
+        reader.skip(4);
+        if (block.picture >= pictures_.size()) {
+          reader.fail("block " + std::to_string(block.picture) + " is not among the " +
+                      std::to_string(pictures_.size()) + " of the file");
+        }
+        placed_.push_back(block);
+      }
+    }
+    std::set<Block> later;
+    std::set<std::uint32_t> seen;
+    std::vector<Block> blocks;
+    for (; !placed_.empty(); placed_.pop_back()) {
+      if (!later.insert(placed_.back()).second) {
+        continue;
+      }
+      blocks.push_back(placed_.back());
+      const std::uint32_t picture = blocks.back().picture;
+      if (seen.insert(picture).second) {
+        const auto rgba = decode(pictures_[picture]);
+        if (std::memcmp(rgba.get(), rgba.get() + 4, 4 * (kBlockVoxels - 1)) == 0) {
+          constant_[picture] = std::array{rgba.get()[0], rgba.get()[1], rgba.get()[2], rgba.get()[3]};
+        }
+      }
+    }
+    placed_.assign(blocks.rbegin(), blocks.rend());
+  }
+
   template <class Take>
   void stream(const Take& take) const {
     // Copies of a layer come back to its blocks.
     constexpr std::size_t kKept = 64;
     std::array<std::pair<std::uint32_t, std::shared_ptr<const std::uint8_t>>, kKept> kept{};
-    for (const Layer& layer : layers_) {
-      for (ByteReader reader = layer.blocks; reader.remaining() > 0;) {
-        const std::uint32_t number = reader.u32();
-        Corner corner = layer.moved_by;
-        for (std::int64_t& coordinate : corner) {
-          coordinate +=
-              reader.i32();  // version 1 counts from the middle, which moving to 0,0,0 makes the same
-        }
-        reader.skip(4);
-        if (number >= pictures_.size()) {
-          reader.fail("block " + std::to_string(number) + " is not among the " +
-                      std::to_string(pictures_.size()) + " of the file");
-        }
-        auto& [decoded, rgba] = kept[number % kKept];
-        if (rgba == nullptr || decoded != number) {
-          rgba = decode(pictures_[number]);
-          decoded = number;
-        }
-        for (std::int64_t i = 0; i < kBlockVoxels; ++i) {
-          const std::uint8_t* pixel = rgba.get() + 4 * i;
-          if (pixel[3] >= kSolidAlpha) {
-            take(Corner{corner[0] + i % kBlockSide, corner[1] + i / kBlockSide % kBlockSide,
-                        corner[2] + i / kBlockSide / kBlockSide},
-                 Rgb{pixel[0], pixel[1], pixel[2]});
-          }
+    for (const auto& [number, corner] : placed_) {
+      auto& [decoded, rgba] = kept[number % kKept];
+      const auto& constant = constant_[number];
+      if (!constant && (rgba == nullptr || decoded != number)) {
+        rgba = decode(pictures_[number]);
+        decoded = number;
+      }
+      for (std::int64_t i = 0; i < kBlockVoxels; ++i) {
+        const std::uint8_t* pixel = constant ? constant->data() : rgba.get() + 4 * i;
+        if (pixel[3] >= kSolidAlpha) {
+          take(Corner{corner[0] + i % kBlockSide, corner[1] + i / kBlockSide % kBlockSide,
+                      corner[2] + i / kBlockSide / kBlockSide},
+               Rgb{pixel[0], pixel[1], pixel[2]});
         }
       }
     }
@@ -219,8 +254,11 @@ class GoxGrid final : public VoxelGrid {
 
   SharedBytes file_;
   std::vector<ByteReader> pictures_;
+  std::vector<std::optional<std::array<std::uint8_t, 4>>>
+      constant_;  ///< the one pixel of a picture that is all alike
   std::map<std::uint32_t, Layer> by_id_;
   std::vector<Layer> layers_;  ///< those that are visible
+  std::vector<Block> placed_;
   std::uint64_t blocks_ = 0, left_out_ = 0;
   Corner low_{};
   std::array<std::int32_t, 3> size_{};
@@ -232,7 +270,7 @@ bool looks_like_gox(std::span<const std::uint8_t> bytes) {
   return SharedBytes{bytes, nullptr}.text().starts_with("GOX ");
 }
 
-/// Memory: some 100 bytes a block and layer of the file.
+/// Memory: some 200 bytes a block and layer of the file.
 /// @throws InputError  another beginning or version, chunks that end early, a block that the file does not have or
 ///   that is no picture of 64 x 64 pixels, more than 2^17 blocks, a scene over `kGridSideLimit` on a side, no voxel
 Source read_gox(const SharedBytes& file, const ReadOptions&, const Progress&) {

@@ -2,7 +2,7 @@
 //
 // What is read: all matrices at their positions, colours as RGBA or (`.qb`) BGRA; a voxel whose alpha (or mask of
 // visible sides) is 0 is empty. What a project hides stays hidden; a compound is its matrix, in which the file has put
-// its parts together. In the file y is up and z to the left or to the right; here z is up, (x, y, z) -> (x, -z, y),
+// its parts together. In the file y is up, and z comes towards the eye or, left-handed, goes away from it; here z is up, (x, y, z) -> (x, -z, y),
 // and the lowest corner of all matrices is 0,0,0. Pivots, and 36 bytes of a model whose meaning is not known, are
 // passed over.
 //
@@ -74,11 +74,18 @@ class QubicleGrid final : public VoxelGrid {
     is_bgra_ = flag(reader, "color format");
     is_left_handed_ = !flag(reader, "z axis");
     is_packed_ = flag(reader, "compression");
-    flag(reader, "visibility mask");
+    bool is_goxel = !flag(reader, "visibility mask") && !is_packed_ && !is_left_handed_ && !is_bgra_;
     const std::uint32_t count = reader.u32();
     for (std::uint32_t i = 0; i < count; ++i) {
-      reader.skip(reader.u8());  // the name
+      const std::string_view name = reader.text(reader.u8());
+      is_goxel = is_goxel && (name.starts_with("Layer.") || name == "background");
       add_matrix(reader, true);
+    }
+    if (is_goxel && count != 0) {
+      is_left_handed_ = true;
+      notes.emplace_back(
+          "Goxel wrote it, by the names of its layers: its z axis is taken as left-handed, which Goxel's is, "
+          "although the file says right-handed");
     }
   }
 

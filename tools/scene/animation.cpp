@@ -1,6 +1,7 @@
 #include "scene/animation.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "host/packed_picture.h"
@@ -16,16 +17,28 @@ namespace thimble::tools {
 // hides the steps of a gradient, and stands still from frame to frame.
 class GifColors {
  public:
-  explicit GifColors(const ColorHistogram& histogram) : map_(histogram) {
+  static constexpr int kBits = 5;  // a channel of a bin
+
+  explicit GifColors(const ColorHistogram& histogram) {
+    const PaletteMap map(histogram);
     for (std::size_t i = 0; i < colors_.size(); ++i) {
-      const Rgb color = map_.palette()[i].color;
+      const Rgb color = map.palette()[i].color;
       colors_[i] = {color.r, color.g, color.b};
+    }
+    for (std::size_t bin = 0; bin < entries_.size(); ++bin) {
+      const auto middle = [&](unsigned shift) {
+        return static_cast<std::uint8_t>((bin >> shift & 31) * 8 + 4);
+      };
+      entries_[bin] = map.index({middle(10), middle(5), middle(0)});
     }
   }
   const GifPalette& palette() const { return colors_; }
   std::vector<std::uint8_t> indices(const Image& image) const {
     std::vector<std::uint8_t> result;
-    for_pixels(image, [&](Rgb color) { result.push_back(map_.index(color)); });
+    for_pixels(image, [&](Rgb color) {
+      const std::size_t bin = (color.r >> 3) << 10 | (color.g >> 3) << 5 | color.b >> 3;
+      result.push_back(entries_[bin]);
+    });
     return result;
   }
   static void count(const Image& image, ColorHistogram* histogram) {
@@ -49,8 +62,8 @@ class GifColors {
     }
   }
 
-  PaletteMap map_;
   GifPalette colors_{};
+  std::array<std::uint8_t, 1 << 3 * kBits> entries_{};  // of every bin
 };
 
 namespace {
@@ -90,6 +103,14 @@ bool is_sequence(const std::string& path) {
   return image_kind(path) && number_place(path);
 }
 
+std::vector<std::string> sequence_names(const std::string& path, std::size_t frames) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; is_sequence(path) && i < frames; ++i) {
+    names.push_back(numbered(path, i));
+  }
+  return names;
+}
+
 bool is_film(std::string_view path) {
   return path.ends_with(".gif") || path.ends_with(".y4m");
 }
@@ -113,7 +134,7 @@ Film::Film(OutputFile* file, const std::string& path, PartKind kind, std::size_t
     return;
   }
   constexpr std::size_t kSamples = 4;
-  ColorHistogram histogram;
+  ColorHistogram histogram(GifColors::kBits);
   GifColors::count(first, &histogram);
   for (std::size_t i = 1; i < kSamples; ++i) {
     GifColors::count(frame(i * frames / kSamples), &histogram);

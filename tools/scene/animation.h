@@ -20,6 +20,8 @@ class GifColors;
 bool is_film(std::string_view path);
 /// Whether it is one of a picture for each frame: frame_%03d.png, .jpg, .ppm ..., with one %d or %0Nd for its number.
 bool is_sequence(const std::string& path);
+/// The names of such pictures; of another path none.
+std::vector<std::string> sequence_names(const std::string& path, std::size_t frames);
 /// What these two take, for errors and help.
 inline constexpr const char* kFilmEndings = ".gif, .y4m or a picture a frame, such as frame_%03d.png";
 

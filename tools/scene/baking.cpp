@@ -121,7 +121,7 @@ class Assembly {
                      const UsedMaterials& used, LitDescription* lit) {
     Framing framing;
     framing.kept = camera_;
-    const SceneFacts facts = facts_of(source, *lit, shape_of(tree));
+    const SceneFacts facts = facts_of(source, *lit, shape_of(source, tree));
     *lit = baked_look(facts, framing);
     if (is_clay(facts)) {
       std::fill(palette_.begin(), palette_.end(), kClay);

@@ -43,7 +43,9 @@ struct Shade {
 /// One triangle of a mesh, seen from voxels.
 class MeshShade {
  public:
-  MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitTriangle& corners);
+  /// @param colors  of the mesh's vertices, or empty
+  MeshShade(const TriangleMesh& mesh, std::span<const Rgb> colors, std::size_t triangle,
+            const UnitTriangle& corners);
 
   /// Nothing where the triangle is clear; nor, where `only_over`, where the voxel's middle is not over the triangle.
   /// @param edges  those of all triangles, sorted
@@ -72,7 +74,11 @@ class MeshShade {
   /// Clear on the average and at the place itself: a voxel may cover much that is beside the mesh's part of a picture.
   bool is_clear(const Place& place) const;
 
+  /// The triangle's own colour, as light.
+  std::array<double, 3> tint_at(const Place& place) const;
+
   const TriangleMesh& mesh_;
+  std::span<const Rgb> colors_;
   std::size_t triangle_;
   UnitTriangle corners_;
   const MeshSurface* surface_ = nullptr;
@@ -94,8 +100,9 @@ bool is_inside(const std::array<double, 2>& place) {
   return place[0] >= 0 && place[1] >= 0 && place[0] + place[1] <= 1;
 }
 
-MeshShade::MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitTriangle& corners)
-    : mesh_(mesh), triangle_(triangle), corners_(corners), corner_(in_voxels(corners[0])) {
+MeshShade::MeshShade(const TriangleMesh& mesh, std::span<const Rgb> colors, std::size_t triangle,
+                     const UnitTriangle& corners)
+    : mesh_(mesh), colors_(colors), triangle_(triangle), corners_(corners), corner_(in_voxels(corners[0])) {
   edge_b_ = minus(in_voxels(corners[1]), corner_);
   edge_c_ = minus(in_voxels(corners[2]), corner_);
   bb_ = dot(edge_b_, edge_b_);
@@ -104,7 +111,8 @@ MeshShade::MeshShade(const TriangleMesh& mesh, std::size_t triangle, const UnitT
   area_ = bb_ * cc_ - bc_ * bc_;
   const auto& numbers =
       mesh.texcoord_corners.empty() ? mesh.triangles[triangle] : mesh.texcoord_corners[triangle];
-  surface_ = &mesh.surfaces[mesh.surface_of[triangle]];
+  static const MeshSurface kPlain;
+  surface_ = mesh.surfaces.empty() ? &kPlain : &mesh.surfaces[mesh.surface_of[triangle]];
   for (std::size_t i = 0; i < 3; ++i) {
     if (numbers[i] >= mesh.texcoords.size() || std::isnan(mesh.texcoords[numbers[i]][0])) {
       has_place_ = false;
@@ -185,7 +193,7 @@ std::uint64_t MeshShade::edge_key(std::size_t corner, bool is_neighbour) const {
 }
 
 void MeshShade::add_edges(std::vector<std::uint64_t>& edges) const {
-  for (std::size_t corner = 0; surface_ != nullptr && surface_->cutoff > 0 && corner < 3; ++corner) {
+  for (std::size_t corner = 0; surface_->cutoff > 0 && corner < 3; ++corner) {
     edges.push_back(edge_key(corner, false));
   }
 }
@@ -250,6 +258,19 @@ std::optional<Shade> MeshShade::glow_at(const Place& place, const std::array<dou
                static_cast<std::uint32_t>(std::fmin(power, kMost) * 256)};
 }
 
+std::array<double, 3> MeshShade::tint_at(const Place& place) const {
+  std::array<Rgb, 3> of{};
+  if (!mesh_.face_colors.empty()) {
+    of.fill(mesh_.face_colors[triangle_]);
+  } else if (!colors_.empty()) {
+    const auto& [a, b, c] = mesh_.triangles[triangle_];
+    of = {colors_[a], colors_[b], colors_[c]};
+  }
+  return {mixed(light_of(of[0].r), light_of(of[1].r), light_of(of[2].r), place),
+          mixed(light_of(of[0].g), light_of(of[1].g), light_of(of[2].g), place),
+          mixed(light_of(of[0].b), light_of(of[1].b), light_of(of[2].b), place)};
+}
+
 std::optional<Shade> MeshShade::at(const UnitPoint& voxel, bool only_over,
                                    std::span<const std::uint64_t> edges) const {
   const Real3 out = minus(Real3{voxel[0] + 0.5, voxel[1] + 0.5, voxel[2] + 0.5}, corner_);
@@ -261,33 +282,60 @@ std::optional<Shade> MeshShade::at(const UnitPoint& voxel, bool only_over,
   const bool has_picture = has_place_ && (surface_->color != nullptr || surface_->opacity != nullptr);
   const bool may_glow =
       surface_->emission != std::array<double, 3>{} && (surface_->glow == nullptr || has_place_);
-  if (!has_picture && !may_glow) {
-    return Shade{has_colors(mesh_) ? triangle_color(mesh_, triangle_) : Rgb{}};
-  }
   const Place place = is_over ? below : edge_place_of(out);
   if (has_picture && surface_->cutoff > 0 &&
       (is_clear(place) || (!is_over && goes_on(below, edges) && is_clear(below)))) {
     return std::nullopt;
   }
   const Texture::Sample sample = sample_at(place, 1);
-  std::array<double, 3> tint{1, 1, 1};
-  const auto tint_by = [&](Rgb p, Rgb q, Rgb r) {
-    tint = {mixed(light_of(p.r), light_of(q.r), light_of(r.r), place),
-            mixed(light_of(p.g), light_of(q.g), light_of(r.g), place),
-            mixed(light_of(p.b), light_of(q.b), light_of(r.b), place)};
-  };
-  if (!mesh_.face_colors.empty()) {
-    const Rgb color = mesh_.face_colors[triangle_];
-    tint_by(color, color, color);
-  } else if (!mesh_.colors.empty()) {
-    const auto& corners = mesh_.triangles[triangle_];
-    tint_by(mesh_.colors[corners[0]], mesh_.colors[corners[1]], mesh_.colors[corners[2]]);
-  }
+  const std::array<double, 3> tint = tint_at(place);
   const std::array<double, 3> reflected{tint[0] * sample.light[0], tint[1] * sample.light[1],
                                         tint[2] * sample.light[2]};
   const std::optional<Shade> glow = may_glow ? glow_at(place, reflected) : std::nullopt;
   return glow ? glow
               : Shade{{screen_byte(reflected[0]), screen_byte(reflected[1]), screen_byte(reflected[2])}};
+}
+
+/// The colours of the vertices. Those that all triangles around them are smaller than a voxel have the average, as light,
+/// of all such in their voxel: else what is finer than voxels would flicker from one to the next.
+std::vector<Rgb> vertex_colors(const TriangleMesh& mesh, const std::vector<UnitPoint>& units) {
+  std::vector<Rgb> colors = mesh.face_colors.empty() ? mesh.colors : std::vector<Rgb>();
+  std::vector<bool> is_fine(colors.size(), true);
+  for (const auto& corners : mesh.triangles) {
+    const auto& [a, b, c] = corners;
+    bool is_small = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = std::minmax({units[a][axis], units[b][axis], units[c][axis]});
+      is_small = is_small && high - low <= kUnitsPerVoxel;
+    }
+    for (std::size_t i = 0; !is_small && !colors.empty() && i < 3; ++i) {
+      is_fine[corners[i]] = false;
+    }
+  }
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> fine;  // by their voxels
+  for (std::uint32_t i = 0; i < colors.size(); ++i) {
+    if (is_fine[i] && units[i][0] != 0) {  // 0 is of no triangle
+      const auto voxel = [&](std::size_t axis) {
+        return static_cast<std::uint64_t>(units[i][axis] >> kUnitBits);
+      };
+      fine.emplace_back(voxel(2) << 40 | voxel(1) << 20 | voxel(0), i);
+    }
+  }
+  std::sort(fine.begin(), fine.end());
+  for (std::size_t first = 0, last = 0; first < fine.size(); first = last) {
+    std::array<double, 3> light{};
+    for (; last < fine.size() && fine[last].first == fine[first].first; ++last) {
+      const Rgb& color = colors[fine[last].second];
+      light = {light[0] + light_of(color.r), light[1] + light_of(color.g), light[2] + light_of(color.b)};
+    }
+    const auto count = static_cast<double>(last - first);
+    const Rgb average{screen_byte(light[0] / count), screen_byte(light[1] / count),
+                      screen_byte(light[2] / count)};
+    for (std::size_t i = first; i < last; ++i) {
+      colors[fine[i].second] = average;
+    }
+  }
+  return colors;
 }
 
 }  // namespace
@@ -296,6 +344,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
                      const std::function<std::uint8_t(Rgb, std::uint32_t power_q8)>& material_of,
                      const BlockSink& sink, const Progress& progress) {
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
+  const std::vector<Rgb> colors = vertex_colors(mesh, units);
   const std::size_t count = mesh.triangles.size();
   std::uint64_t all_cost = 0;
   const auto triangle_at = [&](std::size_t i) {
@@ -306,7 +355,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
   for (std::size_t i = 0; i < count; ++i) {
     const CellTriangle triangle = triangle_at(i);
     all_cost += rough_cost(triangle.corners);
-    MeshShade(mesh, i, triangle.corners).add_edges(edges);
+    MeshShade(mesh, colors, i, triangle.corners).add_edges(edges);
   }
   std::sort(edges.begin(), edges.end());
   std::uint64_t clear = 0;
@@ -329,7 +378,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
                    [&](const CellTriangle& triangle, const UnitPoint& voxel) {
                      if (!shade || number != triangle.number) {
                        number = triangle.number;
-                       shade.emplace(mesh, number, triangle.corners);
+                       shade.emplace(mesh, colors, number, triangle.corners);
                      }
                      return material_at(*shade, triangle, voxel);
                    });
@@ -340,7 +389,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
       progress(static_cast<double>(i) / static_cast<double>(2 * count));
     }
     const CellTriangle triangle = triangle_at(i);
-    const MeshShade shade(mesh, triangle.number, triangle.corners);
+    const MeshShade shade(mesh, colors, triangle.number, triangle.corners);
     voxelise_triangle(triangle.corners, 0, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
       if (const auto material = material_at(shade, triangle, {x, y, z})) {
         sink({x, y, z}, 0, *material);
@@ -350,10 +399,10 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
 }
 
 ColorHistogram mesh_colors(const TriangleMesh& mesh, int level, bool z_up) {
-  if (mesh.surfaces.empty()) {
-    return triangle_colors(mesh);
-  }
   ColorHistogram histogram;
+  if (!is_shaded(mesh)) {
+    return histogram;
+  }
   const auto count = [&](Rgb color, std::uint32_t power_q8) {
     histogram.add(color, power_q8);
     return std::uint8_t{0};

@@ -10,7 +10,8 @@ namespace thimble::tools {
 /// A bin in use: its rounded average and how many colours it stands for.
 struct PaletteMap::Swatch {
   std::array<std::uint8_t, 3> average{};
-  std::uint16_t bin = 0;
+  std::uint32_t key = 0;
+  std::size_t bin = 0;
   std::uint64_t count = 0;
 };
 
@@ -36,17 +37,15 @@ std::uint8_t rounded_average(std::uint64_t sum, std::uint64_t count) {
 
 std::vector<Swatch> used_bins(const ColorHistogram& histogram) {
   std::vector<Swatch> swatches;
-  for (std::size_t index = 0; index < 2 * kColorBins; ++index) {
-    const ColorHistogram::Bin& bin = histogram.bin(index);
-    if (bin.count == 0) {
-      continue;
-    }
-    Swatch swatch{.average = {}, .bin = static_cast<std::uint16_t>(index), .count = bin.count};
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      swatch.average[channel] = rounded_average(bin.sum[channel], bin.count);
-    }
-    swatches.push_back(swatch);
+  for (std::size_t i = 0; i < histogram.bins().size(); ++i) {
+    const auto& [count, sum, squares, power_q8] = histogram.bins()[i];
+    swatches.push_back({.average = {rounded_average(sum[0], count), rounded_average(sum[1], count),
+                                    rounded_average(sum[2], count)},
+                        .key = histogram.index().keys()[i],
+                        .bin = i,
+                        .count = count});
   }
+  std::sort(swatches.begin(), swatches.end(), [](const Swatch& a, const Swatch& b) { return a.key < b.key; });
   return swatches;
 }
 
@@ -77,7 +76,7 @@ std::size_t cut(std::vector<Swatch>& swatches, const Box& box) {
   const auto begin = swatches.begin() + static_cast<std::ptrdiff_t>(box.first);
   const auto end = swatches.begin() + static_cast<std::ptrdiff_t>(box.last);
   std::sort(begin, end, [axis = box.axis](const Swatch& a, const Swatch& b) {
-    return a.average[axis] != b.average[axis] ? a.average[axis] < b.average[axis] : a.bin < b.bin;
+    return a.average[axis] != b.average[axis] ? a.average[axis] < b.average[axis] : a.key < b.key;
   });
   std::uint64_t below = swatches[box.first].count;
   std::size_t middle = box.first + 1;
@@ -92,10 +91,10 @@ std::size_t cut(std::vector<Swatch>& swatches, const Box& box) {
 /// the earliest on a tie.
 std::vector<Box> median_cut(std::vector<Swatch>& swatches) {
   // What glows, the bins behind all others, shares no box with what does not.
-  const auto glowing =
-      static_cast<std::size_t>(std::find_if(swatches.begin(), swatches.end(),
-                                            [](const Swatch& swatch) { return swatch.bin >= kColorBins; }) -
-                               swatches.begin());
+  const auto glowing = static_cast<std::size_t>(
+      std::find_if(swatches.begin(), swatches.end(),
+                   [](const Swatch& swatch) { return swatch.key >= ColorBins::kGlows; }) -
+      swatches.begin());
   std::vector<Box> boxes;
   for (const auto& [first, last] :
        {std::pair(std::size_t{0}, glowing), std::pair(glowing, swatches.size())}) {
@@ -140,7 +139,60 @@ Material default_material() {
   return colored({236, 236, 232});
 }
 
-PaletteMap::PaletteMap(const ColorHistogram& histogram) : table_(2 * kColorBins) {
+std::size_t ColorBins::slot(std::uint32_t key) const {
+  std::size_t at = key * 0x9E3779B1U >> 16;
+  while (slots_[at] != 0 && keys_[slots_[at] - std::size_t{1}] != key) {
+    at = (at + 1) % slots_.size();
+  }
+  return at;
+}
+
+std::size_t ColorBins::find(std::uint32_t key) const {
+  const std::size_t number = slots_[slot(key)];
+  return number == 0 ? keys_.size() : number - 1;
+}
+
+void ColorBins::add(std::uint32_t key) {
+  const std::size_t at = slot(key);
+  keys_.push_back(key);
+  slots_[at] = static_cast<std::uint16_t>(keys_.size());
+}
+
+ColorHistogram::Bin& ColorHistogram::Bin::operator+=(const Bin& other) {
+  count += other.count;
+  squares += other.squares;
+  power_q8 += other.power_q8;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    sum[channel] += other.sum[channel];
+  }
+  return *this;
+}
+
+std::size_t ColorHistogram::bin_of(Rgb color, bool glows) {
+  while (true) {
+    const std::uint32_t key = index_.key(color, glows);
+    const std::size_t bin = index_.find(key);
+    if (bin < bins_.size()) {
+      return bin;
+    }
+    if (bins_.size() < ColorBins::kMost) {
+      index_.add(key);
+      bins_.emplace_back();
+      return bin;
+    }
+    ColorHistogram coarser(index_.bits() - 1);
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
+      const std::uint32_t was = index_.keys()[i];
+      const Rgb at{static_cast<std::uint8_t>(was >> 16), static_cast<std::uint8_t>(was >> 8),
+                   static_cast<std::uint8_t>(was)};
+      coarser.bins_[coarser.bin_of(at, was >= ColorBins::kGlows)] += bins_[i];
+    }
+    *this = std::move(coarser);
+  }
+}
+
+PaletteMap::PaletteMap(const ColorHistogram& histogram)
+    : bins_(histogram.index()), entries_(histogram.bins().size()) {
   palette_.fill(default_material());
   std::vector<Swatch> swatches = used_bins(histogram);
   if (swatches.empty()) {
@@ -156,43 +208,28 @@ PaletteMap::PaletteMap(const ColorHistogram& histogram) : table_(2 * kColorBins)
   }
   colors_ = static_cast<int>(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (swatches[boxes[i].first].bin >= kColorBins) {
+    if (swatches[boxes[i].first].key >= ColorBins::kGlows) {
       palette_[i + 1].kind = SurfaceKind::kEmit;
       palette_[i + 1].emission = 1;
     }
     for (std::size_t j = boxes[i].first; j < boxes[i].last; ++j) {
-      table_[swatches[j].bin] = static_cast<std::uint8_t>(i + 1);
+      entries_[swatches[j].bin] = static_cast<std::uint8_t>(i + 1);
     }
   }
   constexpr int kRounds = 4;
-  average_entries(histogram, swatches);
+  average_entries(histogram);
   for (int round = 0; swatches.size() > kMaxColors && round < kRounds; ++round) {
     for (const Swatch& swatch : swatches) {
-      table_[swatch.bin] = nearest_entry(swatch.average, swatch.bin >= kColorBins);
+      entries_[swatch.bin] = nearest_entry(swatch.average, swatch.key >= ColorBins::kGlows);
     }
-    average_entries(histogram, swatches);
-  }
-  for (std::size_t bin = 0; bin < table_.size(); ++bin) {  // those that nobody counted
-    if (table_[bin] == 0) {
-      const auto middle = [&](unsigned shift) {
-        return static_cast<std::uint8_t>((bin >> shift & 31) * 8 + 4);
-      };
-      table_[bin] = nearest_entry({middle(10), middle(5), middle(0)}, bin >= kColorBins);
-    }
+    average_entries(histogram);
   }
 }
 
-void PaletteMap::average_entries(const ColorHistogram& histogram, const std::vector<Swatch>& swatches) {
+void PaletteMap::average_entries(const ColorHistogram& histogram) {
   std::array<ColorHistogram::Bin, kMaxColors + 1> entries{};
-  for (const Swatch& swatch : swatches) {
-    ColorHistogram::Bin& entry = entries[table_[swatch.bin]];
-    const ColorHistogram::Bin& bin = histogram.bin(swatch.bin);
-    entry.count += bin.count;
-    entry.squares += bin.squares;
-    entry.power_q8 += bin.power_q8;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      entry.sum[channel] += bin.sum[channel];
-    }
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    entries[entries_[i]] += histogram.bins()[i];
   }
   double squares = 0;
   double count = 0;

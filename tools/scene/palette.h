@@ -1,14 +1,15 @@
 /// Colours of a cloud or a mesh to a palette of 256 entries.
 ///
 /// Index 0 is the default material (near white), the one of scenes without colours; colours get 1..255.
-/// Colours are counted in 32,768 bins, 5 bits a channel (`rrrrrgggggbbbbb`), each with the sums that give its
-/// exact average. With at most 255 bins in use every bin has an entry of its own, else the bins are divided
+/// Colours are counted one by one while there are at most 32,768 different ones, else in the finest bins of 7, 6, 5 or
+/// 4 bits a channel that are no more, each with the sums that give its exact average. With at most 255 bins in use every
+/// bin has an entry of its own, else the bins are divided
 /// by median cut (Paul Heckbert, "Color Image Quantization for Frame Buffer Display", SIGGRAPH 1982), and the entries
 /// moved to the averages of the bins nearest to them (Stuart Lloyd, "Least Squares Quantization in PCM", 1982). Integer
 /// arithmetic with fixed tie rules: the same colours give the same palette on every machine, whatever the
 /// order they came in.
 ///
-/// Memory: fixed. A histogram is 3 MiB, a palette map 64 KiB, however many colours there are.
+/// Memory: bounded. A histogram is at most 3 MiB, a palette map 0.4 MiB, however many colours there are.
 #pragma once
 
 #include <array>
@@ -20,17 +21,36 @@
 
 namespace thimble::tools {
 
-inline constexpr std::size_t kColorBins = 32768;
-
-/// The bin of a colour, 0 .. kColorBins - 1.
-constexpr std::size_t color_bin(Rgb color) {
-  return (std::size_t{color.r} >> 3) << 10 | (std::size_t{color.g} >> 3) << 5 | std::size_t{color.b} >> 3;
-}
-
 /// A plain one.
 Material colored(Rgb color);
 /// What palette index 0 looks like.
 Material default_material();
+
+/// Bins of colours, and of the same colours where they glow, numbered as they come.
+class ColorBins {
+ public:
+  static constexpr std::size_t kMost = 32768;
+  static constexpr std::uint32_t kGlows = 1U << 24;  ///< in a key, above its red, green and blue
+
+  explicit ColorBins(int bits) : bits_(bits), slots_(2 * kMost) {}
+  std::uint32_t key(Rgb color, bool glows) const {
+    const std::uint32_t channel = 0xFF00U >> bits_ & 0xFF;
+    return ((std::uint32_t{color.r} << 16 | std::uint32_t{color.g} << 8 | color.b) & channel * 0x010101U) |
+           (glows ? kGlows : 0);
+  }
+  /// The number of a bin, or how many there are where it is none of them.
+  std::size_t find(std::uint32_t key) const;
+  void add(std::uint32_t key);
+  const std::vector<std::uint32_t>& keys() const { return keys_; }
+  int bits() const { return bits_; }
+
+ private:
+  std::size_t slot(std::uint32_t key) const;
+
+  int bits_;  ///< a channel
+  std::vector<std::uint16_t> slots_;
+  std::vector<std::uint32_t> keys_;
+};
 
 /// Counts colours. Constant time a colour; room for 2^56 of them.
 class ColorHistogram {
@@ -40,38 +60,49 @@ class ColorHistogram {
     std::array<std::uint64_t, 3> sum{};  ///< of red, green, blue
     std::uint64_t squares = 0;           ///< of all three
     std::uint64_t power_q8 = 0;          ///< of what glows
+    Bin& operator+=(const Bin& other);
   };
 
-  ColorHistogram() : bins_(2 * kColorBins) {}
+  /// @param bits  that are told apart a channel, while there is room
+  explicit ColorHistogram(int bits = 8) : index_(bits) {}
   /// @param power_q8  of a colour that is given off as light, how many times as bright it is, in 1/256: it gets an
   /// entry of its own, a light's; 0: it is none
-  void add(Rgb color, std::uint32_t power_q8 = 0) {
-    Bin& bin = bins_[color_bin(color) + (power_q8 != 0 ? kColorBins : 0)];
-    bin.power_q8 += power_q8;
-    ++bin.count;
-    bin.sum[0] += color.r;
-    bin.sum[1] += color.g;
-    bin.sum[2] += color.b;
-    bin.squares += std::uint64_t{color.r} * color.r + std::uint64_t{color.g} * color.g +
-                   std::uint64_t{color.b} * color.b;
+  void add(Rgb color, std::uint32_t power_q8 = 0, std::uint64_t times = 1) {
+    if (times == 0) {
+      return;
+    }
+    const bool glows = power_q8 != 0;
+    if (last_ == bins_.size() || index_.keys()[last_] != index_.key(color, glows)) {
+      last_ = bin_of(color, glows);
+    }
+    const std::uint64_t r = color.r, g = color.g, b = color.b;
+    bins_[last_] +=
+        {times, {r * times, g * times, b * times}, (r * r + g * g + b * b) * times, power_q8 * times};
   }
-  const Bin& bin(std::size_t index) const { return bins_[index]; }
+  const ColorBins& index() const { return index_; }
+  /// By the numbers of `index`.
+  const std::vector<Bin>& bins() const { return bins_; }
 
  private:
+  std::size_t bin_of(Rgb color, bool glows);
+
+  ColorBins index_;
   std::vector<Bin> bins_;
+  std::size_t last_ = 0;  ///< the bin of the last colour, which often comes again
 };
 
-/// A palette and the way to it: one table look-up a colour.
+/// A palette and the way to it: a table look-up a colour that was counted.
 class PaletteMap {
  public:
   /// Chooses the colours; some milliseconds. An empty histogram gives a palette of default materials in which
-  /// every colour maps to 0. A colour whose bin was not counted maps to the entry nearest to the bin's
-  /// middle (squared distance, the lowest index on a tie).
+  /// every colour maps to 0. A colour whose bin was not counted maps to the entry nearest to it (squared distance, the
+  /// lowest index on a tie), for which all are looked at.
   explicit PaletteMap(const ColorHistogram& histogram);
 
   /// Palette index of `color`: 1..255, or 0 when no colour was counted.
   std::uint8_t index(Rgb color, bool glows = false) const {
-    return table_[color_bin(color) + (glows ? kColorBins : 0)];
+    const std::size_t bin = bins_.find(bins_.key(color, glows));
+    return bin < entries_.size() ? entries_[bin] : nearest_entry({color.r, color.g, color.b}, glows);
   }
   /// Entries `colors() + 1` .. 255 are default materials.
   const Palette& palette() const { return palette_; }
@@ -83,12 +114,13 @@ class PaletteMap {
 
  private:
   /// Gives the entries the average of their bins.
-  void average_entries(const ColorHistogram& histogram, const std::vector<Swatch>& swatches);
+  void average_entries(const ColorHistogram& histogram);
   /// 0 where no entry glows, or all do.
   std::uint8_t nearest_entry(const std::array<std::uint8_t, 3>& color, bool glows) const;
 
   Palette palette_;
-  std::vector<std::uint8_t> table_;
+  ColorBins bins_;
+  std::vector<std::uint8_t> entries_;  ///< of the bins
   int colors_ = 0;
   double error_ = 0;
 };

@@ -155,16 +155,25 @@ SceneShape shape_of(const BuiltScene& built) {
   return shape;
 }
 
-SceneShape shape_of(const SceneSource& source, const BuiltScene& built) {
-  if (source.in_frames() == nullptr) {
-    return shape_of(built);
-  }
+namespace {
+
+SceneShape shape_in_frames(const SceneSource& source, int threads) {
   BuildOptions options;
-  options.threads = built.threads();
+  options.threads = threads;
   const auto whole = std::make_shared<const BuiltScene>(*source.in_frames(), options);
   SceneShape shape = shape_of(*whole);
   shape.owner = whole;
   return shape;
+}
+
+}  // namespace
+
+SceneShape shape_of(const SceneSource& source, const BuiltScene& built) {
+  return source.in_frames() == nullptr ? shape_of(built) : shape_in_frames(source, built.threads());
+}
+
+SceneShape shape_of(const SceneSource& source, const CompactTree& tree) {
+  return source.in_frames() == nullptr ? shape_of(tree) : shape_in_frames(source, BuildOptions().threads);
 }
 
 }  // namespace thimble::tools

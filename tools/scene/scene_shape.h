@@ -32,5 +32,6 @@ SceneShape shape_of(const BuiltScene& built);
 /// The same for a frame of `source`: what all frames show is built once more in one, outside any budget, so that no
 /// frame is framed otherwise than another.
 SceneShape shape_of(const SceneSource& source, const BuiltScene& built);
+SceneShape shape_of(const SceneSource& source, const CompactTree& tree);
 
 }  // namespace thimble::tools

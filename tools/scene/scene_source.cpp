@@ -1,6 +1,7 @@
 #include "scene/scene_source.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "output/units.h"
@@ -98,6 +99,55 @@ std::unique_ptr<SceneSource> model_scene(std::unique_ptr<VoxelModel> read, std::
                                        });
 }
 
+// Puts voxels together to cubes of 4 a side of one material, so that a solid grid is built in few steps. Voxels of one
+// cube go on in the order in which they came.
+class CubeGather {
+ public:
+  explicit CubeGather(const VisitBlock& visit) : visit_(visit), cubes_(std::size_t{1} << kSlotBits) {}
+
+  void add(std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+    const auto part = [](std::int32_t at) { return static_cast<std::uint32_t>(at) >> 2; };
+    const std::uint32_t place = part(x) | part(y) << 10 | part(z) << 20;
+    const std::uint64_t key = std::uint64_t{material} << 30 | place;
+    Cube& cube = cubes_[place * 0x9E3779B1U >> (32 - kSlotBits)];
+    if (cube.key != key) {
+      pass_on(cube);
+      cube = {key, 0};
+    }
+    cube.voxels |= std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+    if (cube.voxels == ~std::uint64_t{0}) {
+      visit_({x & ~3, y & ~3, z & ~3}, 2, material);
+      cube.voxels = 0;
+    }
+  }
+  void end() const {
+    for (const Cube& cube : cubes_) {
+      pass_on(cube);
+    }
+  }
+
+ private:
+  static constexpr int kSlotBits = 18;
+  struct Cube {
+    std::uint64_t key = 0;     // the material and where it is, in cubes
+    std::uint64_t voxels = 0;  // a bit each
+  };
+
+  void pass_on(const Cube& cube) const {
+    const auto corner = [&](int axis) {
+      return static_cast<std::int32_t>(cube.key >> 10 * axis & 1023) << 2;
+    };
+    for (std::uint64_t left = cube.voxels; left != 0; left &= left - 1) {
+      const int bit = std::countr_zero(left);
+      visit_({corner(0) | (bit & 3), corner(1) | (bit >> 2 & 3), corner(2) | bit >> 4}, 0,
+             static_cast<std::uint8_t>(cube.key >> 30));
+    }
+  }
+
+  const VisitBlock& visit_;
+  std::vector<Cube> cubes_;
+};
+
 std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::optional<int> depth) {
   const std::shared_ptr<const VoxelGrid> grid = std::move(read);
   SourceFacts facts;
@@ -105,12 +155,20 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
   facts.is_landscape = grid->is_landscape();
   ColorHistogram histogram;
   const bool has_color = grid->has_color();
+  Rgb counted;  // its run is counted in one
+  std::uint64_t times = 0;
   grid->for_each([&](auto, auto, auto, Rgb color) {
     check_grid_voxels(++facts.points);
-    if (has_color) {
-      histogram.add(color);
+    if (has_color && !(color == counted)) {
+      histogram.add(counted, 0, times);
+      counted = color;
+      times = 0;
     }
+    ++times;
   });
+  if (has_color) {
+    histogram.add(counted, 0, times);
+  }
   const auto colors = std::make_shared<const PaletteMap>(histogram);
   facts.extent = grid->size();
   facts.level = level_for(*facts.extent, depth);
@@ -119,12 +177,23 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
   facts.palette = colors->palette();
   facts.color_error = colors->error();
   const std::uint64_t voxels = facts.points;
+  const auto stream = [grid, colors, voxels](const VoxelSink& sink, const Progress& progress) {
+    const VoxelSink take = metered(sink, progress, voxels);
+    Rgb last;
+    std::uint8_t material = colors->index(last);  // 0 of a grid without colours
+    grid->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb color) {
+      if (!(color == last)) {
+        last = color;
+        material = colors->index(color);
+      }
+      take(x, y, z, material);
+    });
+  };
   return std::make_unique<SceneSource>(
-      std::move(facts), [grid, colors, voxels](const VoxelSink& sink, const Progress& progress) {
-        const VoxelSink counted = metered(sink, progress, voxels);
-        grid->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb color) {
-          counted(x, y, z, colors->index(color));  // 0 of a grid without colours
-        });
+      std::move(facts), stream, [stream](const VisitBlock& visit, const Progress& progress) {
+        CubeGather cubes(visit);
+        stream([&](auto x, auto y, auto z, auto m) { cubes.add(x, y, z, m); }, progress);
+        cubes.end();
       });
 }
 

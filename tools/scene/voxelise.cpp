@@ -1,6 +1,7 @@
 #include "scene/voxelise.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "scene/mesh_shade.h"
 #include "scene/world_fit.h"
@@ -102,13 +103,8 @@ class RecentTriangles {
     slots_.resize(slots);
   }
 
-  /// Whether voxelising `triangle` would change nothing, and notes that it is voxelised. A voxel has the
-  /// material that came last, so a repeat is idle only when no other material came in between.
-  bool is_repeat(UnitTriangle triangle, std::uint8_t material) {
-    if (run_ == 0 || material != material_) {
-      material_ = material;
-      ++run_;
-    }
+  /// Whether `triangle` is voxelised already, and notes that it is.
+  bool is_repeat(UnitTriangle triangle) {
     std::sort(triangle.begin(), triangle.end());
     std::uint64_t hash = 0;
     for (const UnitPoint& vertex : triangle) {
@@ -117,23 +113,14 @@ class RecentTriangles {
         hash ^= hash >> 29U;
       }
     }
-    Slot& slot = slots_[hash & (slots_.size() - 1)];
-    if (slot.run == run_ && slot.triangle == triangle) {
-      return true;
-    }
-    slot = {triangle, run_};
-    return false;
+    UnitTriangle& slot = slots_[hash & (slots_.size() - 1)];
+    return std::exchange(slot, triangle) == triangle;
   }
 
  private:
   static constexpr std::size_t kMostSlots = 65536;
-  struct Slot {
-    UnitTriangle triangle{};  ///< vertices in ascending order
-    std::uint64_t run = 0;    ///< which run of triangles of one material; 0 is an empty slot
-  };
-  std::vector<Slot> slots_;
-  std::uint64_t run_ = 0;
-  std::uint8_t material_ = 0;
+  std::vector<UnitTriangle>
+      slots_;  ///< vertices in ascending order; all at 0, where no vertex is, is an empty slot
 };
 
 /// What triangle by triangle is quickly done, whatever the world; and what a triangle of a scan has at most.
@@ -342,36 +329,13 @@ void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, cons
   }
 }
 
-Rgb triangle_color(const TriangleMesh& mesh, std::size_t index) {
-  if (!mesh.face_colors.empty()) {
-    return mesh.face_colors[index];
-  }
-  const auto& [a, b, c] = mesh.triangles[index];
-  const Rgb& p = mesh.colors[a];
-  const Rgb& q = mesh.colors[b];
-  const Rgb& r = mesh.colors[c];
-  return {static_cast<std::uint8_t>((p.r + q.r + r.r + 1) / 3),
-          static_cast<std::uint8_t>((p.g + q.g + r.g + 1) / 3),
-          static_cast<std::uint8_t>((p.b + q.b + r.b + 1) / 3)};
-}
-
-bool has_colors(const TriangleMesh& mesh) {
-  return !mesh.colors.empty() || !mesh.face_colors.empty();
-}
-
-ColorHistogram triangle_colors(const TriangleMesh& mesh) {
-  ColorHistogram histogram;
-  if (has_colors(mesh)) {
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      histogram.add(triangle_color(mesh, i));
-    }
-  }
-  return histogram;
+bool is_shaded(const TriangleMesh& mesh) {
+  return !mesh.colors.empty() || !mesh.face_colors.empty() || !mesh.surfaces.empty();
 }
 
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress) {
-  if (!mesh.surfaces.empty()) {
+  if (is_shaded(mesh)) {
     const auto material_of = [&](Rgb color, std::uint32_t power_q8) {
       return colors == nullptr ? std::uint8_t{0} : colors->index(color, power_q8 != 0);
     };
@@ -379,28 +343,23 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
     return;
   }
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
-  const bool colored = colors != nullptr && has_colors(mesh);
   const auto triangle_at = [&](std::size_t i) {
     const auto& [a, b, c] = mesh.triangles[i];
-    return CellTriangle{{units[a], units[b], units[c]},
-                        colored ? colors->index(triangle_color(mesh, i)) : std::uint8_t{0},
-                        false,
-                        static_cast<std::uint32_t>(i)};
+    return UnitTriangle{units[a], units[b], units[c]};
   };
   RecentTriangles recent(mesh.triangles.size());
   std::uint64_t all_cost = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    all_cost += rough_cost(triangle_at(i).corners);
+    all_cost += rough_cost(triangle_at(i));
   }
   if (goes_by_cells(all_cost, mesh.triangles.size())) {
     std::vector<CellTriangle> triangles;
-    for (std::size_t i = mesh.triangles.size(); i-- > 0;) {
-      const CellTriangle triangle = triangle_at(i);
-      if (!recent.is_repeat(triangle.corners, 0)) {  // of equal ones, the last one counts
-        triangles.push_back(triangle);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const UnitTriangle triangle = triangle_at(i);
+      if (!recent.is_repeat(triangle)) {
+        triangles.push_back({triangle});
       }
     }
-    std::reverse(triangles.begin(), triangles.end());
     voxelise_cells(triangles, level, sink, progress);
     return;
   }
@@ -414,12 +373,11 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
       progress(static_cast<double>(i) / static_cast<double>(mesh.triangles.size()));
       cost = 0;
     }
-    const CellTriangle triangle = triangle_at(i);
-    if (recent.is_repeat(triangle.corners, triangle.material)) {
-      continue;
+    const UnitTriangle triangle = triangle_at(i);
+    if (!recent.is_repeat(triangle)) {
+      cost += rough_cost(triangle);
+      voxelise_triangle(triangle, 0, each);
     }
-    cost += rough_cost(triangle.corners);
-    voxelise_triangle(triangle.corners, triangle.material, each);
   }
 }
 

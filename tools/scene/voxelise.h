@@ -128,32 +128,27 @@ std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bo
 /// triangle into eight, and so on down to voxels, so a big triangle costs in proportion to its area. No heap.
 void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, const VoxelSink& sink);
 
-/// Whether triangles have colours of their own.
-bool has_colors(const TriangleMesh& mesh);
+/// Whether its voxels have colours of their own (mesh_shade.h).
+bool is_shaded(const TriangleMesh& mesh);
 /// About how many voxels a triangle may have: decides only how they are found and how often progress is
 /// reported.
 std::uint64_t rough_cost(const UnitTriangle& triangle);
 /// Whether so many triangles of that cost together go cell by cell.
 bool goes_by_cells(std::uint64_t cost, std::size_t triangles);
-/// The colour of triangle `index`: its own, or the average of its three vertices' colours, rounded; `mesh` has colours.
-Rgb triangle_color(const TriangleMesh& mesh, std::size_t index);
-/// The colours of all triangles, for PaletteMap; empty when the mesh has no colours.
-ColorHistogram triangle_colors(const TriangleMesh& mesh);
-
 /// Streams the voxels of `mesh` in a world of 2^level voxels a side (level 1..12). `colors` may be null:
 /// then, as for a mesh without colours, everything is material 0. `progress` may be empty. InputError "no
 /// triangles".
 ///
 /// Small triangles, and few of any size, come one by one, z rows of y rows of x within small ones. A voxel
 /// then comes once for each triangle that it meets, but a triangle that equals a recent one (the same
-/// quantised vertices in any order) may be left out where that changes no voxel's last material. Where there
+/// quantised vertices in any order) may be left out. Where there
 /// are many large ones (more than 2^24 voxels in their boxes, and more than 64 a triangle), which may cover
 /// each other many times over, they go cell by cell: each voxel comes once, with the
 /// material of the last triangle that meets it, and a full block as one. So time follows the triangles and
-/// the surface that they have together. Memory: 12 bytes a vertex and 48 bytes a triangle, of these at most
-/// 3 MiB; cell by cell 44 bytes a triangle more, and the lists.
+/// the surface that they have together. Memory: 12 bytes a vertex and 36 bytes a triangle, of these at most
+/// 2.3 MiB; cell by cell 44 bytes a triangle more, and the lists.
 ///
-/// A mesh with pictures goes twice, so that of the triangles that meet a voxel the last one counts that its middle is
+/// A mesh with colours or pictures goes twice, so that of the triangles that meet a voxel the last one counts that its middle is
 /// over, and only without one the last of all: an edge does not bleed into what is beside it. Voxels have colours of
 /// their own (mesh_shade.h), and none comes where all is clear.
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,

@@ -96,10 +96,21 @@ LookBlock block_of(std::uint32_t exposure_q8) {
 
 }  // namespace
 
-void look_at_scene(std::unique_ptr<SceneSource> source_of_it, const BakedScene& baked) {
+SceneShape shape_to_frame(const SceneSource& of, const CompactTree& tree) {
+  const bool is_next_frame = known_shape && known_shape->owner != nullptr && of.in_frames() != nullptr &&
+                             of.files() == source->files() && of.level() == known_shape->level &&
+                             of.in_frames()->points() == source->in_frames()->points();
+  return is_next_frame ? *known_shape : shape_of(of, tree);
+}
+
+void look_at_scene(std::unique_ptr<SceneSource> source_of_it, const BakedScene& baked,
+                   const SceneShape& shape) {
   source = std::move(source_of_it);
   scene = baked;
   known_shape.reset();
+  if (shape.owner != nullptr) {  // else it is of a tree that is gone
+    known_shape = shape;
+  }
   known_facts.reset();
 }
 

@@ -3,12 +3,15 @@
 
 #include <memory>
 
+#include "scene/scene_shape.h"
 #include "scene/scene_source.h"
 #include "thimble/bake/baked_scene.h"
 
 namespace thimble::tools {
 
-/// From now on the exports of looks.cpp are about this scene, baked from `source`.
-void look_at_scene(std::unique_ptr<SceneSource> source, const BakedScene& scene);
+/// The shape to frame `tree` of `source` by: of another frame of the animation that is looked at, the one that is known.
+SceneShape shape_to_frame(const SceneSource& source, const CompactTree& tree);
+/// From now on the exports of looks.cpp are about this scene, baked from `source` and framed by `shape`.
+void look_at_scene(std::unique_ptr<SceneSource> source, const BakedScene& scene, const SceneShape& shape);
 
 }  // namespace thimble::tools

@@ -89,16 +89,17 @@ extern "C" {
   options.coarsen = coarsen;
   options.default_look = source->baked() == nullptr && !parse_generator(scene);
   options.display = DisplayFacts{board.format, board.width_px, board.height_px};
+  SceneShape shape;
   options.camera = [&](const CompactTree& tree) {
-    return (turns ? frame_round(view, *source, shape_of(tree)) : frame_scene(view, *source, shape_of(tree)))
-        .kept;
+    shape = shape_to_frame(*source, tree);
+    return (turns ? frame_round(view, *source, shape) : frame_scene(view, *source, shape)).kept;
   };
   baked = bake_within(limit, *source, &options);
   if (!baked.fits) {
     throw InputError(too_large_text(limit, baked, options, source->level()));
   }
   tell(*source, board);
-  look_at_scene(std::move(source), baked.scene);
+  look_at_scene(std::move(source), baked.scene, shape);
   return baked.bytes.size();
 }
 
