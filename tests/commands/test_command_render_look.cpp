@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/check_command.h"
@@ -252,14 +253,33 @@ TEST_CASE("render look: one colour that a text says -> is drawn in it, baked too
   CHECK(replaced[0] > 3 * replaced[1]);
 }
 
-TEST_CASE("render look: heights -> the slope of the land, baked too; of voxels their faces") {
+TEST_CASE(
+    "render look: heights, balls of glass and of polished metal -> slopes, baked too; voxels, panes and "
+    "rough balls "
+    "-> their faces") {
   const TemporaryFolder folder;
   const std::string land = folder.write(
       "land.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 1 2\n1 2 4\n2 4 9\n");
   REQUIRE(run_command({"bake", land, "-o", folder.path("land.oct"), "--quiet"}).status == 0);
-  for (const auto& [scene, is_smooth] : {std::pair{land, true},
-                                         {folder.path("land.oct"), true},
-                                         {folder.write("a.scene", kLookScene), false}}) {
+  const auto with = [&folder](const std::string& name, const std::string& material, const std::string& body) {
+    return folder.write(name + ".scene",
+                        kLookScene + ("material clear " + material + "\n" + body + "\nsun toward 1 1 1\n"));
+  };
+  std::vector<std::pair<std::string, bool>> scenes{
+      {land, true}, {folder.path("land.oct"), true}, {folder.write("a.scene", kLookScene), false}};
+  for (const std::string radius : {"3", "5", "7", "9"}) {
+    scenes.emplace_back(with("ball" + radius, "glass", "ball clear at 16 16 16 radius " + radius), true);
+  }
+  const std::string ball = "ball clear at 16 16 16 radius 6";
+  REQUIRE(run_command({"bake", scenes.back().first, "-o", folder.path("ball.oct"), "--quiet"}).status == 0);
+  scenes.emplace_back(folder.path("ball.oct"), true);
+  scenes.emplace_back(with("gold", "metal mirror 0.9 roughness 0", ball), true);
+  scenes.emplace_back(with("rough", "metal mirror 0.9 roughness 0.2", ball), false);
+  scenes.emplace_back(with("off", "glass", ball + "\neffects off smooth-normals"), false);
+  scenes.emplace_back(with("diffuse", "color 9 9 9", ball), false);
+  scenes.emplace_back(with("pane", "glass", "box clear from 3 3 3 to 4 29 28"), false);
+  scenes.emplace_back(with("block", "glass", "box clear from 3 3 3 to 15 11 28"), false);
+  for (const auto& [scene, is_smooth] : scenes) {
     CAPTURE(scene);
     const auto drawn =
         run_command({"render", scene, "--size", "40x30", "--verbose", "-o", folder.path("a.png")});

@@ -1,6 +1,7 @@
 #include "scene/default_look.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -18,7 +19,7 @@ const char* const kDefaultLookText =
     "(the right one where the side on the right is more than twice as large), with exact shadows, occlusion, "
     "a soft gradient behind the scene, and under it a ground that only shows "
     "the shadow. Water has ripples. What a scene states itself (camera, lights, occlusion, sky, effects off) "
-    "is kept. Points of "
+    "is kept. Round glass shows the slope of surfaces, not the faces of voxels. Points of "
     "which less than 50 % have 3 neighbours are stars: brightness and colour by depth and size on the "
     "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, expected from the "
     "effects and the picture's size. The exposure follows the scene. --structure dense|pool, --engine, "
@@ -59,6 +60,41 @@ int surface_share(const CompactTree& tree) {
     }
   });
   return asked == 0 ? 100 : static_cast<int>(100 * have / asked);
+}
+
+// Whether a third of the faces of some glass or polished metal lie above a step of one voxel. Those of balls do, and show
+// a mosaic unless light sees their slopes; panes and blocks end at once. Blocks of many voxels are flat, and not counted.
+bool has_round_glass(const CompactTree& tree, const LitDescription& lighting) {
+  constexpr int kOthers = 2;
+  std::array<std::int32_t, kMaxSurfaces> balance{};
+  walk_blocks(tree, [&](const Vec3i& voxel, int level, std::uint8_t material) {
+    const Surface& surface = lighting.surfaces[material];
+    const bool is_polished =
+        surface.kind == SurfaceKind::kMetal && surface.mirror >= 128 && surface.roughness == 0;
+    if (level > 0 || (surface.kind != SurfaceKind::kGlass && !is_polished)) {
+      return;
+    }
+    const auto has = [&](Vec3i at, int axis, int by) {
+      at[axis] += by;
+      std::uint8_t found = 0;
+      return material_at(tree, at, &found) && found == material;
+    };
+    for (int face = 0; face < 6; ++face) {
+      const int axis = face / 2;
+      const int up = face % 2 == 0 ? -1 : 1;
+      if (has(voxel, axis, up)) {
+        continue;
+      }
+      bool has_step = false;
+      for (int side = 0; side < 6; ++side) {
+        Vec3i beside = voxel;
+        beside[side / 2] += side % 2 == 0 ? -1 : 1;
+        has_step = has_step || (side / 2 != axis && !has(beside, axis, 0) && has(beside, axis, -up));
+      }
+      balance[material] += has_step ? kOthers : -1;
+    }
+  });
+  return std::any_of(balance.begin(), balance.end(), [](std::int32_t faces) { return faces > 0; });
 }
 
 // The picture's axes as integers of 2^10.
@@ -212,6 +248,7 @@ SceneFacts facts_of(const SceneSource& source, const LitDescription& lighting, c
   }
   facts.used = used_materials(*shape.tree);
   facts.surface_share = facts.is_points ? surface_share(*shape.tree) : 100;
+  facts.has_round_glass = has_round_glass(*shape.tree, facts.lighting);
   return facts;
 }
 
@@ -274,8 +311,8 @@ Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Frami
   if (look.background.kind == BackgroundKind::kAuto) {
     look.background.kind = BackgroundKind::kGradient;
   }
-  const bool smooth =
-      wishes.smooth.value_or((facts.is_mesh || facts.is_points) && (off & Effect::kSmoothNormals) == 0);
+  const bool is_bent = facts.is_mesh || facts.is_points || facts.has_round_glass;
+  const bool smooth = wishes.smooth.value_or(is_bent && (off & Effect::kSmoothNormals) == 0);
   look.effects = called_for(lighting, facts.used) | (smooth ? Effect::kSmoothNormals : Effect::kNone);
   if (!smooth && wishes.smooth) {
     look.effects &= ~Effect::kSmoothNormals;

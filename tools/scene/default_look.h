@@ -40,11 +40,12 @@ extern const char* const kDefaultLookText;
 
 /// What a scene has.
 struct SceneFacts {
-  bool has_colors = false;  ///< a palette, or colours of points or corners
-  bool is_points = false;   ///< strewn voxels
-  bool is_mesh = false;     ///< triangles, or heights: a slope
-  int surface_share = 100;  ///< of points: per cent with enough neighbours
-  LitDescription lighting;  ///< what the scene itself states
+  bool has_colors = false;       ///< a palette, or colours of points or corners
+  bool is_points = false;        ///< strewn voxels
+  bool is_mesh = false;          ///< triangles, or heights: a slope
+  int surface_share = 100;       ///< of points: per cent with enough neighbours
+  bool has_round_glass = false;  ///< or polished metal: balls, not panes
+  LitDescription lighting;       ///< what the scene itself states
   UsedMaterials used;
   std::vector<Rgb8> palette;
   VoxelBox bounds;
@@ -70,7 +71,7 @@ struct LookWishes {
   int across = 0;              ///< samples a pixel are its square; 0: the rule's
   bool at_edges = false;       ///< samples where edges are (edge_rows.h); `across` is then kEdgeGrid
   std::optional<bool>
-      smooth;  ///< slopes instead of the faces of voxels; else for meshes and surfaces of points
+      smooth;  ///< slopes instead of the faces of voxels; else for meshes, surfaces of points and round glass
 };
 
 enum class LookKind : std::uint8_t {
