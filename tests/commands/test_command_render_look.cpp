@@ -181,6 +181,37 @@ TEST_CASE("render look: a scene with colours and nothing said -> light, shadows,
   CHECK(colors.size() > 200);
 }
 
+TEST_CASE(
+    "render look: the rays of a small picture -> within some per cent those of the whole; too many -> one "
+    "sample") {
+  const auto measured = [](const Drawn& drawn) {
+    const std::size_t after = drawn.err.find(" a pixel (") + 10;
+    std::string digits = drawn.err.substr(after, drawn.err.find(" rays for four", after) - after);
+    digits.erase(std::remove(digits.begin(), digits.end(), ','), digits.end());
+    return std::stod(digits);
+  };
+  for (const char* const scene : {"castle", "glass", "water"}) {
+    CAPTURE(scene);
+    const Drawn drawn = draw(scene, {"--verbose"}, "200x150");
+    CHECK(measured(drawn) == doctest::Approx(drawn.stats["rays"].get<double>()).epsilon(0.05));
+    CHECK(drawn.stats["samples"] == 4);
+    // Of a large picture one row will do; the samples are the whole picture's.
+    const TemporaryFolder folder;
+    const std::vector<std::string> words{"render",
+                                         scene,
+                                         "--rows",
+                                         "0:1",
+                                         "--verbose",
+                                         "-o",
+                                         folder.path("a.part"),
+                                         "--stats",
+                                         folder.path("a.json")};
+    CHECK(check_done(Words(words) + Words{"--size", "4000x3000"}).err.find(" 1 sample a pixel") !=
+          std::string::npos);
+    CHECK(json::parse(read_text(folder.path("a.json")))["samples"] == 1);
+  }
+}
+
 TEST_CASE("render look: any number of threads, any budget that fits -> the same pixels") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kLookScene);

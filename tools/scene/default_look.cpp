@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "output/units.h"
 #include "readers/oct.h"
 #include "scene/scene_source.h"
 #include "thimble/trace/secondary_ray.h"
@@ -21,8 +20,8 @@ const char* const kDefaultLookText =
     "the shadow. Water has ripples. What a scene states itself (camera, lights, occlusion, sky, effects off) "
     "is kept. Round glass shows the slope of surfaces, not the faces of voxels. Points of "
     "which less than 50 % have 3 neighbours are stars: brightness and colour by depth and size on the "
-    "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, expected from the "
-    "effects and the picture's size. The exposure follows the scene. --structure dense|pool, --engine, "
+    "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, counted in a small "
+    "picture. The exposure follows the scene. --structure dense|pool, --engine, "
     "--cutoff, --max-depth and --board draw by --shade instead: colours where the scene has any, else depth.";
 
 namespace {
@@ -142,14 +141,6 @@ Vec3i sun_over_shoulder(const SceneCamera& camera, const VoxelBox& box) {
   return sun;
 }
 
-// Not fewer than there are: the scenes with glass and water that come along take 0.2 to 0.55 of them (`render --stats`).
-std::uint64_t rays_a_sample(const LitScene& scene, EffectSet effects) {
-  const auto wanted = [effects](EffectSet effect) { return (effects & effect) != 0; };
-  const std::uint64_t at_hit = (wanted(Effect::kShadows) ? scene.lights.size : 0) +
-                               (wanted(Effect::kAmbientOcclusion) ? scene.occlusion.rays : 0);
-  return (1 + at_hit) * ((effects & Effect::kBranching) != 0 ? 2 : 1);
-}
-
 std::uint16_t occlusion_reach(const VoxelBox& bounds) {
   const std::int32_t longest =
       std::max({bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y, bounds.high.z - bounds.low.z});
@@ -191,7 +182,7 @@ void use_clay(Look* look) {
   }
 }
 
-std::string look_text(const SceneFacts& facts, const Look& look, bool own_light, std::uint64_t rays) {
+std::string look_text(const SceneFacts& facts, const Look& look, bool own_light) {
   if (look.kind == LookKind::kStars) {
     return "stars: " + std::to_string(facts.surface_share) + " % of the points have " +
            std::to_string(kSurfaceNeighbours) + " neighbours, less than " + std::to_string(kSurfaceShare) +
@@ -200,14 +191,7 @@ std::string look_text(const SceneFacts& facts, const Look& look, bool own_light,
   std::string text = facts.has_colors ? "its colours" : "clay";
   text += own_light ? ", its own light" : ", a sun over the viewer's shoulder";
   text += ", effects " + effects_text(look.effects);
-  text += look.ground.is_there ? ", a ground" : ", no ground";
-  if (look.at_edges) {
-    return text + ", samples where edges are";
-  }
-  text += ", " + std::to_string(look.across * look.across) + (look.across == 1 ? " sample" : " samples") +
-          " a pixel (" + grouped(rays) + " rays expected for four, which are taken up to " +
-          grouped(kMostLookRays) + ")";
-  return text;
+  return text + (look.ground.is_there ? ", a ground" : ", no ground");
 }
 
 }  // namespace
@@ -272,8 +256,7 @@ LitScene Look::lit_scene() const {
   return lit_scene_for(lighting, used, effects);
 }
 
-Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Framing& framing,
-                  std::int32_t width_px, std::int32_t height_px) {
+Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Framing& framing) {
   Look look;
   look.lighting = facts.lighting;
   look.used = facts.used;
@@ -326,12 +309,10 @@ Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Frami
   look.ground.is_there = look.has_backdrop && wishes.ground.value_or(!own_light) && !facts.bounds.empty();
   look.kind = facts.forms_surface() ? LookKind::kLit : LookKind::kStars;
 
-  const auto pixels = static_cast<std::uint64_t>(width_px) * static_cast<std::uint64_t>(height_px);
-  const std::uint64_t rays = pixels * 4 * rays_a_sample(look.lit_scene(), look.effects);
   look.at_edges = wishes.at_edges;
-  look.across = wishes.across != 0 ? wishes.across : rays <= kMostLookRays ? 2 : 1;
+  look.across = wishes.across != 0 ? wishes.across : 2;
   dim(&lighting, look.used);
-  look.text = look_text(facts, look, own_light, rays);
+  look.text = look_text(facts, look, own_light);
   return look;
 }
 

@@ -112,7 +112,7 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
 
 // The scene's own look, as render_look.cpp takes it.
 void FinishedPicture::take_own_look() {
-  own_ = default_look(*look_->own_, look_->own_wishes_, framing_, width_px(), height_px());
+  own_ = default_look(*look_->own_, look_->own_wishes_, framing_);
   const std::int32_t across = own_->across;
   fine_ = framing_.camera;
   if (width_px() * across > kMaxPicturePx || height_px() * across > kMaxPicturePx ||
@@ -247,10 +247,16 @@ bool FinishedPicture::draw_at_edges(int threads, std::vector<std::uint8_t>* rgb,
   return true;
 }
 
-void FinishedPicture::expose(const LookCanvas& finished) const {
+// Also how many samples there are, as in render_look.cpp.
+void FinishedPicture::expose(LookCanvas* canvas) const {
   std::call_once(exposed_, [&] {
-    exposure_ = measured_exposure(finished);
+    const LookMeasure measured = measure_look(*canvas);
+    exposure_ = measured.exposure_q8;
     look_->exposure_.store(exposure_);
+    if (look_->own_wishes_.across == 0 && !measured.allows_four()) {
+      own_->across = 1;
+      fine_ = framing_.camera;
+    }
   });
 }
 
@@ -261,7 +267,7 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
   if (lock.owns_lock()) {
     canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads->count());
   }
-  expose(canvas);
+  expose(&canvas);
   const LookRows rows(canvas, fine_, exposure_);
   SamplePass pass(rows, fine_, own_->across, step, kept);
   Image image;
@@ -302,7 +308,7 @@ bool FinishedPicture::paint_own(int threads, std::vector<std::uint8_t>* rgb, con
                     Bytes(work.data(), work.size()), threads};
   std::unique_lock<std::mutex> lock(look_->streams_mutex_, std::defer_lock);
   if (has_rows) {
-    expose(canvas);
+    expose(&canvas);
     if (lock.try_lock()) {
       canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads);
     }

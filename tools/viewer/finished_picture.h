@@ -135,7 +135,7 @@ class FinishedPicture {
   const Camera& camera() const { return framing_.camera; }
   std::int32_t width_px() const { return camera().width_px(); }
   std::int32_t height_px() const { return camera().height_px(); }
-  /// Samples a pixel are its square.
+  /// Samples a pixel are its square. Of the scene's own look it is known once something was drawn.
   int across() const { return !own_ ? look_->across_ : own_->kind == LookKind::kStars ? 1 : own_->across; }
   /// Whether there are samples where edges are instead (scene/edge_rows.h); `across` is then kEdgeGrid.
   bool at_edges() const {
@@ -172,16 +172,16 @@ class FinishedPicture {
   bool draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on,
                 KeptSamples* kept) const;
   bool draw_at_edges(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
-  void expose(const LookCanvas& finished) const;
+  void expose(LookCanvas* canvas) const;
   bool paint_own(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
   EffectSet effects() const { return own_ ? own_->effects : look_->effects_; }
 
   std::shared_ptr<const FinishedLook> look_;
   Framing framing_;
-  Camera fine_;  // so many times the pixels as there are samples across one
+  mutable Camera fine_;  // so many times the pixels as there are samples across one
   Shading shading_;
   Shading quick_shading_;
-  std::optional<Look> own_;  // the scene's own look from here
+  mutable std::optional<Look> own_;  // the scene's own look from here; `expose` settles its samples
   std::optional<WaterSurface> moving_water_;
   ToneTable quick_tone_;
   std::vector<Rgb8> quick_palette_;  // toned, as bright as the brightest face

@@ -552,11 +552,11 @@ std::string Viewer::state_text() const {
   }
   std::array<char, 128> text{};
   const double rate = frame_seconds_ > 0 ? 1 / frame_seconds_ : 0;
-  const int samples = picture_->across() * picture_->across();
   if (is_refined_ && picture_->at_edges()) {
     std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, samples where edges are", rate,
                   frames_->engine());
   } else if (is_refined_) {
+    const int samples = picture_->across() * picture_->across();
     std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, %d sample%s a pixel", rate,
                   frames_->engine(), samples, samples == 1 ? "" : "s");
   } else if (refinement_ != nullptr && refinement_->step() <= 1 && refinement_->percent() > 0) {
