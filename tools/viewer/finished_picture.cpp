@@ -121,7 +121,9 @@ void FinishedPicture::take_own_look() {
     own_->across = 1;  // such a camera has no rays between the pixels'
     own_->at_edges = false;
   }
-  quick_tone_ = quick_tone(*own_, look_->exposure_.load());
+  constexpr std::uint32_t kFirstExposure = 320;
+  const std::uint32_t measured = look_->exposure_.load();
+  quick_tone_ = quick_tone(*own_, measured != 0 ? measured : kFirstExposure);
   quick_shading_ = shading_;
   if (own_->kind == LookKind::kStars) {
     quick_shading_.mode = own_->has_own_colors ? ShadeMode::kColor : ShadeMode::kDepth;
@@ -258,6 +260,13 @@ void FinishedPicture::expose(LookCanvas* canvas) const {
       fine_ = framing_.camera;
     }
   });
+  canvas->fine = fine_;
+}
+
+void FinishedPicture::keep_exposure() {
+  if (const std::uint32_t measured = look_->exposure_.load(); measured != 0) {
+    std::call_once(exposed_, [&] { exposure_ = measured; });
+  }
 }
 
 bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,

@@ -90,6 +90,8 @@ class FinishedLook {
   const std::vector<std::string>& words() const { return words_; }
   /// Samples a pixel are its square. 1 where the scene's own look decides: it takes fewer in a large picture.
   int across() const { return across_; }
+  /// Has the exposure of the frame before.
+  void keep_exposure(const FinishedLook& before) const { exposure_.store(before.exposure_.load()); }
 
  private:
   friend class FinishedPicture;
@@ -110,8 +112,9 @@ class FinishedLook {
   std::vector<std::uint8_t> empty_bytes_;
   CompactTree empty_;  // a world with nothing in it
   std::vector<std::string> words_;
-  /// Of the last finished picture; frames while the camera moves have it, too, so that nothing flickers.
-  mutable std::atomic<std::uint32_t> exposure_{320};
+  /// Of the last picture that was measured, else 0; frames while something moves have it, too, so that nothing
+  /// flickers.
+  mutable std::atomic<std::uint32_t> exposure_{0};
 
   // Lit pictures by streams of rays: made when the first is drawn, for one that draws at a time.
   LitStreams* streams_for(EffectSet effects, const LitScene& scene, int threads) const;
@@ -157,6 +160,10 @@ class FinishedPicture {
   void show_water(const WaterSurface& water) { moving_water_ = water; }
   /// The water of the picture, or null.
   const WaterSurface* water() const;
+  /// Whether there is light on surfaces.
+  bool is_lit() const { return own_ ? own_->kind == LookKind::kLit : look_->effects_ != Effect::kNone; }
+  /// From now on this picture has the exposure of the last that was measured, as the frames of a film have.
+  void keep_exposure();
   /// Whether frames while the camera moves may be drawn by what knows only voxels (the wide renderer, with
   /// `quick_shading`); not so with water, which is none.
   bool is_plain() const;
