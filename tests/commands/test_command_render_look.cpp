@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/check_command.h"
@@ -180,6 +181,37 @@ TEST_CASE("render look: a scene with colours and nothing said -> light, shadows,
   CHECK(colors.size() > 200);
 }
 
+TEST_CASE(
+    "render look: the rays of a small picture -> within some per cent those of the whole; too many -> one "
+    "sample") {
+  const auto measured = [](const Drawn& drawn) {
+    const std::size_t after = drawn.err.find(" a pixel (") + 10;
+    std::string digits = drawn.err.substr(after, drawn.err.find(" rays for four", after) - after);
+    digits.erase(std::remove(digits.begin(), digits.end(), ','), digits.end());
+    return std::stod(digits);
+  };
+  for (const char* const scene : {"castle", "glass", "water"}) {
+    CAPTURE(scene);
+    const Drawn drawn = draw(scene, {"--verbose"}, "200x150");
+    CHECK(measured(drawn) == doctest::Approx(drawn.stats["rays"].get<double>()).epsilon(0.05));
+    CHECK(drawn.stats["samples"] == 4);
+    // Of a large picture one row will do; the samples are the whole picture's.
+    const TemporaryFolder folder;
+    const std::vector<std::string> words{"render",
+                                         scene,
+                                         "--rows",
+                                         "0:1",
+                                         "--verbose",
+                                         "-o",
+                                         folder.path("a.part"),
+                                         "--stats",
+                                         folder.path("a.json")};
+    CHECK(check_done(Words(words) + Words{"--size", "4000x3000"}).err.find(" 1 sample a pixel") !=
+          std::string::npos);
+    CHECK(json::parse(read_text(folder.path("a.json")))["samples"] == 1);
+  }
+}
+
 TEST_CASE("render look: any number of threads, any budget that fits -> the same pixels") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kLookScene);
@@ -252,14 +284,33 @@ TEST_CASE("render look: one colour that a text says -> is drawn in it, baked too
   CHECK(replaced[0] > 3 * replaced[1]);
 }
 
-TEST_CASE("render look: heights -> the slope of the land, baked too; of voxels their faces") {
+TEST_CASE(
+    "render look: heights, balls of glass and of polished metal -> slopes, baked too; voxels, panes and "
+    "rough balls "
+    "-> their faces") {
   const TemporaryFolder folder;
   const std::string land = folder.write(
       "land.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 1 2\n1 2 4\n2 4 9\n");
   REQUIRE(run_command({"bake", land, "-o", folder.path("land.oct"), "--quiet"}).status == 0);
-  for (const auto& [scene, is_smooth] : {std::pair{land, true},
-                                         {folder.path("land.oct"), true},
-                                         {folder.write("a.scene", kLookScene), false}}) {
+  const auto with = [&folder](const std::string& name, const std::string& material, const std::string& body) {
+    return folder.write(name + ".scene",
+                        kLookScene + ("material clear " + material + "\n" + body + "\nsun toward 1 1 1\n"));
+  };
+  std::vector<std::pair<std::string, bool>> scenes{
+      {land, true}, {folder.path("land.oct"), true}, {folder.write("a.scene", kLookScene), false}};
+  for (const std::string radius : {"3", "5", "7", "9"}) {
+    scenes.emplace_back(with("ball" + radius, "glass", "ball clear at 16 16 16 radius " + radius), true);
+  }
+  const std::string ball = "ball clear at 16 16 16 radius 6";
+  REQUIRE(run_command({"bake", scenes.back().first, "-o", folder.path("ball.oct"), "--quiet"}).status == 0);
+  scenes.emplace_back(folder.path("ball.oct"), true);
+  scenes.emplace_back(with("gold", "metal mirror 0.9 roughness 0", ball), true);
+  scenes.emplace_back(with("rough", "metal mirror 0.9 roughness 0.2", ball), false);
+  scenes.emplace_back(with("off", "glass", ball + "\neffects off smooth-normals"), false);
+  scenes.emplace_back(with("diffuse", "color 9 9 9", ball), false);
+  scenes.emplace_back(with("pane", "glass", "box clear from 3 3 3 to 4 29 28"), false);
+  scenes.emplace_back(with("block", "glass", "box clear from 3 3 3 to 15 11 28"), false);
+  for (const auto& [scene, is_smooth] : scenes) {
     CAPTURE(scene);
     const auto drawn =
         run_command({"render", scene, "--size", "40x30", "--verbose", "-o", folder.path("a.png")});

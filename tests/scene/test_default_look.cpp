@@ -31,7 +31,7 @@ SceneFacts colored() {
 }
 
 Look look_at_front(const SceneFacts& facts, const LookWishes& wishes = {}) {
-  return default_look(facts, wishes, looking({0, 1 << 20, 0}), 800, 600);
+  return default_look(facts, wishes, looking({0, 1 << 20, 0}));
 }
 
 bool has(const Look& look, EffectSet effects) {
@@ -58,7 +58,7 @@ TEST_CASE("look: from every side -> the sun shines on what faces the viewer") {
   for (const Vec3i& forward : {Vec3i{1 << 20, 0, 0}, Vec3i{-(1 << 20), 0, 0}, Vec3i{0, 1 << 20, 0},
                                Vec3i{0, -(1 << 20), 0}, Vec3i{0, 0, -(1 << 20)}, Vec3i{0, 0, 1 << 20},
                                Vec3i{600000, 800000, -500000}, Vec3i{-600000, 800000, -500000}}) {
-    const Look look = default_look(colored(), {}, looking(forward), 800, 600);
+    const Look look = default_look(colored(), {}, looking(forward));
     const LitScene scene = look.lit_scene();
     REQUIRE(scene.lights.size == 1);
     const Vec3i sun = scene.lights[0].place;
@@ -75,7 +75,7 @@ TEST_CASE(
   const auto to_right = [](const VoxelBox& box, const Vec3i& forward) {
     SceneFacts facts = colored();
     facts.bounds = box;
-    const Vec3i sun = default_look(facts, {}, looking(forward), 800, 600).ground.toward_sun;
+    const Vec3i sun = default_look(facts, {}, looking(forward)).ground.toward_sun;
     return std::int64_t{sun.x} * forward.y - std::int64_t{sun.y} * forward.x;
   };
   const VoxelBox wide{{0, 0, 0}, {64, 8, 16}};
@@ -93,7 +93,7 @@ TEST_CASE(
   CHECK(to_right({}, from_left) < 0);
   SceneFacts facts = colored();
   facts.bounds = wide;
-  const Vec3i sun = default_look(facts, {}, looking(from_left), 800, 600).ground.toward_sun;
+  const Vec3i sun = default_look(facts, {}, looking(from_left)).ground.toward_sun;
   CHECK(-sun.y > std::abs(sun.x));  // it shines on the front
 }
 
@@ -147,18 +147,12 @@ TEST_CASE("look: an ambient of its own, or no direct light -> no sun is added") 
   CHECK_FALSE(has(look_at_front(off), Effect::kDirectLight));
 }
 
-TEST_CASE("look: more rays than the limit -> one sample a pixel; a wish goes first") {
-  const SceneFacts facts = colored();
+TEST_CASE("look: up to the limit of rays -> four samples a pixel; a wish goes first") {
+  CHECK(LookMeasure{256, kMostLookRays}.allows_four());
+  CHECK_FALSE(LookMeasure{256, kMostLookRays + 1}.allows_four());
   LookWishes wishes;
-  const auto across = [&](std::int32_t width, std::int32_t height) {
-    return default_look(facts, wishes, looking({0, 1 << 20, 0}), width, height).across;
-  };
-  // 1 ray, 1 to the sun and 16 around, four times a pixel.
-  const auto most = static_cast<std::int32_t>(kMostLookRays / 72 / 1000);
-  CHECK(across(1000, most) == 2);
-  CHECK(across(1000, most + 1) == 1);
   wishes.across = 3;
-  CHECK(across(1000, most + 1) == 3);
+  CHECK(look_at_front(colored(), wishes).across == 3);
 }
 
 TEST_CASE("look: none, gradient and six hex digits are backgrounds; nothing else is") {

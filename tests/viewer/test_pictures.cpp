@@ -75,6 +75,91 @@ TEST_CASE("pace: what is slow at any size -> rays where they are faster, else th
   CHECK(Pace(0.02, false).engine() == FastEngine::kRays);
 }
 
+TEST_CASE(
+    "lit pace: late frames -> none for a while, twice as long each time; in time -> finer, and soon again") {
+  LitPace pace;
+  const auto frames_without = [&pace](double seconds) {
+    pace.take(seconds, 0.1);
+    int frames = 0;
+    while (pace.next() == 0) {
+      ++frames;
+    }
+    return frames;
+  };
+  CHECK(pace.next() == 2);
+  CHECK(frames_without(0.11) == LitPace::kLeastPause);
+  CHECK(frames_without(0.3) == 2 * LitPace::kLeastPause);
+  CHECK(frames_without(0.09) == 0);
+  CHECK(frames_without(0.11) == 4 * LitPace::kLeastPause);  // one in time is not enough
+  for (int i = 0; i < 20; ++i) {
+    CHECK(frames_without(0.05) == 0);
+    CHECK(pace.next() == 2);  // every pixel would take 0.2
+  }
+  CHECK(frames_without(0.11) == LitPace::kLeastPause);
+  for (int i = 0; i < 20; ++i) {
+    CHECK(frames_without(0.015) == 0);
+  }
+  CHECK(pace.next() == 1);
+  CHECK(frames_without(0.11) == 0);
+  CHECK(pace.next() == 2);
+  for (int i = 0; i < 20; ++i) {
+    CHECK(frames_without(1) <= LitPace::kMostPause);
+  }
+  CHECK(frames_without(1) == LitPace::kMostPause);
+}
+
+TEST_CASE(
+    "fast frames: with time for the light -> the finished picture's, every second pixel; else as they were") {
+  const auto scene = scene_of("castle");
+  const auto look = std::make_shared<const FinishedLook>(scene, viewer::LookWishes{});
+  wide::Threads threads(2);
+  std::vector<std::uint8_t> wanted;
+  FinishedPicture picture(look, view_of(160, 120));
+  REQUIRE(picture.draw(2, &threads, &wanted, [](std::int32_t) { return true; }));
+  FastFrames frames(scene, picture.is_plain(), 2);
+  // A clock of which each look takes a second.
+  double time = 0;
+  const auto clock = [&time] { return time++; };
+  std::vector<std::uint8_t> rgb{1, 2, 3};
+  CHECK_FALSE(frames.draw_lit(picture, &rgb, 0.5, clock));
+  CHECK(rgb == std::vector<std::uint8_t>{1, 2, 3});
+  for (int frame = 0; frame < LitPace::kLeastPause; ++frame) {
+    CHECK_FALSE(frames.draw_lit(picture, &rgb, 1e9, clock));
+  }
+  CHECK(frames.draw_lit(picture, &rgb, 1e9, clock));
+  CHECK(frames.engine() == std::string("lit"));
+  REQUIRE(rgb.size() == 3 * 160 * 120);
+  for (std::size_t y = 0; y < 60; ++y) {
+    for (std::size_t x = 0; x < 80; ++x) {
+      CHECK(std::equal(wanted.begin() + static_cast<std::ptrdiff_t>(3 * (80 * y + x)),
+                       wanted.begin() + static_cast<std::ptrdiff_t>(3 * (80 * y + x) + 3),
+                       rgb.begin() + static_cast<std::ptrdiff_t>(3 * (160 * 2 * y + 2 * x))));
+    }
+  }
+  // A picture may be as bright as the last one that was measured, whatever that showed.
+  const auto bright = std::make_shared<const FinishedLook>(scene_of("glass"), viewer::LookWishes{});
+  std::vector<std::uint8_t> shown[3];
+  REQUIRE(FinishedPicture(bright, view_of(40, 30)).draw(2, &threads, &shown[0], [](std::int32_t) {
+    return true;
+  }));
+  look->keep_exposure(*bright);
+  for (int i = 0; i < 3; ++i) {
+    FinishedPicture again(look, view_of(160, 120));
+    if (i != 1) {
+      again.keep_exposure();
+    }
+    REQUIRE(again.draw(2, &threads, &shown[i], [](std::int32_t) { return true; }));
+  }
+  CHECK(shown[0] != shown[1]);
+  CHECK(shown[1] == shown[2]);
+  // Stars and flat shades have no light.
+  viewer::LookWishes flat;
+  flat.shade = ShadeMode::kNormal;
+  flat.shade_word = "normal";
+  const auto no_light = std::make_shared<const FinishedLook>(scene, flat);
+  CHECK_FALSE(frames.draw_lit(FinishedPicture(no_light, view_of(160, 120)), &rgb, 1e9, clock));
+}
+
 TEST_CASE("magnify: every pixel that was drawn stays, those between lie between, one colour stays one") {
   std::mt19937 random(1);
   for (int step = 1; step <= kMostStep; ++step) {

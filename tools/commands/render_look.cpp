@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "commands/render_command.h"
@@ -32,7 +34,7 @@ class LookStudio {
         built_(build()),
         shape_(first != nullptr ? first->shape_ : shape_of(source, built_)),
         facts_(facts_of(source, glowing(), shape_)),
-        exposure_(first != nullptr ? first->exposure_ : 0) {}
+        measured_(first != nullptr ? first->measured_ : std::nullopt) {}
 
   BuiltScene& built() { return built_; }
   const SceneShape& shape() const { return shape_; }
@@ -42,7 +44,7 @@ class LookStudio {
   /// Takes up a view.
   void look_from(const Framing& framing) {
     framing_ = framing;
-    look_ = default_look(facts_, wishes_, framing_, command_.view.width_px, command_.view.height_px);
+    look_ = default_look(facts_, wishes_, framing_);
     const bool is_lit = look_.kind == LookKind::kLit;
     if (is_lit && streams_ == nullptr) {
       streams_ = command_.engine.lit_streams(&built_, look_.effects, look_.lit_scene());
@@ -55,18 +57,22 @@ class LookStudio {
                is_lit ? command_.engine.lit_threads(&built_, look_.effects) : command_.engine.threads,
                command_.output.rows.value_or(RowRange{}),
                streams_.get()};
-    if (exposure_ == 0) {
-      exposure_ = measured_exposure(canvas_);  // of the first view for all, so that a film does not flicker
+    if (!measured_) {
+      measured_ = measure_look(canvas_);  // of the first view for all, so that a film does not flicker
+    }
+    if (wishes_.across == 0 && !measured_->allows_four()) {
+      look_.across = 1;
+      canvas_.fine = framing_.camera;
     }
   }
   Painting paint(const Progress& progress) const {
     Painting painting;
-    if (paint_look(canvas_, exposure_, progress, &painting) != Status::kOk) {
+    if (paint_look(canvas_, measured_->exposure_q8, progress, &painting) != Status::kOk) {
       throw InputError("its lights or surfaces are beyond the limits of a lit picture");
     }
     return painting;
   }
-  std::uint32_t exposure() const { return exposure_; }
+  const LookMeasure& measured() const { return *measured_; }
   double preparation_seconds() const { return streams_ != nullptr ? streams_->seconds() : 0; }
 
  private:
@@ -85,7 +91,7 @@ class LookStudio {
     lighting_.expect_glow();
     Framing any;
     any.kept.forward = {0, kMaxViewComponent, 0};
-    const Look most = default_look(facts_expected(source_, lighting_), wishes_, any, 1, 1);
+    const Look most = default_look(facts_expected(source_, lighting_), wishes_, any);
     const std::int32_t width = command_.view.width_px;
     const int threads = command_.engine.threads;
     SceneOptions::DrawingBytes bytes;
@@ -150,13 +156,22 @@ class LookStudio {
   Look look_;
   LookCanvas canvas_;
   std::unique_ptr<LitStreams> streams_;
-  std::uint32_t exposure_;  // 0 before the first view
+  std::optional<LookMeasure> measured_;  // once there is a view
 };
 
 void print_look(const RenderCommand& command, const SceneSource& source, const LookStudio& studio) {
   if (command.look.verbose) {
-    std::fprintf(stderr, "look: %s; exposure %s\n", studio.look().text.c_str(),
-                 fixed(studio.exposure() / 256.0, 2).c_str());
+    const Look& look = studio.look();
+    std::string text = look.text;
+    if (look.kind == LookKind::kLit && look.at_edges) {
+      text += ", samples where edges are";
+    } else if (look.kind == LookKind::kLit) {
+      text += ", " + std::to_string(look.across * look.across) + (look.across == 1 ? " sample" : " samples") +
+              " a pixel (" + grouped(studio.measured().rays) + " rays for four, which are taken up to " +
+              grouped(kMostLookRays) + ")";
+    }
+    std::fprintf(stderr, "look: %s; exposure %s\n", text.c_str(),
+                 fixed(studio.measured().exposure_q8 / 256.0, 2).c_str());
     if (source.color_error() > 0) {
       std::fprintf(stderr, "colors: 255 at most; a channel differs by %s of 255 (root of the mean square)\n",
                    fixed(source.color_error(), 2).c_str());
@@ -195,7 +210,7 @@ PartHeader part_of(const SceneSource& source, LookStudio& studio, const std::vec
   CrcSum options;
   add_look(studio.look(), studio.built().level(), &options);
   options.add_all(first_frame);
-  options.add_all(studio.exposure());
+  options.add_all(studio.measured().exposure_q8);
   part.options_crc32 = options.value();
   return part;
 }

@@ -1,11 +1,11 @@
 #include "scene/default_look.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <iterator>
 
-#include "output/units.h"
 #include "readers/oct.h"
 #include "scene/scene_source.h"
 #include "thimble/trace/secondary_ray.h"
@@ -18,10 +18,10 @@ const char* const kDefaultLookText =
     "(the right one where the side on the right is more than twice as large), with exact shadows, occlusion, "
     "a soft gradient behind the scene, and under it a ground that only shows "
     "the shadow. Water has ripples. What a scene states itself (camera, lights, occlusion, sky, effects off) "
-    "is kept. Points of "
+    "is kept. Round glass shows the slope of surfaces, not the faces of voxels. Points of "
     "which less than 50 % have 3 neighbours are stars: brightness and colour by depth and size on the "
-    "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, expected from the "
-    "effects and the picture's size. The exposure follows the scene. --structure dense|pool, --engine, "
+    "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, counted in a small "
+    "picture. The exposure follows the scene. --structure dense|pool, --engine, "
     "--cutoff, --max-depth and --board draw by --shade instead: colours where the scene has any, else depth.";
 
 namespace {
@@ -59,6 +59,41 @@ int surface_share(const CompactTree& tree) {
     }
   });
   return asked == 0 ? 100 : static_cast<int>(100 * have / asked);
+}
+
+// Whether a third of the faces of some glass or polished metal lie above a step of one voxel. Those of balls do, and show
+// a mosaic unless light sees their slopes; panes and blocks end at once. Blocks of many voxels are flat, and not counted.
+bool has_round_glass(const CompactTree& tree, const LitDescription& lighting) {
+  constexpr int kOthers = 2;
+  std::array<std::int32_t, kMaxSurfaces> balance{};
+  walk_blocks(tree, [&](const Vec3i& voxel, int level, std::uint8_t material) {
+    const Surface& surface = lighting.surfaces[material];
+    const bool is_polished =
+        surface.kind == SurfaceKind::kMetal && surface.mirror >= 128 && surface.roughness == 0;
+    if (level > 0 || (surface.kind != SurfaceKind::kGlass && !is_polished)) {
+      return;
+    }
+    const auto has = [&](Vec3i at, int axis, int by) {
+      at[axis] += by;
+      std::uint8_t found = 0;
+      return material_at(tree, at, &found) && found == material;
+    };
+    for (int face = 0; face < 6; ++face) {
+      const int axis = face / 2;
+      const int up = face % 2 == 0 ? -1 : 1;
+      if (has(voxel, axis, up)) {
+        continue;
+      }
+      bool has_step = false;
+      for (int side = 0; side < 6; ++side) {
+        Vec3i beside = voxel;
+        beside[side / 2] += side % 2 == 0 ? -1 : 1;
+        has_step = has_step || (side / 2 != axis && !has(beside, axis, 0) && has(beside, axis, -up));
+      }
+      balance[material] += has_step ? kOthers : -1;
+    }
+  });
+  return std::any_of(balance.begin(), balance.end(), [](std::int32_t faces) { return faces > 0; });
 }
 
 // The picture's axes as integers of 2^10.
@@ -106,14 +141,6 @@ Vec3i sun_over_shoulder(const SceneCamera& camera, const VoxelBox& box) {
   return sun;
 }
 
-// Not fewer than there are: the scenes with glass and water that come along take 0.2 to 0.55 of them (`render --stats`).
-std::uint64_t rays_a_sample(const LitScene& scene, EffectSet effects) {
-  const auto wanted = [effects](EffectSet effect) { return (effects & effect) != 0; };
-  const std::uint64_t at_hit = (wanted(Effect::kShadows) ? scene.lights.size : 0) +
-                               (wanted(Effect::kAmbientOcclusion) ? scene.occlusion.rays : 0);
-  return (1 + at_hit) * ((effects & Effect::kBranching) != 0 ? 2 : 1);
-}
-
 std::uint16_t occlusion_reach(const VoxelBox& bounds) {
   const std::int32_t longest =
       std::max({bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y, bounds.high.z - bounds.low.z});
@@ -155,7 +182,7 @@ void use_clay(Look* look) {
   }
 }
 
-std::string look_text(const SceneFacts& facts, const Look& look, bool own_light, std::uint64_t rays) {
+std::string look_text(const SceneFacts& facts, const Look& look, bool own_light) {
   if (look.kind == LookKind::kStars) {
     return "stars: " + std::to_string(facts.surface_share) + " % of the points have " +
            std::to_string(kSurfaceNeighbours) + " neighbours, less than " + std::to_string(kSurfaceShare) +
@@ -164,14 +191,7 @@ std::string look_text(const SceneFacts& facts, const Look& look, bool own_light,
   std::string text = facts.has_colors ? "its colours" : "clay";
   text += own_light ? ", its own light" : ", a sun over the viewer's shoulder";
   text += ", effects " + effects_text(look.effects);
-  text += look.ground.is_there ? ", a ground" : ", no ground";
-  if (look.at_edges) {
-    return text + ", samples where edges are";
-  }
-  text += ", " + std::to_string(look.across * look.across) + (look.across == 1 ? " sample" : " samples") +
-          " a pixel (" + grouped(rays) + " rays expected for four, which are taken up to " +
-          grouped(kMostLookRays) + ")";
-  return text;
+  return text + (look.ground.is_there ? ", a ground" : ", no ground");
 }
 
 }  // namespace
@@ -212,6 +232,7 @@ SceneFacts facts_of(const SceneSource& source, const LitDescription& lighting, c
   }
   facts.used = used_materials(*shape.tree);
   facts.surface_share = facts.is_points ? surface_share(*shape.tree) : 100;
+  facts.has_round_glass = has_round_glass(*shape.tree, facts.lighting);
   return facts;
 }
 
@@ -235,8 +256,7 @@ LitScene Look::lit_scene() const {
   return lit_scene_for(lighting, used, effects);
 }
 
-Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Framing& framing,
-                  std::int32_t width_px, std::int32_t height_px) {
+Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Framing& framing) {
   Look look;
   look.lighting = facts.lighting;
   look.used = facts.used;
@@ -274,8 +294,8 @@ Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Frami
   if (look.background.kind == BackgroundKind::kAuto) {
     look.background.kind = BackgroundKind::kGradient;
   }
-  const bool smooth =
-      wishes.smooth.value_or((facts.is_mesh || facts.is_points) && (off & Effect::kSmoothNormals) == 0);
+  const bool is_bent = facts.is_mesh || facts.is_points || facts.has_round_glass;
+  const bool smooth = wishes.smooth.value_or(is_bent && (off & Effect::kSmoothNormals) == 0);
   look.effects = called_for(lighting, facts.used) | (smooth ? Effect::kSmoothNormals : Effect::kNone);
   if (!smooth && wishes.smooth) {
     look.effects &= ~Effect::kSmoothNormals;
@@ -289,12 +309,10 @@ Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Frami
   look.ground.is_there = look.has_backdrop && wishes.ground.value_or(!own_light) && !facts.bounds.empty();
   look.kind = facts.forms_surface() ? LookKind::kLit : LookKind::kStars;
 
-  const auto pixels = static_cast<std::uint64_t>(width_px) * static_cast<std::uint64_t>(height_px);
-  const std::uint64_t rays = pixels * 4 * rays_a_sample(look.lit_scene(), look.effects);
   look.at_edges = wishes.at_edges;
-  look.across = wishes.across != 0 ? wishes.across : rays <= kMostLookRays ? 2 : 1;
+  look.across = wishes.across != 0 ? wishes.across : 2;
   dim(&lighting, look.used);
-  look.text = look_text(facts, look, own_light, rays);
+  look.text = look_text(facts, look, own_light);
   return look;
 }
 

@@ -6,8 +6,8 @@
 ///     SceneShape shape = shape_of(built);                          // scene_shape.h
 ///     Framing framing = frame_scene(view_wishes, source, shape);   // framing.h
 ///     SceneFacts facts = facts_of(source, shape);
-///     Look look = default_look(facts, wishes, framing, view_wishes.width_px, view_wishes.height_px);
-///     LookPicture picture(built, look, ...);                       // look_picture.h
+///     Look look = default_look(facts, wishes, framing);
+///     LookMeasure measured = measure_look(canvas);                 // look_picture.h: exposure, samples
 ///
 /// Another camera of the same scene needs only the last three lines; the facts stay.
 #pragma once
@@ -28,8 +28,6 @@ namespace thimble::tools {
 
 class SceneSource;
 
-/// Samples a pixel are four where that takes at most so many rays, else one.
-inline constexpr std::uint64_t kMostLookRays = 100'000'000;
 /// Points form a surface where at least this share of them, in per cent, have kSurfaceNeighbours neighbours
 /// or more among the 26 places around.
 inline constexpr int kSurfaceShare = 50;
@@ -40,11 +38,12 @@ extern const char* const kDefaultLookText;
 
 /// What a scene has.
 struct SceneFacts {
-  bool has_colors = false;  ///< a palette, or colours of points or corners
-  bool is_points = false;   ///< strewn voxels
-  bool is_mesh = false;     ///< triangles, or heights: a slope
-  int surface_share = 100;  ///< of points: per cent with enough neighbours
-  LitDescription lighting;  ///< what the scene itself states
+  bool has_colors = false;       ///< a palette, or colours of points or corners
+  bool is_points = false;        ///< strewn voxels
+  bool is_mesh = false;          ///< triangles, or heights: a slope
+  int surface_share = 100;       ///< of points: per cent with enough neighbours
+  bool has_round_glass = false;  ///< or polished metal: balls, not panes
+  LitDescription lighting;       ///< what the scene itself states
   UsedMaterials used;
   std::vector<Rgb8> palette;
   VoxelBox bounds;
@@ -70,7 +69,7 @@ struct LookWishes {
   int across = 0;              ///< samples a pixel are its square; 0: the rule's
   bool at_edges = false;       ///< samples where edges are (edge_rows.h); `across` is then kEdgeGrid
   std::optional<bool>
-      smooth;  ///< slopes instead of the faces of voxels; else for meshes and surfaces of points
+      smooth;  ///< slopes instead of the faces of voxels; else for meshes, surfaces of points and round glass
 };
 
 enum class LookKind : std::uint8_t {
@@ -90,17 +89,16 @@ struct Look {
   bool has_backdrop = true;
   Background background;
   Ground ground;
-  int across = 1;
+  int across = 1;         ///< samples a pixel are its square; by the rule 2, until the rays of that are known
   bool at_edges = false;  ///< samples where edges are, on a camera of `across` times the pixels
-  std::string text;       ///< what was chosen and why, a sentence
+  std::string text;       ///< what was chosen and why, but for the samples
 
   /// Views into `lighting`.
   LitScene lit_scene() const;
 };
 
 /// The rule. A function of its arguments alone, the same on every machine.
-Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Framing& framing,
-                  std::int32_t width_px, std::int32_t height_px);
+Look default_look(const SceneFacts& facts, const LookWishes& wishes, const Framing& framing);
 
 /// Meshes and surfaces without colours.
 inline constexpr Rgb8 kClay{214, 186, 162};

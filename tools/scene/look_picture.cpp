@@ -233,21 +233,22 @@ void LookRows::finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares
   finish_sums(x, y, sums.data(), static_cast<std::uint32_t>(across * across), image);
 }
 
-std::uint32_t measured_exposure(const LookCanvas& canvas) {
+LookMeasure measure_look(const LookCanvas& canvas) {
   if (canvas.look->kind == LookKind::kStars) {
-    return 256;
+    return {};
   }
   const std::int32_t longest = std::max(canvas.fine.width_px(), canvas.fine.height_px());
   const Camera coarse = canvas.fine.thinned((longest + kExposurePx - 1) / kExposurePx);
   const LookRows rows(canvas, coarse, 256);
   GrayCounts counts;
+  LitCounts traced;
   std::array<std::uint8_t, std::size_t{4} * kExposurePx> work{};
   const auto width = static_cast<std::size_t>(coarse.width_px());
   for (std::int32_t y = 0; y < coarse.height_px(); ++y) {
     const Bytes colors(work.data(), 3 * width);
     const Bytes shares(work.data() + 3 * width, width);
-    if (rows.trace(y, 1, colors, shares, nullptr) != Status::kOk) {
-      return 256;  // painting will say why
+    if (rows.trace(y, 1, colors, shares, &traced) != Status::kOk) {
+      return {};  // painting will say why
     }
     for (std::size_t x = 0; x < width; ++x) {
       if (shares[x] == kNothingBehind) {
@@ -255,7 +256,11 @@ std::uint32_t measured_exposure(const LookCanvas& canvas) {
       }
     }
   }
-  return exposure_q8(counts);
+  const Camera& whole = canvas.framing->camera;
+  const auto pixels = [](const Camera& camera) {
+    return static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(camera.height_px());
+  };
+  return {exposure_q8(counts), totals_of(traced).rays * 4 * pixels(whole) / pixels(coarse)};
 }
 
 namespace {

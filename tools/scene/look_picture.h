@@ -94,9 +94,14 @@ class LookRows {
   ToneTable tone_;
 };
 
-/// The exposure of this picture: from the rays of every so manyth pixel, at most 96 x 96 of them. Stars have
-/// none (256).
-std::uint32_t measured_exposure(const LookCanvas& canvas);
+/// What the rays of every so manyth pixel, at most 96 x 96 of them, say of this picture.
+struct LookMeasure {
+  std::uint32_t exposure_q8 = 256;  ///< stars have none: 256
+  std::uint64_t rays = 0;           ///< that four samples a pixel would take
+
+  bool allows_four() const { return rays <= kMostLookRays; }
+};
+LookMeasure measure_look(const LookCanvas& canvas);
 
 /// Paints the picture, or `canvas.rows` of it, in Rgb888, with `Image::alpha` where the background is none. Errors: those of the
 /// core's lit renderer (lights or surfaces beyond its limits).

@@ -18,8 +18,10 @@ struct GrayCounts {
 inline constexpr uint32_t kExposedGray = 208;
 inline constexpr uint32_t kLeastExposureQ8 = 208;
 inline constexpr uint32_t kMostExposureQ8 = 416;
-/// A picture of at most so many pixels each way, of every so manyth, tells the exposure.
+/// A picture of at most so many pixels each way, of every so manyth, tells the exposure, and the rays of them all.
 inline constexpr int32_t kExposurePx = 96;
+/// A pixel has four samples where those of the picture take at most so many rays, else one.
+inline constexpr uint64_t kMostLookRays = 100'000'000;
 
 /// How much to brighten a picture of these greys, drawn at two thirds: 256 is not at all. A picture of nothing is
 /// not.

@@ -29,6 +29,7 @@ FastFrames::FastFrames(std::shared_ptr<const OpenScene> scene, bool is_plain, in
 }
 
 void FastFrames::keep_pace(const FastFrames& before) {
+  lit_pace_ = before.lit_pace_;
   if (before.has_lists_ == has_lists_) {
     pace_ = before.pace_;
   }
@@ -40,10 +41,37 @@ void FastFrames::draw(const FinishedPicture& picture, std::vector<std::uint8_t>*
   const std::int32_t columns = thinned_px(picture.width_px(), step);
   const std::int32_t rows = thinned_px(picture.height_px(), step);
   small_.resize(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  was_wide_ = pace_.engine() == FastEngine::kWide && draw_wide(picture, step);
-  if (!was_wide_) {
+  const bool is_wide = pace_.engine() == FastEngine::kWide && draw_wide(picture, step);
+  if (!is_wide) {
     draw_rays(picture, step);
   }
+  engine_ = is_wide ? "wide" : "rays";
+  enlarge(picture, step, rgb);
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  pace_.take(seconds_);
+}
+
+bool FastFrames::draw_lit(const FinishedPicture& picture, std::vector<std::uint8_t>* rgb, double most_seconds,
+                          const std::function<double()>& clock) {
+  const int step = picture.is_lit() ? lit_pace_.next() : 0;
+  if (step == 0) {
+    return false;
+  }
+  const double start = clock();
+  const bool in_time = picture.draw(step, &threads_, &small_,
+                                    [&](std::int32_t /*rows*/) { return clock() - start <= most_seconds; });
+  seconds_ = clock() - start;
+  lit_pace_.take(seconds_, most_seconds);
+  if (in_time) {
+    engine_ = "lit";
+    enlarge(picture, step, rgb);
+  }
+  return in_time;
+}
+
+// The picture from every `step`-th pixel of it.
+void FastFrames::enlarge(const FinishedPicture& picture, int step, std::vector<std::uint8_t>* rgb) {
+  const std::int32_t rows = thinned_px(picture.height_px(), step);
   rgb->resize(3 * static_cast<std::size_t>(picture.width_px()) *
               static_cast<std::size_t>(picture.height_px()));
   const std::int32_t part = (rows + threads_.count() - 1) / threads_.count();
@@ -57,8 +85,6 @@ void FastFrames::draw(const FinishedPicture& picture, std::vector<std::uint8_t>*
     }
   });
   last_step_ = step;
-  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  pace_.take(seconds_);
 }
 
 bool FastFrames::draw_wide(const FinishedPicture& picture, int step) {
@@ -137,6 +163,20 @@ constexpr int kFramesToSharpen = 6;  // so many that were fast enough
 constexpr double kSpare = 0.8;       // of the time, for a finer step
 
 }  // namespace
+
+void LitPace::take(double seconds, double most_seconds) {
+  if (seconds > most_seconds && step_ == 1) {
+    step_ = 2;
+    in_time_ = 0;
+  } else if (seconds > most_seconds) {
+    in_time_ = 0;
+    pause_left_ = pause_;
+    pause_ = std::min(2 * pause_, kMostPause);
+  } else if (++in_time_ >= kFramesToSharpen) {
+    pause_ = kLeastPause;
+    step_ = step_ == 2 && 4 * seconds < kSpare * most_seconds ? 1 : step_;
+  }
+}
 
 Pace::Pace(double frame_seconds, bool may_be_wide)
     : most_seconds_(frame_seconds),

@@ -1,8 +1,10 @@
-/// Frames while the camera moves: unlit, by the wide renderer or ray by ray, coarser where the time wants it.
+/// Frames while something moves: unlit, by the wide renderer or ray by ray, coarser where the time wants it; or, of an
+/// animation, with all of their light.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -49,6 +51,27 @@ class Pace {
   int frames_ = 0;        // since step or engine changed
 };
 
+// Whether the next frame of an animation is drawn with all of its light: where those before had it in time, and now
+// and then to see whether they would.
+
+class LitPace {
+ public:
+  static constexpr int kLeastPause =
+      8;  ///< frames without light after one that was late; twice as many each time
+  static constexpr int kMostPause = 512;
+
+  /// For each frame: every so many pixels, 1 or 2, across and down; 0: without light.
+  int next() { return pause_left_ > 0 ? (--pause_left_, 0) : step_; }
+  /// What the light of the frame took, or had taken when it was given up, of the time that there was.
+  void take(double seconds, double most_seconds);
+
+ private:
+  int step_ = 2;
+  int in_time_ = 0;  // one after the other
+  int pause_ = kLeastPause;
+  int pause_left_ = 0;
+};
+
 class FastFrames {
  public:
   /// Of 1/30 second a frame may take; the rest is for the screen.
@@ -61,9 +84,13 @@ class FastFrames {
   void keep_pace(const FastFrames& before);
   /// Draws the view of `picture` into `rgb` (its size) and learns from the time it takes.
   void draw(const FinishedPicture& picture, std::vector<std::uint8_t>* rgb);
+  /// The same with all of the light, or false, and `rgb` as it was: where the pace wants none, or it was not there
+  /// within `most_seconds` of `clock`, which is asked every few rows.
+  bool draw_lit(const FinishedPicture& picture, std::vector<std::uint8_t>* rgb, double most_seconds,
+                const std::function<double()>& clock);
 
   /// Of the last frame.
-  const char* engine() const { return was_wide_ ? "wide" : "rays"; }
+  const char* engine() const { return engine_; }
   int step() const { return last_step_; }
   double seconds() const { return seconds_; }
 
@@ -71,6 +98,7 @@ class FastFrames {
   bool draw_wide(const FinishedPicture& picture, int step);
   void draw_rays(const FinishedPicture& picture, int step);
   void put_behind(const FinishedPicture& picture, int step);
+  void enlarge(const FinishedPicture& picture, int step, std::vector<std::uint8_t>* rgb);
 
   std::shared_ptr<const OpenScene> scene_;
   wide::Threads threads_;
@@ -80,9 +108,10 @@ class FastFrames {
   bool has_lists_ = false;
   HostMemory workspace_;
   Pace pace_;
+  LitPace lit_pace_;
   std::vector<std::uint8_t> small_;
   std::vector<std::uint8_t> behind_small_;
-  bool was_wide_ = false;
+  const char* engine_ = "rays";
   int last_step_ = 1;
   double seconds_ = 0;
 };

@@ -112,7 +112,7 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
 
 // The scene's own look, as render_look.cpp takes it.
 void FinishedPicture::take_own_look() {
-  own_ = default_look(*look_->own_, look_->own_wishes_, framing_, width_px(), height_px());
+  own_ = default_look(*look_->own_, look_->own_wishes_, framing_);
   const std::int32_t across = own_->across;
   fine_ = framing_.camera;
   if (width_px() * across > kMaxPicturePx || height_px() * across > kMaxPicturePx ||
@@ -121,7 +121,9 @@ void FinishedPicture::take_own_look() {
     own_->across = 1;  // such a camera has no rays between the pixels'
     own_->at_edges = false;
   }
-  quick_tone_ = quick_tone(*own_, look_->exposure_.load());
+  constexpr std::uint32_t kFirstExposure = 320;
+  const std::uint32_t measured = look_->exposure_.load();
+  quick_tone_ = quick_tone(*own_, measured != 0 ? measured : kFirstExposure);
   quick_shading_ = shading_;
   if (own_->kind == LookKind::kStars) {
     quick_shading_.mode = own_->has_own_colors ? ShadeMode::kColor : ShadeMode::kDepth;
@@ -247,11 +249,24 @@ bool FinishedPicture::draw_at_edges(int threads, std::vector<std::uint8_t>* rgb,
   return true;
 }
 
-void FinishedPicture::expose(const LookCanvas& finished) const {
+// Also how many samples there are, as in render_look.cpp.
+void FinishedPicture::expose(LookCanvas* canvas) const {
   std::call_once(exposed_, [&] {
-    exposure_ = measured_exposure(finished);
+    const LookMeasure measured = measure_look(*canvas);
+    exposure_ = measured.exposure_q8;
     look_->exposure_.store(exposure_);
+    if (look_->own_wishes_.across == 0 && !measured.allows_four()) {
+      own_->across = 1;
+      fine_ = framing_.camera;
+    }
   });
+  canvas->fine = fine_;
+}
+
+void FinishedPicture::keep_exposure() {
+  if (const std::uint32_t measured = look_->exposure_.load(); measured != 0) {
+    std::call_once(exposed_, [&] { exposure_ = measured; });
+  }
 }
 
 bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
@@ -261,7 +276,7 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
   if (lock.owns_lock()) {
     canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads->count());
   }
-  expose(canvas);
+  expose(&canvas);
   const LookRows rows(canvas, fine_, exposure_);
   SamplePass pass(rows, fine_, own_->across, step, kept);
   Image image;
@@ -302,7 +317,7 @@ bool FinishedPicture::paint_own(int threads, std::vector<std::uint8_t>* rgb, con
                     Bytes(work.data(), work.size()), threads};
   std::unique_lock<std::mutex> lock(look_->streams_mutex_, std::defer_lock);
   if (has_rows) {
-    expose(canvas);
+    expose(&canvas);
     if (lock.try_lock()) {
       canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads);
     }

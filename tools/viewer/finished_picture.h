@@ -90,6 +90,8 @@ class FinishedLook {
   const std::vector<std::string>& words() const { return words_; }
   /// Samples a pixel are its square. 1 where the scene's own look decides: it takes fewer in a large picture.
   int across() const { return across_; }
+  /// Has the exposure of the frame before.
+  void keep_exposure(const FinishedLook& before) const { exposure_.store(before.exposure_.load()); }
 
  private:
   friend class FinishedPicture;
@@ -110,8 +112,9 @@ class FinishedLook {
   std::vector<std::uint8_t> empty_bytes_;
   CompactTree empty_;  // a world with nothing in it
   std::vector<std::string> words_;
-  /// Of the last finished picture; frames while the camera moves have it, too, so that nothing flickers.
-  mutable std::atomic<std::uint32_t> exposure_{320};
+  /// Of the last picture that was measured, else 0; frames while something moves have it, too, so that nothing
+  /// flickers.
+  mutable std::atomic<std::uint32_t> exposure_{0};
 
   // Lit pictures by streams of rays: made when the first is drawn, for one that draws at a time.
   LitStreams* streams_for(EffectSet effects, const LitScene& scene, int threads) const;
@@ -135,7 +138,7 @@ class FinishedPicture {
   const Camera& camera() const { return framing_.camera; }
   std::int32_t width_px() const { return camera().width_px(); }
   std::int32_t height_px() const { return camera().height_px(); }
-  /// Samples a pixel are its square.
+  /// Samples a pixel are its square. Of the scene's own look it is known once something was drawn.
   int across() const { return !own_ ? look_->across_ : own_->kind == LookKind::kStars ? 1 : own_->across; }
   /// Whether there are samples where edges are instead (scene/edge_rows.h); `across` is then kEdgeGrid.
   bool at_edges() const {
@@ -157,6 +160,10 @@ class FinishedPicture {
   void show_water(const WaterSurface& water) { moving_water_ = water; }
   /// The water of the picture, or null.
   const WaterSurface* water() const;
+  /// Whether there is light on surfaces.
+  bool is_lit() const { return own_ ? own_->kind == LookKind::kLit : look_->effects_ != Effect::kNone; }
+  /// From now on this picture has the exposure of the last that was measured, as the frames of a film have.
+  void keep_exposure();
   /// Whether frames while the camera moves may be drawn by what knows only voxels (the wide renderer, with
   /// `quick_shading`); not so with water, which is none.
   bool is_plain() const;
@@ -172,16 +179,16 @@ class FinishedPicture {
   bool draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on,
                 KeptSamples* kept) const;
   bool draw_at_edges(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
-  void expose(const LookCanvas& finished) const;
+  void expose(LookCanvas* canvas) const;
   bool paint_own(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
   EffectSet effects() const { return own_ ? own_->effects : look_->effects_; }
 
   std::shared_ptr<const FinishedLook> look_;
   Framing framing_;
-  Camera fine_;  // so many times the pixels as there are samples across one
+  mutable Camera fine_;  // so many times the pixels as there are samples across one
   Shading shading_;
   Shading quick_shading_;
-  std::optional<Look> own_;  // the scene's own look from here
+  mutable std::optional<Look> own_;  // the scene's own look from here; `expose` settles its samples
   std::optional<WaterSurface> moving_water_;
   ToneTable quick_tone_;
   std::vector<Rgb8> quick_palette_;  // toned, as bright as the brightest face

@@ -82,7 +82,8 @@ class Viewer {
   void act(Action action);
   void look_around();
   void refine();
-  void draw_frame();
+  void draw_frame(bool may_be_lit);
+  bool draw_lit(FinishedPicture* picture);
   void show();
   void save();
   void write(const Refinement& finished, const SceneArguments& scene, const ViewWishes& wishes,
@@ -394,10 +395,13 @@ void Viewer::play() {
     }
     return;
   }
-  if (next_frame_ == nullptr) {
+  const auto read_next = [this] {
     SceneArguments next = options_.scene;
     next.frame = (next.frame.value_or(0) + 1) % scene_->source->frames();
     next_frame_ = std::make_unique<SceneReading>(next, options_.threads, scene_);
+  };
+  if (next_frame_ == nullptr) {
+    read_next();
     return;
   }
   if (!next_frame_->is_done() || time < next_frame_at_) {
@@ -408,8 +412,11 @@ void Viewer::play() {
     std::shared_ptr<const OpenScene> scene = next_frame_->take();
     next_frame_.reset();
     camera_.hold(picture_->framing(), *scene_);
+    const std::shared_ptr<const FinishedLook> before = look_;
     adopt(std::move(scene), options_.view);
+    look_->keep_exposure(*before);
     options_.scene.frame = (options_.scene.frame.value_or(0) + 1) % scene_->source->frames();
+    read_next();
   } catch (const std::exception& error) {
     next_frame_.reset();
     plays_ = false;
@@ -424,11 +431,21 @@ void Viewer::look_around() {
     changed_ = true;
   }
   if (changed_) {
-    draw_frame();
+    draw_frame(!motion.any());
   }
 }
 
-void Viewer::draw_frame() {
+// The frame of an animation that plays, with its light, where that is there before the next one.
+bool Viewer::draw_lit(FinishedPicture* picture) {
+  const double left = next_frame_at_ - now();
+  if (!plays_ || scene_->source->frames() <= 1 || left <= 0) {
+    return false;
+  }
+  picture->keep_exposure();
+  return frames_->draw_lit(*picture, &rgb_, left, now);
+}
+
+void Viewer::draw_frame(bool may_be_lit) {
   changed_ = false;
   const std::int32_t most = kMaxPicturePx / look_->across();
   const std::int32_t width = std::clamp(screen_->width_px(), 1, most);
@@ -452,9 +469,11 @@ void Viewer::draw_frame() {
   if (pool_ != nullptr) {
     picture->show_water(pool_->surface());
   }
+  if (!may_be_lit || !draw_lit(picture.get())) {
+    frames_->draw(*picture, &rgb_);
+  }
   picture_ = std::move(picture);
   wishes_ = wishes;
-  frames_->draw(*picture_, &rgb_);
   changed_at_ = now();
   show();
   const double took = now() - began;  // with the screen's part
@@ -552,11 +571,11 @@ std::string Viewer::state_text() const {
   }
   std::array<char, 128> text{};
   const double rate = frame_seconds_ > 0 ? 1 / frame_seconds_ : 0;
-  const int samples = picture_->across() * picture_->across();
   if (is_refined_ && picture_->at_edges()) {
     std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, samples where edges are", rate,
                   frames_->engine());
   } else if (is_refined_) {
+    const int samples = picture_->across() * picture_->across();
     std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, %d sample%s a pixel", rate,
                   frames_->engine(), samples, samples == 1 ? "" : "s");
   } else if (refinement_ != nullptr && refinement_->step() <= 1 && refinement_->percent() > 0) {

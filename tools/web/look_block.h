@@ -30,6 +30,9 @@ struct LookBlock {
   Rgb8 quick_palette[256];
 };
 
+/// Beside an exposure that the page hands on: a pixel of the picture at rest has one sample.
+inline constexpr uint32_t kOneSample = 1U << 16;
+
 /// The scene's own camera, or in its place one from there to there, in 1/256 voxel; the width of a parallel view is
 /// `zoom` / 256 of its own.
 struct WebCamera {

@@ -75,7 +75,7 @@ LookBlock block_of(std::uint32_t exposure_q8) {
   block.effects = block.is_stars ? Effect::kNone : look.effects;
   const bool has_water = (look.effects & Effect::kWater) != 0;  // which no voxels show
   block.quick_effects = look.has_backdrop && !has_water ? Effect::kNone : look.effects & kQuickEffects;
-  block.quick_tone = quick_tone(look, exposure_q8);
+  block.quick_tone = quick_tone(look, exposure_q8 & ~kOneSample);
   block.across = look.across;
   block.colors = static_cast<std::uint32_t>(look.palette.size());
   block.has_backdrop = look.has_backdrop;
@@ -137,7 +137,7 @@ extern "C" {
   if (web_camera.is_own == 0) {
     framing = frame_scene(placed_wishes(framing.kept, width_px, height_px), *source, scene_shape());
   }
-  look = default_look(scene_facts(), {}, framing, width_px, height_px);
+  look = default_look(scene_facts(), {}, framing);
   LookBlock block = block_of(exposure_q8);
   const std::vector<std::uint8_t> lighting =
       lighting_section(look.lighting, look.used, block.effects, scene.tree().level());

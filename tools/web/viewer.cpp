@@ -145,8 +145,8 @@ bool draw_thin(const Camera& thin, int32_t step) {
   return true;
 }
 
-// Light and what is behind it for `rows` rows of a camera's rays, into `samples` and `shares`.
-Status trace_samples(const Camera& camera, int32_t first, int32_t rows) {
+// Light and what is behind it for `rows` rows of a camera's rays, into `samples` and `shares`. `counts` may be null.
+Status trace_samples(const Camera& camera, int32_t first, int32_t rows, LitCounts* counts) {
   const LookBlock& look = viewer.look;
   const CompactTree& tree = viewer.shown.scene.tree();
   Shading shading = shading_of(camera, {look.palette, look.colors});
@@ -155,7 +155,8 @@ Status trace_samples(const Camera& camera, int32_t first, int32_t rows) {
   }
   const size_t count = static_cast<size_t>(camera.width_px()) * static_cast<size_t>(rows);
   const Band band{viewer.samples.subspan(0, kPixelBytes * count), PixelFormat::kRgb888, 0, first, rows};
-  const Status status = render_lit_band(look.effects, tree, camera, shading, viewer.lighting.scene, band);
+  const Status status =
+      render_lit_band(look.effects, tree, camera, shading, viewer.lighting.scene, band, counts);
   uint8_t* share = viewer.shares.data;
   for (int32_t y = first; y < first + rows; ++y) {
     RowRays rays(camera, 0, y);
@@ -195,7 +196,7 @@ int32_t samples_across() {
 
 // Row `y` of the picture that `camera` has, of `across` samples each way, to where it belongs.
 Status draw_lit(const Camera& camera, int32_t y, int32_t across, Bytes to) {
-  const Status status = trace_samples(camera, y * across, across);
+  const Status status = trace_samples(camera, y * across, across, nullptr);
   const Rgb8 behind = backdrop_color(viewer.look.background, y, camera.height_px() / across);
   for (int32_t x = 0; x < camera.width_px() / across; ++x) {
     put(finished(camera, x, across, behind), to.data + kPixelBytes * static_cast<size_t>(x));
@@ -396,20 +397,22 @@ extern "C" {
   return (thimble::tools::viewer.look.effects & thimble::Effect::kWater) != 0;
 }
 
-// The exposure of the picture at rest (measured_exposure), from rows first .. first + rows - 1 of a thinned one; 0
-// while there are more rows. What is drawn at rest is drawn with it from then on.
+// The exposure of the picture at rest, and kOneSample where that is so (measure_look), from rows first .. first + rows
+// - 1 of a thinned one; 0 while there are more rows.
 [[clang::export_name("expose")]] uint32_t thimble_expose(int32_t first, int32_t rows) {
   using namespace thimble;
   using namespace thimble::tools;
   static GrayCounts counts;
+  static LitCounts traced;
   const Camera& all = samples_across() == 1 ? viewer.camera : viewer.fine;
   const int32_t longest = all.width_px() > all.height_px() ? all.width_px() : all.height_px();
   const Camera coarse = all.thinned((longest + kExposurePx - 1) / kExposurePx);
   if (first == 0) {
     counts = {};
+    traced = {};
   }
   for (int32_t y = first; y < first + rows && y < coarse.height_px(); ++y) {
-    if (trace_samples(coarse, y, 1) != Status::kOk) {
+    if (trace_samples(coarse, y, 1, &traced) != Status::kOk) {
       return 256;  // drawing will say so
     }
     for (size_t x = 0; x < static_cast<size_t>(coarse.width_px()); ++x) {
@@ -419,10 +422,24 @@ extern "C" {
       }
     }
   }
-  return first + rows < coarse.height_px() ? 0 : exposure_q8(counts);
+  if (first + rows < coarse.height_px()) {
+    return 0;
+  }
+  uint64_t rays = 0;
+  for (const uint64_t of_kind : traced.rays) {
+    rays += of_kind;
+  }
+  const auto pixels = [](const Camera& camera) {
+    return static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(camera.height_px());
+  };
+  const bool allows_four = rays * 4 * pixels(viewer.camera) / pixels(coarse) <= kMostLookRays;
+  return exposure_q8(counts) | (allows_four ? 0 : kOneSample);
 }
+// What is drawn at rest is drawn with it from then on.
 [[clang::export_name("set_exposure")]] void thimble_set_exposure(uint32_t exposure_q8) {
-  thimble::tools::viewer.tone = thimble::tools::tone_table(exposure_q8);
+  using namespace thimble::tools;
+  viewer.tone = tone_table(exposure_q8 & ~kOneSample);
+  viewer.look.across = (exposure_q8 & kOneSample) != 0 ? 1 : viewer.look.across;
 }
 
 // Draws rows of every `step`-th pixel of every `step`-th row, stretched; `first` is a multiple of `step`. `lit`: as
