@@ -138,20 +138,19 @@ void add_file_options(CLI::App& sub, ReportPaths* paths) {
       "picture), group (default, the knob turned alone, together, best: the reference itself, anytime), "
       "options (of thimble render), front (1: nothing nearer to the reference is as cheap, times within 3 "
       "per cent being equal), max_depth (0: all), cutoff_px, direction_bits (0: automatic), samples; against "
-      "the reference: wrong_px (of another colour), visible_px (a channel off by more than "
-      "8 of 255), rms_error (of 255), psnr_db (empty: equal); ms_median, ms_quarter, ms_three_quarters; "
-      "rays, "
-      "hits, node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
+      "the reference: wrong_px (of another colour), visible_px (a channel off by more than 8 of 255), "
+      "rms_error (of 255), psnr_db (empty: equal); ms_median, ms_quarter, ms_three_quarters; rays, hits, "
+      "node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
       "depth_error_max_voxels (of centres' rays that hit in both); lm3s6965evb_instructions (an estimate, "
       "off by 5 per cent on average on the demonstration); anytime: visits_given, inexact_px, "
       "error_bound_grays (of the mean absolute difference from the finished frame), mean_error_grays; light: "
-      "occlusion_rays, roughness_rays, bounces (errors against the best of these). With "
-      "--hard-cases: row (rays, operation), case (or all), level (of the world), tracer, traversal, "
-      "arithmetic, epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face "
-      "(of the others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: "
-      "row (particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), "
-      "steps, work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of "
-      "all steps), unit (of the errors), error_rms, error_median, error_most, front");
+      "occlusion_rays, roughness_rays, bounces (errors against the best of these). With --hard-cases: row "
+      "(rays, operation), case (or all), level (of the world), tracer, traversal, arithmetic, "
+      "epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face (of the "
+      "others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: row "
+      "(particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), steps, "
+      "work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of all "
+      "steps), unit (of the errors), error_rms, error_median, error_most, front");
   add_path_option(sub, "--json", "FILE.json", &paths->json,
                   "the same, an array of objects; null where the CSV is empty");
   add_path_option(sub, "--plot", "FILE.svg", &paths->plot,
@@ -181,10 +180,10 @@ void add_accuracy(CLI::App& app) {
       "basin of water, against the finest");
   add_whole_option(*sub, "--rays", "N", 1, 1000000000, &command->hard_rays,
                    "--hard-cases: rays, shared among the cases; a fifth as many cases of each operation")
-      .default_str("1000000");
+      ->default_str("1000000");
   add_whole_option(*sub, "--seed", "S", 0, INT64_MAX / 2000003, &command->seed,
                    "--hard-cases: of the random rays")
-      .default_str("1");
+      ->default_str("1");
   add_positive(*sub, "--for-ms", "T", 1e-9, &command->for_ms,
                "answer with the options that come nearest to the reference in T milliseconds of the "
                "processor a frame, median on this machine at this --size");
@@ -192,17 +191,17 @@ void add_accuracy(CLI::App& app) {
                "answer with the fastest options whose picture is off by at most E: the root mean square of "
                "all channels' differences from the reference, in steps of 1/255 (column rms_error; 0: equal; "
                "PSNR is 20 log10(255/E) dB)");
-  exclude_each_other(*sub, "--for-ms", "--for-error");
+  sub->get_option("--for-ms")->excludes(sub->get_option("--for-error"));
   add_whole_option(*sub, "--rounds", "N", 1, 999, &command->study.rounds,
                    "frames timed of each setting, by turns, one of each a round")
-      .default_str("5");
+      ->default_str("5");
   add_choice_option(
       *sub, "--against",
       {{"time", CostAxis::kTime}, {"visits", CostAxis::kVisits}, {"instructions", CostAxis::kInstructions}},
       &command->study.axis,
       "what the front and the plot weigh errors against: milliseconds here, or what is the same on every "
       "machine: nodes visited, or an estimate of instructions on lm3s6965evb")
-      .default_str("time");
+      ->default_str("time");
   add_view(*sub, &command->study.view, false);
   add_shade(
       *sub, &command->study.shade,

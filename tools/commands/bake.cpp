@@ -203,20 +203,18 @@ void add_bake(CLI::App& app) {
         return text == "-" || command->as_header || ends_in(text, ".oct") ? "" : "does not end in .oct or .h";
       },
       "the bytes as a file (.oct) or as a C and C++ header (.h); - is the bytes on standard output")
-      .required();
+      ->required();
   add_bytes(*sub, "--memory", &command->scene.memory_bytes,
             "the most bytes that the baked scene may take, such as 65536, 64K or 2M (default: no limit)");
   add_board(*sub, &command->scene.board,
             "the limit is what the demonstration leaves of the board's flash (the smaller counts if --memory "
             "is given too), and the camera frames the scene for its display, so that all of it stays in the "
-            "picture while "
-            "it turns");
+            "picture while it turns");
   add_flag(*sub, "--coarsen", &command->scene.coarsen,
            "when it does not fit, merge blocks of voxels until it just does; this only adds solid");
   add_flag(*sub, "--brick-map", &command->brick_map,
            "add a table that makes frames on a chip several times faster, in worlds of up to 1,024 a side "
-           "(256 on most boards), "
-           "as long as all keeps the limit; --board always does");
+           "(256 on most boards), as long as all keeps the limit; --board always does");
   add_effect_list(
       *sub, &command->effects,
       "what the scene is baked for: auto (what its materials and lights call for), none, or effects with "
@@ -233,7 +231,7 @@ void add_bake(CLI::App& app) {
         return is_identifier(text) ? "" : "cannot be the name of an array in C and C++";
       },
       "what a header calls the array; its macros begin with the same in capitals")
-      .default_str(kDefaultIdentifier);
+      ->default_str(kDefaultIdentifier);
   add_picture_view(*sub, &command->view);
   command->scene.add_report(*sub);
   when_chosen(*sub, [command] { run(*command); });

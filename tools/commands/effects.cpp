@@ -170,17 +170,16 @@ void add_effects(CLI::App& app) {
   add_view(*sub, &command->study.view);
   add_whole_option(*sub, "--frames", "N", 1, 99, &command->study.frames,
                    "frames timed of each set of effects, by turns")
-      .default_str("5");
+      ->default_str("5");
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->files.csv,
       "a line an effect, each that there is: effect, called_for (1 or 0), why (in words), K_rays for K of "
-      "primary, "
-      "shadow, occlusion, mirror, glass, media, water (rays of that kind in a frame with the effect less "
-      "those in one without, so below 0 where the effect saves some), rays (of all kinds), node_visits (the "
-      "same of nodes), ms (median over the frames of the time with less the time without), q25_ms, q75_ms "
-      "(its quartiles), with_ms, without_ms (medians of the frames; empty where not called for), ram_bytes "
-      "(state and tables of a lit picture, as render --memory counts them), flash_bytes (on lm3s6965evb, the "
-      "image with this effect alone less one with none)");
+      "primary, shadow, occlusion, mirror, glass, media, water (rays of that kind in a frame with the effect "
+      "less those in one without, so below 0 where the effect saves some), rays (of all kinds), node_visits "
+      "(the same of nodes), ms (median over the frames of the time with less the time without), q25_ms, "
+      "q75_ms (its quartiles), with_ms, without_ms (medians of the frames; empty where not called for), "
+      "ram_bytes (state and tables of a lit picture, as render --memory counts them), flash_bytes (on "
+      "lm3s6965evb, the image with this effect alone less one with none)");
   add_path_option(*sub, "--json", "FILE.json", &command->files.json,
                   "the same, an array of objects; null where the CSV is empty");
   add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot, "milliseconds a frame, a bar an effect");

@@ -177,20 +177,20 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
         return {};
       },
       "cells of the world, a pixel each")
-      .default_str("800x600");
+      ->default_str("800x600");
   add_whole_option(sub, "--count", "N", 0, kMaxBalls / 2, &world->count,
                    "balls at the start; of --bodies, the first N")
-      .default_str("693");
+      ->default_str("693");
   add_whole_option(sub, "--min-size", "D", 1, kMaxBallDiameter, &world->least_diameter,
                    "least diameter of a ball, cells")
-      .default_str("2");
+      ->default_str("2");
   add_whole_option(sub, "--max-size", "D", 1, kMaxBallDiameter, &world->most_diameter,
                    "largest diameter of a ball, cells, up to " + std::to_string(kMaxBallDiameter))
-      .default_str("12");
+      ->default_str("12");
   add_real_option(
       sub, "--bounciness", "B", 0, 1, [world](double value) { world->bounciness = value; },
       "the part of its speed that a ball keeps when it bounces, 0 to 1")
-      .default_str("0.8");
+      ->default_str("0.8");
   add_text_option(
       sub, "--gravity", "X,Y",
       [world](const std::string& text) -> std::string {
@@ -204,33 +204,31 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
         return {};
       },
       "gravity in cells a step a step; y down the picture; with --bodies there is none unless given")
-      .default_str("0,0.1");
+      ->default_str("0,0.1");
   add_real_option(
       sub, "--speed", "V", 0, 8192, [world](double value) { world->speed = value; },
       "random balls start with up to V cells a step on each axis; of --bodies the fastest has V")
-      .default_str("3");
-  add_whole_option(sub, "--seed", "S", 0, UINT32_MAX, &world->seed, "of random balls").default_str("1");
+      ->default_str("3");
+  add_whole_option(sub, "--seed", "S", 0, UINT32_MAX, &world->seed, "of random balls")->default_str("1");
   add_path_option(
       sub, "--bodies", "FILE", &command->bodies_path,
       "balls from a file: the number of bodies, the radius of the world, then a line \"x y vx vy m r g b\" "
-      "each. "
-      "The circle of that radius fills the box; area goes with mass, from --max-size down to --min-size; y "
-      "is "
-      "turned; a body whose place is taken goes to the nearest free one; those beyond the box are left out");
+      "each. The circle of that radius fills the box; area goes with mass, from --max-size down to "
+      "--min-size; y is turned; a body whose place is taken goes to the nearest free one; those beyond the "
+      "box are left out");
   add_choice_option(sub, "--substeps", {{"1", 0}, {"2", 1}, {"4", 2}, {"8", 3}, {"16", 4}},
                     &world->substeps_log2, "parts that each step is made in")
-      .default_str("1");
+      ->default_str("1");
   add_whole_option(sub, "--subpixel-bits", "N", 1, 15, &world->subpixel_bits,
                    "positions are kept to 2^-N cells")
-      .default_str("15");
+      ->default_str("15");
 }
 
 void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
   add_whole_option(
       sub, "--steps", "N", 0, 1'000'000'000'000, &command->play.steps,
       "end after N steps (default: where somebody watches, when the window is closed or q is pressed; else "
-      "2000, "
-      "or to the end of a longer --input)");
+      "2000, or to the end of a longer --input)");
   add_choice_option(
       sub, "--display",
       {{"auto", host::ScreenKind::kAuto},
@@ -239,10 +237,9 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
        {"terminal", host::ScreenKind::kTerminal}},
       &command->play.view,
       "where the world is shown; auto: nowhere where --steps or a file to write (but --record-input) is "
-      "given, "
-      "else in an X11 window where DISPLAY works, else in the terminal where standard output is one, else "
-      "nowhere")
-      .default_str("auto");
+      "given, else in an X11 window where DISPLAY works, else in the terminal where standard output is one, "
+      "else nowhere")
+      ->default_str("auto");
   add_whole_option(
       sub, "--eps", "N", 1, 1'000'000,
       [command](std::int64_t rate) {
@@ -250,7 +247,7 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
         command->paced_by = "--eps";
       },
       "steps a second in a window or terminal, and of a recording; the paper's Eps, which we read so")
-      .default_str("60");
+      ->default_str("60");
   add_whole_option(
       sub, "--fps", "N", 1, 1000,
       [command](std::int64_t rate) {
@@ -260,13 +257,10 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
       "pictures a second on the screen and in a recording (default: 60 in a window, else 30)");
   add_path_option(sub, "--input", "SCRIPT", &command->input_path,
                   "play mouse and keys from a file: lines \"TICK: EVENT\", EVENT one of \"key K\" (a "
-                  "character, or space up "
-                  "down left right enter tab escape backspace), \"move X,Y\", \"press BUTTON X,Y\", "
-                  "\"release BUTTON X,Y\" "
-                  "(left, middle, right), \"wheel STEPS X,Y\" and \"end\". A tick is the time of one step, "
-                  "the first is 0; "
-                  "events come before the step of their tick; while paused ticks count without steps; # "
-                  "begins a comment line");
+                  "character, or space up down left right enter tab escape backspace), \"move X,Y\", \"press "
+                  "BUTTON X,Y\", \"release BUTTON X,Y\" (left, middle, right), \"wheel STEPS X,Y\" and "
+                  "\"end\". A tick is the time of one step, the first is 0; events come before the step of "
+                  "their tick; while paused ticks count without steps; # begins a comment line");
   add_path_option(
       sub, "--record-input", "FILE", &command->input_recording_path,
       "write all mouse and key events as such a file: with the same other options it gives the same "

@@ -411,7 +411,7 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
   add_choice_option(
       app, "--ground", {{"auto", std::nullopt}, {"on", true}, {"off", false}}, &command->look.wishes.ground,
       "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light")
-      .default_str("auto");
+      ->default_str("auto");
   command->output.add_films(app);
   add_flag(app, "--verbose", &command->look.verbose, "say on standard error what the scene's look came to");
 }
@@ -496,7 +496,7 @@ void add_render(CLI::App& app) {
       std::string("the picture, ") + kImageEndings +
           " by its ending; - is a PPM on standard output; with --turntable, --camera-path or --frames a " +
           kFilmEndings)
-      .required();
+      ->required();
   add_picture_view(*sub, &command->view);
   add_shade(*sub, &command->look.shade,
             "brightness by distance (the paper's), the face's direction, the palette in one light, or white "
@@ -511,8 +511,7 @@ void add_render(CLI::App& app) {
   add_path_option(*sub, "--depth-image", "FILE.pfm", &command->output.depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
   add_effect_options(*sub, &command->effects,
-                     "; what calls for none is drawn by --shade; --structure compact and --engine auto "
-                     "only",
+                     "; what calls for none is drawn by --shade; --structure compact and --engine auto only",
                      "the scene's own look; none with --shade; else auto");
   add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);

@@ -409,13 +409,13 @@ void add_trace(CLI::App& app) {
       *sub, "--rays", "FILE.csv|.npy", &command->rays_path,
       "one ray a line: ox,oy,oz,dx,dy,dz in voxels; a header line is allowed; or a NumPy array, a ray "
       "a row of six numbers")
-      .required();
+      ->required();
   add_path_option(*sub, "-o,--output", "FILE.csv|.npy", &command->output,
                   std::string("a header line, then one line a ray: ") + kHitColumns +
                       "; point = q-origin / 256 + t * q-direction, in voxels; a dense grid keeps no "
                       "material" +
                       kHitArray + "; - is standard output, lines")
-      .default_str("-");
+      ->default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
   command->engine.add_ray_engines_to(*sub);
   add_threads(*sub, &command->threads, "threads that read, trace and write");

@@ -279,8 +279,7 @@ Camera orthographic_camera(const ViewWishes& wishes, int level, const Sight& sig
   }
   check(status,
         status == Status::kTooFine
-            ? "the pixels are too fine for origins in 1/256 voxel; a wider picture helps, about "
-              "--span " +
+            ? "the pixels are too fine for origins in 1/256 voxel; a wider picture helps, about --span " +
                   shortest(std::ceil(2 * least * 100) / 100)
             : "the picture's corners must lie within -4 to 5 world sizes; a smaller --span or another "
               "--eye helps");
