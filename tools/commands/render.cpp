@@ -1,6 +1,5 @@
 // thimble render: a scene as a picture.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -127,28 +126,29 @@ Light light_of(const RenderCommand& command, const SceneSource& source) {
 }
 
 // What of the budget is kept back for the picture.
-SceneOptions::DrawingBytes drawing_bytes(const RenderCommand& command, const SceneSource& source,
-                                         const Light& light, PixelFormat format) {
-  SceneOptions::DrawingBytes bytes;
+BuildOptions drawing_bytes(const RenderCommand& command, const SceneSource& source, const Light& light,
+                           PixelFormat format) {
+  BuildOptions bytes;
   const std::int32_t width = command.view.width_px;
   const bool plain = command.quality.plain();
   const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
-  bytes.band = plain ? band_bytes(format, width, plain_band_rows(command, format)) : quality_bytes;
-  bytes.least_band = plain ? band_bytes(format, width, 1) : quality_bytes;
+  bytes.band_bytes = plain ? band_bytes(format, width, plain_band_rows(command, format)) : quality_bytes;
+  bytes.least_band_bytes = plain ? band_bytes(format, width, 1) : quality_bytes;
   if (command.quality.at_edges) {
     const int threads = light.effects == Effect::kNone ? 1 : command.engine.threads;
     const std::uint64_t row = edge_band_bytes(format, width, 1, 1);
-    bytes.band = edge_band_bytes(format, width,
-                                 band_rows(command, static_cast<std::size_t>(row), kMostEdgeRows), threads);
-    bytes.least_band = edge_band_bytes(format, width, 1, threads);
+    bytes.band_bytes = edge_band_bytes(
+        format, width, band_rows(command, static_cast<std::size_t>(row), kMostEdgeRows), threads);
+    bytes.least_band_bytes = edge_band_bytes(format, width, 1, threads);
   }
   if (light.effects != Effect::kNone && command.quality.samples() > 1 && !command.quality.at_edges) {
     const std::int32_t most = std::max(1, kMostSamplesAtOnce / (width * command.quality.samples()));
-    bytes.band *=
+    bytes.band_bytes *=
         static_cast<std::uint64_t>(band_rows(command, static_cast<std::size_t>(quality_bytes), most));
   }
   const bool in_flash = command.scene.board != nullptr && source.baked() != nullptr;
-  bytes.state = in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);
+  bytes.render_state_bytes =
+      in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);
   return bytes;
 }
 

@@ -12,7 +12,6 @@
 #include "output/suggestion.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
-#include "scene/built_scene.h"
 #include "scene/gpu_engine.h"
 #include "scene/lit_streams.h"
 #include "scene/scene_source.h"
@@ -137,8 +136,7 @@ std::unique_ptr<SceneSource> SceneOptions::open() const {
   return scene;
 }
 
-BuiltScene SceneOptions::build(const SceneSource& source, const DrawingBytes& drawing) const {
-  BuildOptions options;
+BuiltScene SceneOptions::build(const SceneSource& source, BuildOptions options) const {
   options.structure = structure;
   options.memory_bytes = budget_bytes();
   if (board != nullptr) {
@@ -154,35 +152,17 @@ BuiltScene SceneOptions::build(const SceneSource& source, const DrawingBytes& dr
     }
   }
   options.coarsen = coarsen;
-  options.band_bytes = drawing.band;
-  options.least_band_bytes = drawing.least_band;
-  options.render_state_bytes = drawing.state;
   options.threads = build_threads;
   return with_progress("building", quiet,
                        [&](const Progress& progress) { return BuiltScene(source, options, progress); });
 }
 
-BuiltScene SceneOptions::build(const SceneSource& source) const {
-  return build(source, {});
-}
-
 namespace {
-
-// For help, which breaks lines at blanks.
-std::string spaced_names() {
-  std::string text;
-  for (const char c : effect_names()) {
-    text += c == ',' ? ", " : std::string(1, c);
-  }
-  return text;
-}
 
 std::vector<std::string> offered() {
   std::vector<std::string> words{"auto", "none", "all"};
-  std::istringstream names(effect_names());
-  for (std::string name; std::getline(names, name, ',');) {
-    words.push_back(name);
-  }
+  const std::vector<std::string> names = effect_list(Effect::kAll);
+  words.insert(words.end(), names.begin(), names.end());
   return words;
 }
 
@@ -239,7 +219,7 @@ void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& 
       },
       "what light does: auto (what the scene's materials, lights, water and sky call for), none, all (that, "
       "light, shadows, occlusion, glow and smooth normals), or with commas between them any of " +
-          spaced_names() + more)
+          joined(effect_list(Effect::kAll), ", ") + more)
       ->default_str(usual)
       ->check(offering(offered()));
   add_normals(app, &wishes->choice);
