@@ -7,12 +7,9 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <memory>
 #include <new>
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
@@ -159,12 +156,11 @@ int main(int argc, char** argv) {
   thimble::tools::add_all_commands(app);
   thimble::tools::add_paragraph_below(app,
                                       "thimble SUBCOMMAND --help describes each. Behind -- nothing is an "
-                                      "option. The files that one run writes are "
-                                      "all there whole, or none and what was there before is as it was, also "
-                                      "when a signal other than KILL ends it; "
-                                      "none may be what the run reads. What goes to -, to a name of an open "
-                                      "descriptor (/dev/stdout, /dev/fd/3), to "
-                                      "a device or a pipe is written straight on.");
+                                      "option. The files that one run writes are all there whole, or none "
+                                      "and what was there before is as it was, also when a signal other than "
+                                      "KILL ends it; none may be what the run reads. What goes to -, to a "
+                                      "name of an open descriptor (/dev/stdout, /dev/fd/3), to a device or a "
+                                      "pipe is written straight on.");
   // The file that an input error is about, for the sentence: the subcommand's first argument.
   const auto subject = [&]() -> std::string {
     for (const CLI::App* command : app.get_subcommands()) {

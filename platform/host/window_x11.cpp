@@ -6,22 +6,183 @@
 #include <X11/Xutil.h>
 #include <X11/keysym.h>
 #include <poll.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "host/canvas.h"
-#include "host/window_drops.h"
+#include "host/uri_list.h"
 
 namespace thimble::host {
 namespace {
+
+// Files that are dragged onto a window from another program: the receiver's part of XDND, version 5, the protocol of file
+// managers (freedesktop.org). Nothing is written: the window's program gets a path.
+class WindowDrops {
+ public:
+  /// Says to other programs that files may be dropped on the window.
+  void announce(::Display* display, ::Window window);
+  /// Whether the event is part of a drag or drop; then it has been answered. `path` gets the first file of a
+  /// drop that is complete.
+  bool take(const XEvent& event, std::optional<std::string>* path);
+
+ private:
+  Atom atom(const char* name) const { return XInternAtom(display_, name, False); }
+  void enter(const XClientMessageEvent& message);
+  void ask_for_files(const XClientMessageEvent& message);
+  std::string received(const XSelectionEvent& event) const;
+  void answer(Atom type, long accepts, Atom action) const;
+
+  ::Display* display_ = nullptr;
+  ::Window window_ = 0;
+  ::Window source_ = 0;  // of the drag; 0: none
+  bool has_files_ = false;
+  Atom enter_ = 0;
+  Atom position_ = 0;
+  Atom status_ = 0;
+  Atom leave_ = 0;
+  Atom drop_ = 0;
+  Atom finished_ = 0;
+  Atom selection_ = 0;
+  Atom copy_ = 0;
+  Atom types_ = 0;
+  Atom uri_list_ = 0;
+};
+
+constexpr long kVersion = 5;
+constexpr long kOldestVersion = 3;
+constexpr long kMostWords = 1 << 16;  // of a property that is read, 4 bytes each
+
+// What XGetWindowProperty gives; freed with it.
+struct Property {
+  Property(::Display* display, ::Window window, Atom name, Bool removes, Atom type) {
+    Atom found = 0;
+    unsigned long left = 0;
+    if (XGetWindowProperty(display, window, name, 0, kMostWords, removes, type, &found, &bits, &count, &left,
+                           &data) != Success ||
+        found != type) {
+      count = 0;
+    }
+  }
+  ~Property() {
+    if (data != nullptr) {
+      XFree(data);
+    }
+  }
+  Property(const Property&) = delete;
+  Property& operator=(const Property&) = delete;
+
+  int bits = 0;
+  unsigned long count = 0;
+  unsigned char* data = nullptr;
+};
+
+void WindowDrops::announce(::Display* display, ::Window window) {
+  display_ = display;
+  window_ = window;
+  enter_ = atom("XdndEnter");
+  position_ = atom("XdndPosition");
+  status_ = atom("XdndStatus");
+  leave_ = atom("XdndLeave");
+  drop_ = atom("XdndDrop");
+  finished_ = atom("XdndFinished");
+  selection_ = atom("XdndSelection");
+  copy_ = atom("XdndActionCopy");
+  types_ = atom("XdndTypeList");
+  uri_list_ = atom("text/uri-list");
+  const Atom version = kVersion;
+  XChangeProperty(display, window, atom("XdndAware"), XA_ATOM, 32, PropModeReplace,
+                  reinterpret_cast<const unsigned char*>(&version), 1);
+}
+
+// What is dragged is offered in up to three types in the message, or else in a list at the source's window.
+void WindowDrops::enter(const XClientMessageEvent& message) {
+  const long version = message.data.l[1] >> 24 & 0xFF;
+  source_ = version >= kOldestVersion ? static_cast<::Window>(message.data.l[0]) : 0;
+  has_files_ = false;
+  if ((message.data.l[1] & 1) == 0) {
+    for (int i = 2; i < 5; ++i) {
+      has_files_ = has_files_ || static_cast<Atom>(message.data.l[i]) == uri_list_;
+    }
+    return;
+  }
+  const Property offered(display_, source_, types_, False, XA_ATOM);
+  const Atom* const types = reinterpret_cast<const Atom*>(offered.data);
+  for (unsigned long i = 0; offered.bits == 32 && i < offered.count; ++i) {
+    has_files_ = has_files_ || types[i] == uri_list_;
+  }
+}
+
+void WindowDrops::answer(Atom type, long accepts, Atom action) const {
+  XEvent event{};
+  event.xclient.type = ClientMessage;
+  event.xclient.window = source_;
+  event.xclient.message_type = type;
+  event.xclient.format = 32;
+  event.xclient.data.l[0] = static_cast<long>(window_);
+  event.xclient.data.l[1] = accepts;
+  // Of a status: no rectangle within which the source need not ask again, then the action; of a finish: the
+  // action.
+  event.xclient.data.l[type == status_ ? 4 : 2] = static_cast<long>(action);
+  XSendEvent(display_, source_, False, NoEventMask, &event);
+}
+
+void WindowDrops::ask_for_files(const XClientMessageEvent& message) {
+  if (!has_files_) {
+    answer(finished_, 0, 0);
+    source_ = 0;
+    return;
+  }
+  XConvertSelection(display_, selection_, uri_list_, selection_, window_,
+                    static_cast<Time>(message.data.l[2]));
+}
+
+std::string WindowDrops::received(const XSelectionEvent& event) const {
+  if (event.property == 0) {
+    return {};
+  }
+  const Property list(display_, window_, event.property, True, uri_list_);
+  return list.bits == 8 ? std::string(reinterpret_cast<const char*>(list.data), list.count) : std::string();
+}
+
+bool WindowDrops::take(const XEvent& event, std::optional<std::string>* path) {
+  if (event.type == SelectionNotify && event.xselection.selection == selection_ && source_ != 0) {
+    *path = first_file_of(received(event.xselection));
+    answer(finished_, *path ? 1 : 0, *path ? copy_ : 0);
+    source_ = 0;
+    return true;
+  }
+  if (event.type != ClientMessage) {
+    return false;
+  }
+  const XClientMessageEvent& message = event.xclient;
+  const Atom type = message.message_type;
+  if (type == enter_) {
+    enter(message);
+    return true;
+  }
+  if (type != position_ && type != drop_ && type != leave_) {
+    return false;
+  }
+  if (source_ == 0 || static_cast<::Window>(message.data.l[0]) != source_) {
+    return true;  // of no drag that has entered
+  }
+  if (type == position_) {
+    answer(status_, has_files_ ? 1 : 0, has_files_ ? copy_ : 0);
+  } else if (type == drop_) {
+    ask_for_files(message);
+  } else {
+    source_ = 0;
+  }
+  return true;
+}
 
 constexpr std::int32_t kMarginPx = 8;         // around the text
 constexpr std::int32_t kFirstWidthPx = 1024;  // what a new window's picture may take

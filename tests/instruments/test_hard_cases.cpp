@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "instruments/hard_cases.h"
-#include "instruments/operation_errors.h"
 #include "reference/textbook.h"
 #include "support/counts.h"
 

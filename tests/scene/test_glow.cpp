@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "scene/baking.h"
-#include "scene/emitter_lamps.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "support/lit_world.h"

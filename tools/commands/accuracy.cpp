@@ -1,9 +1,13 @@
 // thimble accuracy: what each knob that trades a picture's error for time gives, and what a given time or
 // error calls for.
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
@@ -12,14 +16,310 @@
 #include "commands/view_options.h"
 #include "instruments/accuracy_study.h"
 #include "instruments/hard_cases.h"
-#include "instruments/simulation_study.h"
+#include "instruments/timed_frames.h"
+#include "output/plot.h"
 #include "output/progress.h"
+#include "output/tables.h"
 #include "output/units.h"
+#include "particles/populated_world.h"
+#include "readers/progress.h"
+#include "readers/source.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
+#include "thimble/light/water.h"
 
 namespace thimble::tools {
 namespace {
+
+/// The worlds that are measured.
+///
+/// kParticles: the paper's 693 balls on 800 x 600 cells (seed 1), after kParticleSteps steps, against 16
+/// substeps and the finest positions. Short on purpose: after a collision two runs part for good, which says
+/// nothing about either. Error: distance of the centres, cells; the median ball's counts, as the few that met
+/// others differently would drown it.
+///
+/// kWater: a square basin that is pressed down by a voxel round a point, after the time in which a wave
+/// crosses half of it, undamped, against kWaterReference columns a side in as many steps as the slowest waves
+/// take. The basin, the bowl and the time are the same, whatever columns and steps. Error: heights against
+/// the means of the reference's columns, voxels; their root mean square counts.
+enum class SimulationWorld : std::uint8_t { kParticles, kWater };
+inline constexpr int kParticleSteps = 10;
+inline constexpr int kWaterReference = 256;
+
+struct SimulationRow : MedianTime {  ///< times: of all steps together
+  int substeps = 0;                  ///< particles
+  int subpixel_bits = 0;
+  int columns = 0;        ///< water: a side
+  int wave_speed_q6 = 0;  ///< columns a step: half of it takes twice the steps
+  int steps = 0;
+  std::uint64_t work = 0;  ///< displacements made, or columns worked out
+  double error_rms = 0;
+  double error_median = 0;
+  double error_most = 0;
+  bool front = false;  ///< no other row is both as fast and as near to the reference
+};
+
+constexpr int kMostSubsteps = 16;
+constexpr int kFinestBits = 15;
+
+// --- Particles
+
+struct Places {
+  std::vector<double> x;
+  std::vector<double> y;
+  std::uint64_t moves = 0;
+  double ms = 0;
+};
+
+Places run_particles(int substeps, int subpixel_bits) {
+  WorldOptions options;
+  options.subpixel_bits = subpixel_bits;
+  options.substeps_log2 = 0;
+  while ((1 << options.substeps_log2) < substeps) {
+    ++options.substeps_log2;
+  }
+  PopulatedWorld populated(options, std::nullopt);
+  ParticleWorld& world = populated.world();
+  Places places;
+  const FrameWatch watch;
+  for (int step = 0; step < kParticleSteps; ++step) {
+    world.step();
+    places.moves += world.counters().moves;
+  }
+  places.ms = watch.ms();
+  for_each_ball(world, [&](const Particle& ball) {
+    places.x.push_back(ball.x_q16 / 65536.0);
+    places.y.push_back(ball.y_q16 / 65536.0);
+  });
+  return places;
+}
+
+// --- Water
+
+constexpr std::int32_t kRestVoxels = 64;
+constexpr std::int32_t kPressedQ8 = 256;
+
+struct Basin {
+  int columns = 0;
+  std::vector<double> heights;  // from the rest level, voxels
+  std::uint64_t work = 0;
+  double ms = 0;
+};
+
+int water_steps(int columns, int wave_speed_q6) {
+  return columns * 32 / wave_speed_q6;
+}
+
+Basin run_water(int columns, int wave_speed_q6) {
+  WaterConfig config;
+  config.width = columns;
+  config.depth = columns;
+  config.rest_q8 = kRestVoxels * 256;
+  config.greatest_q8 = 2 * config.rest_q8;
+  config.wave_speed_q6 = wave_speed_q6;
+  config.damping_q12 = 0;
+  std::vector<std::uint8_t> bytes(water_bytes(columns, columns));
+  Water water;
+  const std::int32_t side_q8 = columns * 256;
+  if (Water::make(config, {bytes.data(), bytes.size()}, &water) != Status::kOk ||
+      water.touch(side_q8 * 3 / 8, side_q8 * 7 / 16, side_q8 / 8, kPressedQ8) != Status::kOk) {
+    throw InputError("internal error: the basin cannot be set up");
+  }
+  Basin basin;
+  basin.columns = columns;
+  const FrameWatch watch;
+  for (int step = 0; step < water_steps(columns, wave_speed_q6); ++step) {
+    water.step();
+  }
+  basin.ms = watch.ms();
+  basin.work = water.columns_updated();
+  for (int y = 0; y < columns; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      basin.heights.push_back(water.height_q16(x, y) / 65536.0 - kRestVoxels);
+    }
+  }
+  return basin;
+}
+
+// The mean of the reference's columns where the coarse one stands.
+double mean_height(const Basin& reference, int columns, int x, int y) {
+  const int across = reference.columns / columns;
+  double sum = 0;
+  for (int j = y * across; j < (y + 1) * across; ++j) {
+    for (int i = x * across; i < (x + 1) * across; ++i) {
+      sum += reference.heights[static_cast<std::size_t>(j) * static_cast<std::size_t>(reference.columns) +
+                               static_cast<std::size_t>(i)];
+    }
+  }
+  return sum / (across * across);
+}
+
+// --- Both
+
+void set_errors(std::vector<double> errors, SimulationRow* row) {
+  double squares = 0;
+  for (const double error : errors) {
+    squares += error * error;
+    row->error_most = std::max(row->error_most, error);
+  }
+  row->error_rms = std::sqrt(squares / static_cast<double>(errors.size()));
+  row->error_median = quantile(std::move(errors), 0.5);
+}
+
+std::vector<SimulationRow> particle_rows() {
+  std::vector<SimulationRow> rows;
+  for (const int bits : {kFinestBits, 10, 8, 6}) {
+    for (int substeps = 1; substeps <= kMostSubsteps; substeps *= 2) {
+      SimulationRow row;
+      row.substeps = substeps;
+      row.subpixel_bits = bits;
+      row.steps = kParticleSteps;
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+std::vector<SimulationRow> water_rows() {
+  std::vector<SimulationRow> rows;
+  for (const int speed : {kMaxWaveSpeedQ6, kMaxWaveSpeedQ6 / 2, kMinWaveSpeedQ6}) {
+    for (int columns = 16; columns < kWaterReference; columns *= 2) {
+      SimulationRow row;
+      row.columns = columns;
+      row.wave_speed_q6 = speed;
+      row.steps = water_steps(columns, speed);
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+// The error that counts.
+double counted_error(SimulationWorld world, const SimulationRow& row) {
+  return world == SimulationWorld::kWater ? row.error_rms : row.error_median;
+}
+
+/// Measures by turns, `rounds` times each.
+std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds, const Progress& progress) {
+  const bool is_water = world == SimulationWorld::kWater;
+  std::vector<SimulationRow> rows = is_water ? water_rows() : particle_rows();
+  const Places places = is_water ? Places{} : run_particles(kMostSubsteps, kFinestBits);
+  const Basin basin = is_water ? run_water(kWaterReference, kMinWaveSpeedQ6) : Basin{};
+  std::vector<std::vector<double>> milliseconds(rows.size());
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      SimulationRow& row = rows[i];
+      std::vector<double> errors;
+      if (is_water) {
+        const Basin coarse = run_water(row.columns, row.wave_speed_q6);
+        milliseconds[i].push_back(coarse.ms);
+        row.work = coarse.work;
+        for (int y = 0; round == 0 && y < row.columns; ++y) {
+          for (int x = 0; x < row.columns; ++x) {
+            const double height =
+                coarse.heights[static_cast<std::size_t>(y) * static_cast<std::size_t>(row.columns) +
+                               static_cast<std::size_t>(x)];
+            errors.push_back(std::abs(height - mean_height(basin, row.columns, x, y)));
+          }
+        }
+      } else {
+        const Places coarse = run_particles(row.substeps, row.subpixel_bits);
+        milliseconds[i].push_back(coarse.ms);
+        row.work = coarse.moves;
+        for (std::size_t ball = 0; round == 0 && ball < places.x.size(); ++ball) {
+          errors.push_back(std::hypot(coarse.x[ball] - places.x[ball], coarse.y[ball] - places.y[ball]));
+        }
+      }
+      if (round == 0) {
+        set_errors(std::move(errors), &row);
+      }
+      if (progress) {
+        progress((static_cast<double>(round) + static_cast<double>(i) / static_cast<double>(rows.size())) /
+                 rounds);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].set_times(milliseconds[i]);
+  }
+  for (SimulationRow& row : rows) {
+    const double error = counted_error(world, row);
+    row.front = std::none_of(rows.begin(), rows.end(), [&](const SimulationRow& other) {
+      const double others = counted_error(world, other);
+      return other.ms_median <= row.ms_median && others <= error &&
+             (other.ms_median < row.ms_median || others < error);
+    });
+  }
+  return rows;
+}
+
+JsonRow simulation_objects(SimulationWorld world, const std::vector<SimulationRow>& rows) {
+  const bool is_water = world == SimulationWorld::kWater;
+  const auto only = [](bool is_there, int value) { return is_there ? JsonRow(value) : JsonRow(nullptr); };
+  JsonRow objects = JsonRow::array();
+  for (const SimulationRow& row : rows) {
+    JsonRow object;
+    object["row"] = is_water ? "water" : "particles";
+    object["substeps"] = only(!is_water, row.substeps);
+    object["subpixel_bits"] = only(!is_water, row.subpixel_bits);
+    object["columns"] = only(is_water, row.columns);
+    object["wave_speed_q6"] = only(is_water, row.wave_speed_q6);
+    object["steps"] = row.steps;
+    object["work"] = row.work;
+    row.add_to(&object);
+    object["unit"] = is_water ? "voxels" : "cells";
+    object["error_rms"] = row.error_rms;
+    object["error_median"] = row.error_median;
+    object["error_most"] = row.error_most;
+    object["front"] = row.front ? 1 : 0;
+    objects.push_back(object);
+  }
+  return objects;
+}
+
+std::string simulation_table(SimulationWorld world, const std::vector<SimulationRow>& rows) {
+  const bool is_water = world == SimulationWorld::kWater;
+  std::vector<Cells> table{{"", is_water ? "columns" : "substeps", is_water ? "wave speed" : "bits", "steps",
+                            is_water ? "columns updated" : "moves", "ms", "+-%", "error RMS", "median",
+                            "most"}};
+  for (const SimulationRow& row : rows) {
+    table.push_back({row.front ? "*" : "", std::to_string(is_water ? row.columns : row.substeps),
+                     is_water ? fixed(row.wave_speed_q6 / 64.0, 3) : std::to_string(row.subpixel_bits),
+                     std::to_string(row.steps), grouped(row.work), fixed(row.ms_median, 3), row.spread(),
+                     fixed(row.error_rms, 4), fixed(row.error_median, 4), fixed(row.error_most, 3)});
+  }
+  const std::string head =
+      is_water
+          ? "a basin of water pressed down by a voxel, when a wave has crossed half of it: heights against\n"
+            "those of 256 columns a side at a wave speed of 0.125, voxels; wave speed: columns a step\n"
+          : "the paper's 693 balls after " + std::to_string(kParticleSteps) +
+                " steps: distance of the centres from those with 16 substeps and\n"
+                "positions of 2^-15 cells, cells; bits: positions are kept to 2^-bits cells\n";
+  return head + "(*: no setting is both faster and nearer to the reference, by the " +
+         (is_water ? "RMS" : "median") + ")\n" + columns_of(table, 1);
+}
+
+std::string simulation_plot(SimulationWorld world, const std::vector<SimulationRow>& rows) {
+  const bool is_water = world == SimulationWorld::kWater;
+  Plot plot;
+  plot.title = is_water ? "Water: error against time, 16 to 128 columns a side"
+                        : "Particles: error against time, 1 to 16 substeps";
+  plot.x_label = is_water
+                     ? "processor time until a wave has crossed half the basin, ms (median, this machine)"
+                     : "processor time of 10 steps of 693 balls, ms (median, this machine)";
+  plot.y_label = is_water ? "RMS error of heights, voxels" : "median error of positions, cells (0 not shown)";
+  for (const SimulationRow& row : rows) {
+    const std::string name = is_water ? fixed(row.wave_speed_q6 / 64.0, 3) + " columns a step"
+                                      : "positions of 2^-" + std::to_string(row.subpixel_bits) + " cells";
+    if (plot.series.empty() || plot.series.back().name != name) {
+      plot.series.push_back({name, false, {}});
+    }
+    if (const double error = counted_error(world, row); error > 0 && row.ms_median > 0) {
+      plot.series.back().points.emplace_back(row.ms_median, error);
+    }
+  }
+  return log_plot_text(plot);
+}
 
 // Of each operation, however few --rays there are.
 constexpr std::uint64_t kLeastCases = 1000;
@@ -138,20 +438,19 @@ void add_file_options(CLI::App& sub, ReportPaths* paths) {
       "picture), group (default, the knob turned alone, together, best: the reference itself, anytime), "
       "options (of thimble render), front (1: nothing nearer to the reference is as cheap, times within 3 "
       "per cent being equal), max_depth (0: all), cutoff_px, direction_bits (0: automatic), samples; against "
-      "the reference: wrong_px (of another colour), visible_px (a channel off by more than "
-      "8 of 255), rms_error (of 255), psnr_db (empty: equal); ms_median, ms_quarter, ms_three_quarters; "
-      "rays, "
-      "hits, node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
+      "the reference: wrong_px (of another colour), visible_px (a channel off by more than 8 of 255), "
+      "rms_error (of 255), psnr_db (empty: equal); ms_median, ms_quarter, ms_three_quarters; rays, hits, "
+      "node_visits; silhouette_px (centre's ray hits in one only), depth_error_mean_voxels, "
       "depth_error_max_voxels (of centres' rays that hit in both); lm3s6965evb_instructions (an estimate, "
       "off by 5 per cent on average on the demonstration); anytime: visits_given, inexact_px, "
       "error_bound_grays (of the mean absolute difference from the finished frame), mean_error_grays; light: "
-      "occlusion_rays, roughness_rays, bounces (errors against the best of these). With "
-      "--hard-cases: row (rays, operation), case (or all), level (of the world), tracer, traversal, "
-      "arithmetic, epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face "
-      "(of the others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: "
-      "row (particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), "
-      "steps, work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of "
-      "all steps), unit (of the errors), error_rms, error_median, error_most, front");
+      "occlusion_rays, roughness_rays, bounces (errors against the best of these). With --hard-cases: row "
+      "(rays, operation), case (or all), level (of the world), tracer, traversal, arithmetic, "
+      "epsilon_voxels, rays, hits, wrong (another voxel, a miss or a hit too many), wrong_face (of the "
+      "others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: row "
+      "(particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), steps, "
+      "work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of all "
+      "steps), unit (of the errors), error_rms, error_median, error_most, front");
   add_path_option(sub, "--json", "FILE.json", &paths->json,
                   "the same, an array of objects; null where the CSV is empty");
   add_path_option(sub, "--plot", "FILE.svg", &paths->plot,
@@ -181,10 +480,10 @@ void add_accuracy(CLI::App& app) {
       "basin of water, against the finest");
   add_whole_option(*sub, "--rays", "N", 1, 1000000000, &command->hard_rays,
                    "--hard-cases: rays, shared among the cases; a fifth as many cases of each operation")
-      .default_str("1000000");
+      ->default_str("1000000");
   add_whole_option(*sub, "--seed", "S", 0, INT64_MAX / 2000003, &command->seed,
                    "--hard-cases: of the random rays")
-      .default_str("1");
+      ->default_str("1");
   add_positive(*sub, "--for-ms", "T", 1e-9, &command->for_ms,
                "answer with the options that come nearest to the reference in T milliseconds of the "
                "processor a frame, median on this machine at this --size");
@@ -192,17 +491,17 @@ void add_accuracy(CLI::App& app) {
                "answer with the fastest options whose picture is off by at most E: the root mean square of "
                "all channels' differences from the reference, in steps of 1/255 (column rms_error; 0: equal; "
                "PSNR is 20 log10(255/E) dB)");
-  exclude_each_other(*sub, "--for-ms", "--for-error");
+  sub->get_option("--for-ms")->excludes(sub->get_option("--for-error"));
   add_whole_option(*sub, "--rounds", "N", 1, 999, &command->study.rounds,
                    "frames timed of each setting, by turns, one of each a round")
-      .default_str("5");
+      ->default_str("5");
   add_choice_option(
       *sub, "--against",
       {{"time", CostAxis::kTime}, {"visits", CostAxis::kVisits}, {"instructions", CostAxis::kInstructions}},
       &command->study.axis,
       "what the front and the plot weigh errors against: milliseconds here, or what is the same on every "
       "machine: nodes visited, or an estimate of instructions on lm3s6965evb")
-      .default_str("time");
+      ->default_str("time");
   add_view(*sub, &command->study.view, false);
   add_shade(
       *sub, &command->study.shade,

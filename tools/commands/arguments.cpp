@@ -1,6 +1,5 @@
 #include "commands/arguments.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -130,28 +129,8 @@ std::optional<std::pair<std::int32_t, std::int32_t>> parse_pair(std::string_view
   return std::pair{static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*second)};
 }
 
-Option& Option::default_str(const std::string& text) {
-  option_->default_str(text);
-  return *this;
-}
-
-Option& Option::required() {
-  option_->required();
-  return *this;
-}
-
-Option& Option::offers(const std::vector<std::string>& words) {
-  // Kept with the option as a check that is never made, which the help does not show.
-  option_->check(CLI::Validator(joined(words, "|")).name(kOffered).active(false));
-  return *this;
-}
-
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description) {
   return app.add_subcommand(std::make_shared<Subcommand>(app, name, description));
-}
-
-void hide_command(CLI::App& command) {
-  command.group("");
 }
 
 void add_paragraph_below(CLI::App& command, const std::string& text) {
@@ -171,39 +150,26 @@ void also_check(CLI::App& command, std::function<void()> check) {
   dynamic_cast<Subcommand&>(command).checks.push_back(std::move(check));
 }
 
-Option add_argument(CLI::App& app, const std::string& name, const std::string& type_name, std::string* text,
-                    const std::string& help) {
-  return Option(app.add_option(name, *text, help)->type_name(type_name));
-}
-
-Option add_arguments(CLI::App& app, const std::string& name, const std::string& type_name,
-                     std::vector<std::string>* texts, const std::string& help) {
-  return Option(app.add_option(name, *texts, help)->type_name(type_name));
-}
-
 void add_flag(CLI::App& app, const std::string& name, bool* flag, const std::string& help) {
   app.add_flag(name, *flag, help)->disable_flag_override();
 }
 
-Option add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                       std::function<std::string(const std::string&)> take, const std::string& help) {
+CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                             std::function<std::string(const std::string&)> take, const std::string& help) {
   const std::size_t comma = name.find(',');
   const std::string shown = comma == std::string::npos ? name : name.substr(comma + 1);
-  return Option(app.add_option_function<std::string>(
-                       name,
-                       [shown, take = std::move(take)](const std::string& text) {
-                         const std::string fault = take(text);
-                         if (!fault.empty()) {
-                           refuse_usage(shown, in_quotes(text) + " " + fault);
-                         }
-                       },
-                       help)
-                    ->type_name(type_name));
+  const auto check = [shown, take = std::move(take)](const std::string& text) {
+    const std::string fault = take(text);
+    if (!fault.empty()) {
+      refuse_usage(shown, in_quotes(text) + " " + fault);
+    }
+  };
+  return app.add_option_function<std::string>(name, check, help)->type_name(type_name);
 }
 
-Option add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                        std::int64_t low, std::int64_t high, const std::function<void(std::int64_t)>& take,
-                        const std::string& help) {
+CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                              std::int64_t low, std::int64_t high,
+                              const std::function<void(std::int64_t)>& take, const std::string& help) {
   return add_text_option(
       app, name, type_name,
       [=](const std::string& text) -> std::string {
@@ -217,8 +183,8 @@ Option add_whole_option(CLI::App& app, const std::string& name, const std::strin
       help);
 }
 
-Option add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
-                       double high, const std::function<void(double)>& take, const std::string& help) {
+CLI::Option* add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
+                             double high, const std::function<void(double)>& take, const std::string& help) {
   return add_text_option(
       app, name, type_name,
       [=](const std::string& text) -> std::string {
@@ -232,8 +198,8 @@ Option add_real_option(CLI::App& app, const std::string& name, const std::string
       help);
 }
 
-Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
-                         std::function<void(std::size_t)> take, const std::string& help) {
+CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                               std::function<void(std::size_t)> take, const std::string& help) {
   return add_text_option(
       app, name, joined(words, "|"),
       [words, take = std::move(take)](const std::string& text) -> std::string {
@@ -251,8 +217,8 @@ Option add_choice_option(CLI::App& app, const std::string& name, const std::vect
       help);
 }
 
-Option add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                       std::string* path, const std::string& help) {
+CLI::Option* add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                             std::string* path, const std::string& help) {
   return add_text_option(
       app, name, type_name,
       [path](const std::string& text) -> std::string {
@@ -262,9 +228,9 @@ Option add_path_option(CLI::App& app, const std::string& name, const std::string
       help);
 }
 
-Option add_output_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                         std::string* path, bool (*takes)(const std::string& path),
-                         const std::string& endings, const std::string& help) {
+CLI::Option* add_output_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                               std::string* path, bool (*takes)(const std::string& path),
+                               const std::string& endings, const std::string& help) {
   return add_text_option(
       app, name, type_name,
       [=](const std::string& text) {
@@ -278,25 +244,13 @@ bool names_y4m(const std::string& path) {
   return path.size() > 4 && path.ends_with(".y4m");
 }
 
-void make_need(CLI::App& app, const std::string& name, const std::string& needed) {
-  app.get_option(name)->needs(app.get_option(needed));
-}
-
-void exclude_each_other(CLI::App& app, const std::string& name, const std::string& other) {
-  app.get_option(name)->excludes(app.get_option(other));
-}
-
-bool has_option(const CLI::App& app, const std::string& name) {
-  return app.get_option_no_throw(name) != nullptr;
-}
-
 bool is_given(const CLI::App& app, const std::string& name) {
-  return app.count(name) != 0;
+  const CLI::Option* const option = app.get_option_no_throw(name);
+  return option != nullptr && option->count() != 0;
 }
 
 std::string text_given(const CLI::App& app, const std::string& name) {
-  const CLI::Option* const option = app.get_option_no_throw(name);
-  return option == nullptr || option->count() == 0 ? "" : CLI::detail::to_lower(option->results().back());
+  return is_given(app, name) ? CLI::detail::to_lower(app.get_option(name)->results().back()) : "";
 }
 
 std::vector<std::string> options_given(const CLI::App& app) {
@@ -309,16 +263,17 @@ std::vector<std::string> options_given(const CLI::App& app) {
   return names;
 }
 
-void add_help_lines(CLI::App& command, const std::string& text) {
-  command.footer(text);
-}
-
 void refuse_usage(const std::string& name, const std::string& what) {
   throw CLI::ValidationError(name, what);
 }
 
 void refuse_usage(const std::string& what) {
   throw CLI::ValidationError(what);
+}
+
+CLI::Validator offering(const std::vector<std::string>& words) {
+  // A check that is never made, which the help does not show.
+  return CLI::Validator(joined(words, "|")).name(kOffered).active(false);
 }
 
 std::vector<std::string> words_offered(CLI::Option* option) {

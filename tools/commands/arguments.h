@@ -1,9 +1,8 @@
 /// Command-line options whose errors are sentences, and help that fits a terminal. The subcommands add their
 /// options through these instead of CLI11's typed ones, which accept NaN and print limits with 300 digits.
-/// Only arguments.cpp, main.cpp and what walks all options (complete.cpp, manual.cpp) see CLI11 itself, whose
-/// headers take longer to compile and to lint than any subcommand does.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -18,12 +17,6 @@
 #include "output/output_file.h"
 #include "readers/input_error.h"
 
-namespace CLI {
-class App;
-class FormatterBase;
-class Option;
-}  // namespace CLI
-
 namespace thimble::tools {
 
 /// `text` as a whole number of low .. high: digits and an optional minus, nothing else.
@@ -36,55 +29,33 @@ bool parse_reals(std::string_view text, std::span<double> numbers);
 std::optional<std::pair<std::int32_t, std::int32_t>> parse_pair(std::string_view text, char between,
                                                                 std::int32_t low, std::int32_t most);
 
-/// An option or argument that was added, for what else there is to say of it.
-class Option {
- public:
-  explicit Option(CLI::Option* option) : option_(option) {}
-  /// What the help names as the default.
-  Option& default_str(const std::string& text);
-  Option& required();
-  /// Words that a shell completes the value to, besides those that the type's name tells.
-  Option& offers(const std::vector<std::string>& words);
-
- private:
-  CLI::Option* option_;
-};
-
 /// A subcommand of `app`, which keeps it.
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description);
 /// A paragraph below the options in the help of `command`, wrapped as the rest.
 void add_paragraph_below(CLI::App& command, const std::string& text);
-/// Leaves it out of the help: scripts call it.
-void hide_command(CLI::App& command);
 /// What the subcommand does, once all options are read.
 void when_chosen(CLI::App& command, std::function<void()> action);
 /// What is looked at before that: options that are sound one by one and make no sense together. `check` calls
 /// refuse_usage.
 void also_check(CLI::App& command, std::function<void()> check);
 
-/// An argument without a name on the command line; `name` is for the functions below.
-Option add_argument(CLI::App& app, const std::string& name, const std::string& type_name, std::string* text,
-                    const std::string& help);
-/// The same for one or more of them, or none.
-Option add_arguments(CLI::App& app, const std::string& name, const std::string& type_name,
-                     std::vector<std::string>* texts, const std::string& help);
 /// An option without a value: `flag` becomes true.
 void add_flag(CLI::App& app, const std::string& name, bool* flag, const std::string& help);
 
 /// An option whose text goes to `take`; what `take` returns, unless empty, is what is wrong with it, and
 /// completes the sentence `--name: "text" ...`.
-Option add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                       std::function<std::string(const std::string&)> take, const std::string& help);
+CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                             std::function<std::string(const std::string&)> take, const std::string& help);
 
 /// An option that is a whole number of low .. high.
-Option add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                        std::int64_t low, std::int64_t high, const std::function<void(std::int64_t)>& take,
-                        const std::string& help);
+CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                              std::int64_t low, std::int64_t high,
+                              const std::function<void(std::int64_t)>& take, const std::string& help);
 
 /// The same, kept where `to` says: in a whole number, or an optional one.
 template <class Number>
-Option add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                        std::int64_t low, std::int64_t high, Number* to, const std::string& help) {
+CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                              std::int64_t low, std::int64_t high, Number* to, const std::string& help) {
   const auto take = [to](std::int64_t number) {
     if constexpr (std::is_integral_v<Number>) {
       *to = static_cast<Number>(number);
@@ -96,18 +67,19 @@ Option add_whole_option(CLI::App& app, const std::string& name, const std::strin
 }
 
 /// An option that is a finite number of low .. high.
-Option add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
-                       double high, const std::function<void(double)>& take, const std::string& help);
+CLI::Option* add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
+                             double high, const std::function<void(double)>& take, const std::string& help);
 
 /// An option that is one of a few words, in any case. `take` gets the index into `words`.
-Option add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
-                         std::function<void(std::size_t)> take, const std::string& help);
+CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                               std::function<void(std::size_t)> take, const std::string& help);
 
 /// The same; `to` gets what stands beside the word.
 template <class Value>
-Option add_choice_option(CLI::App& app, const std::string& name,
-                         const std::vector<std::pair<std::string, std::type_identity_t<Value>>>& choices,
-                         Value* to, const std::string& help) {
+CLI::Option* add_choice_option(
+    CLI::App& app, const std::string& name,
+    const std::vector<std::pair<std::string, std::type_identity_t<Value>>>& choices, Value* to,
+    const std::string& help) {
   std::vector<std::string> words;
   words.reserve(choices.size());
   for (const auto& [word, value] : choices) {
@@ -118,38 +90,31 @@ Option add_choice_option(CLI::App& app, const std::string& name,
 }
 
 /// The path of a file.
-Option add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                       std::string* path, const std::string& help);
+CLI::Option* add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                             std::string* path, const std::string& help);
 
 /// The same of one whose name `takes` accepts, which is what ends in `endings`.
-Option add_output_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                         std::string* path, bool (*takes)(const std::string& path),
-                         const std::string& endings, const std::string& help);
+CLI::Option* add_output_option(CLI::App& app, const std::string& name, const std::string& type_name,
+                               std::string* path, bool (*takes)(const std::string& path),
+                               const std::string& endings, const std::string& help);
 
 /// Whether a name is one of moving pictures.
 bool names_y4m(const std::string& path);
 
-/// `name` is refused without `needed`.
-void make_need(CLI::App& app, const std::string& name, const std::string& needed);
-/// Only one of the two may be given.
-void exclude_each_other(CLI::App& app, const std::string& name, const std::string& other);
-/// Whether `app` has such an option.
-bool has_option(const CLI::App& app, const std::string& name);
-/// Whether the user gave it.
+/// Whether `app` has such an option and the user gave it.
 bool is_given(const CLI::App& app, const std::string& name);
 /// What the user gave for it, in small letters; empty where he did not.
 std::string text_given(const CLI::App& app, const std::string& name);
 /// The names of all that the user gave.
 std::vector<std::string> options_given(const CLI::App& app);
 
-/// Lines below the options in the help of `command`, as they stand.
-void add_help_lines(CLI::App& command, const std::string& text);
-
 /// Ends the command as wrong usage (status 2): "`name`: `what`", or `what` alone.
 [[noreturn]] void refuse_usage(const std::string& name, const std::string& what);
 [[noreturn]] void refuse_usage(const std::string& what);
 
-/// What was given to Option::offers, else what the type's name tells: those words of `a|b|NAME` that are not in
+/// For CLI::Option::check: words that a shell completes the value to, besides those that the type's name tells.
+CLI::Validator offering(const std::vector<std::string>& words);
+/// What was given to offering(), else what the type's name tells: those words of `a|b|NAME` that are not in
 /// capitals.
 std::vector<std::string> words_offered(CLI::Option* option);
 /// How the help shows an option: "-o, --output FILE", or an argument's "SCENE".

@@ -9,12 +9,14 @@
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
-#include "output/c_header.h"
 #include "scene/baking.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
+
+// What a header calls the array where nobody says.
+constexpr const char* kDefaultIdentifier = "thimble_scene";
 
 struct BakeCommand {
   SceneOptions scene;  // its --memory is the limit of what is written

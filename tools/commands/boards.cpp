@@ -250,14 +250,13 @@ void add_boards(CLI::App& app) {
       "the RAM to draw it and to build it on the chip, and the deepest --depth.");
   command->scene.add_scene(*sub, false);
   for (const char* name : {"--depth", "--as-voxels", "--z-up"}) {
-    make_need(*sub, name, "scene");
+    sub->get_option(name)->needs(sub->get_option("scene"));
   }
   add_path_option(
       *sub, "--csv", "FILE.csv", &command->files.csv,
       "a line a board: board, title, core, ram_bytes, flash_bytes, stack_bytes, screen, width_px, height_px, "
-      "pixel_format, buttons, core_mhz, frame_instructions (the demonstration's), "
-      "frames_per_second_estimate (at one instruction a cycle), scene_flash_bytes (flash less code), "
-      "state_bytes, band_bytes, "
+      "pixel_format, buttons, core_mhz, frame_instructions (the demonstration's), frames_per_second_estimate "
+      "(at one instruction a cycle), scene_flash_bytes (flash less code), state_bytes, band_bytes, "
       "drawing_ram_bytes (state, band and stack); with a scene also depth, voxels, baked_bytes, fits_flash, "
       "pool_bytes, building_ram_bytes (those and the pool), builds_in_ram, deepest_depth (0: none tried), "
       "deepest_tried_depth");

@@ -3,7 +3,6 @@
 //
 // The argument is the command line up to the cursor, a word a line, the program's name first. A line of the answer
 // is a word, a tab and what it means; the line /files stands for names of files, which the shell knows better.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -155,9 +154,9 @@ void complete(CLI::App& app, Words words) {
 void add_complete(CLI::App& app) {
   CLI::App* sub =
       add_command(app, "complete", "prints what the last word of a command line may become, for shells");
-  hide_command(*sub);
+  sub->group("");
   auto line = std::make_shared<std::string>();
-  add_argument(*sub, "words", "WORDS", line.get(), "the words up to the cursor, a line each").required();
+  sub->add_option("words", *line, "the words up to the cursor, a line each")->type_name("WORDS")->required();
   when_chosen(*sub, [&app, line] {
     Words words{""};
     for (const char c : *line) {

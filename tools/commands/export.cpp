@@ -58,12 +58,10 @@ void add_export(CLI::App& app) {
         return format ? "" : "does not end in .vox, .npy, .ply or .csv";
       },
       "every solid voxel at its place: .vox (MagicaVoxel), .npy (bytes, X x Y x Z x 4: red, green, blue and "
-      "255, or 0 "
-      "where nothing is; X x Y x Z without colours), .ply (points) or .csv (x,y,z,r,g,b), whose coordinates "
-      "are voxel "
-      "indices: --as-voxels reads those two as such. Lights, cameras and what is glass, metal or glows are "
-      "left out")
-      .required();
+      "255, or 0 where nothing is; X x Y x Z without colours), .ply (points) or .csv (x,y,z,r,g,b), whose "
+      "coordinates are voxel indices: --as-voxels reads those two as such. Lights, cameras and what is "
+      "glass, metal or glows are left out")
+      ->required();
   add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no summary on standard error");
   when_chosen(*sub, [command] { run(*command); });
 }

@@ -92,12 +92,12 @@ void add_image(CLI::App& app) {
       *sub, "-o,--output", "FILE", &command->output,
       "what is written: .elf, .bin or .hex, and what the board's drive or emulator takes (.uf2 for "
       "pico, .gba for gba)")
-      .required();
-  add_board(*sub, &command->scene.board, "the board, which must be given").required();
+      ->required();
+  add_board(*sub, &command->scene.board, "the board, which must be given")->required();
   add_choice_option(
       *sub, "--app", kApps, [command](std::size_t index) { command->app = kApps[index]; },
       "the application that shows it")
-      .default_str("demo");
+      ->default_str("demo");
   add_fitting(*sub, command.get());
   add_effect_list(
       *sub, &command->effects,

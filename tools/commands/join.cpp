@@ -205,18 +205,19 @@ void run(const JoinCommand& command) {
 void add_join(CLI::App& app) {
   auto command = std::make_shared<JoinCommand>();
   CLI::App* sub = add_command(app, "join", "Put parts of a picture or a film together.");
-  add_arguments(
-      *sub, "parts", "FILES", &command->parts,
-      "what render --rows or --part wrote, in any order: of one scene, camera, size and options; where "
-      "they overlap they must agree")
-      .required();
+  sub->add_option(
+         "parts", command->parts,
+         "what render --rows or --part wrote, in any order: of one scene, camera, size and options; where "
+         "they overlap they must agree")
+      ->type_name("FILES")
+      ->required();
   add_output_option(
       *sub, "-o,--output", "FILE", &command->output,
       [](const std::string& text) { return image_kind(text) || is_film(text); },
       std::string(".gif, .y4m, ") + kImageEndings,
       std::string("the picture (") + kImageEndings + "; - is a PPM on standard output) or film (" +
           kFilmEndings + "), byte for byte what one process would have written")
-      .required();
+      ->required();
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar on standard error");
   when_chosen(*sub, [command] { run(*command); });
 }

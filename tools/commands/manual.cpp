@@ -1,5 +1,4 @@
 // thimble manual: the man page, from the same description as --help. The build writes it to share/man.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -102,7 +101,7 @@ std::string manual(const CLI::App& app) {
 
 void add_manual(CLI::App& app) {
   CLI::App* sub = add_command(app, "manual", "prints this command's manual page, for man");
-  hide_command(*sub);
+  sub->group("");
   when_chosen(*sub, [&app] {
     const std::string text = manual(app);
     std::fwrite(text.data(), 1, text.size(), stdout);

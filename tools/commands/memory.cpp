@@ -441,7 +441,7 @@ void add_memory(CLI::App& app) {
            "budget does to the picture; --csv, --json and --plot then hold this");
   add_whole_option(*sub, "--frames", "N", 0, 99, &command->study.frames,
                    "frames timed for each depth and structure; 0: none, no times and visits")
-      .default_str("3");
+      ->default_str("3");
   add_view(*sub, &command->study.view);
   add_shade(*sub, &command->study.shade,
             "what a wrong pixel is: of another brightness by distance, by the face's direction, of another "
@@ -454,13 +454,12 @@ void add_memory(CLI::App& app) {
       "dense, pool, compact, dag: S_bytes, S_bit_bytes_per_voxel, S_color_bytes_per_voxel (palette index), "
       "S_normal_bytes_per_voxel (and 2 bytes), S_opacity_bytes_per_voxel (and 1 byte), S_build_bytes (most "
       "in use while building), dag_table_bytes (of that, the hash table that the DAG is built in), "
-      "S_frame_ms (processor time, median), S_visits_per_ray (nodes; dense: cells), "
-      "S_boards (compact, dag: in flash; dense, pool: in RAM); wrong_px (another colour than the deepest "
-      "depth's), "
-      "silhouette_px (hit in one only), depth_error_mean_voxels, depth_error_max_voxels (in voxels of the "
-      "deepest). With --budget-sweep a line a budget: budget_bytes, S_depth (deepest that fits, 0: none), "
-      "compact_... and dag_... (those errors at that depth), coarsened_bytes, coarsened_solid_added_voxels, "
-      "coarsened_... (errors of the compact tree of the whole depth, coarsened to fit)");
+      "S_frame_ms (processor time, median), S_visits_per_ray (nodes; dense: cells), S_boards (compact, dag: "
+      "in flash; dense, pool: in RAM); wrong_px (another colour than the deepest depth's), silhouette_px "
+      "(hit in one only), depth_error_mean_voxels, depth_error_max_voxels (in voxels of the deepest). With "
+      "--budget-sweep a line a budget: budget_bytes, S_depth (deepest that fits, 0: none), compact_... and "
+      "dag_... (those errors at that depth), coarsened_bytes, coarsened_solid_added_voxels, coarsened_... "
+      "(errors of the compact tree of the whole depth, coarsened to fit)");
   add_path_option(*sub, "--json", "FILE.json", &command->files.json,
                   "the same, an array of objects; null where the CSV is empty");
   add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot,

@@ -1,23 +1,287 @@
 // thimble particles: the paper's particle world in a window, in a terminal, or unseen.
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
+#include "host/screen.h"
+#include "host/y4m.h"
 #include "output/image.h"
+#include "output/output_file.h"
 #include "output/output_set.h"
+#include "output/progress.h"
 #include "output/units.h"
-#include "particles/session.h"
+#include "particles/player.h"
 #include "particles/world_files.h"
 #include "readers/file_bytes.h"
 
 namespace thimble::tools {
 namespace {
+
+struct PlayOptions {
+  host::ScreenKind view = host::ScreenKind::kAuto;
+  std::optional<std::uint64_t> steps;  ///< none: as long as it lasts; where nobody watches, kUnseenSteps
+  std::int32_t rate = 60;              ///< steps a second that a watcher sees
+  int frames_a_second = 0;             ///< of screen and recording; 0: 60 in a window, else 30
+  bool figures_in_files = false;
+  bool quiet = false;
+  std::vector<InputEvent> script;
+  OutputFile* recording = nullptr;        ///< moving pictures
+  OutputFile* input_recording = nullptr;  ///< events, with an end
+};
+
+// Steps where nobody watches and nobody said how many; a longer script is played to its end.
+constexpr std::uint64_t kUnseenSteps = 2000;
+
+struct PlayResult {
+  PlayedCounts counts;
+  double step_seconds = 0;
+  std::string figures;       ///< Player::figures at the end
+  std::string screen_fault;  ///< a sentence where the screen that somebody watched has gone
+};
+
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+constexpr int kWorldStatusLines = 3;
+constexpr int kStatusColumns = 64;
+constexpr std::size_t kToolColumns = 28;
+constexpr double kRateTime = 0.5;  // over which the steps a second are counted
+constexpr int kIdleMs = 50;
+constexpr std::uint64_t kTimedSteps = 64;
+
+// A run: a world, somebody watching or nobody, events from a script and from a hand.
+class ParticleSession {
+ public:
+  ParticleSession(PopulatedWorld* world, const PlayOptions& options);
+  // Plays until the end. Throws host::ScreenError and OutputError.
+  PlayResult run();
+
+ private:
+  bool watched() const { return screen_->width_px() != 0; }
+  bool has_ended() const;
+  void take(const InputEvent& event);
+  void take_script();
+  void take_events(int timeout_ms);
+  void advance();
+  void record_frame();
+  void show();
+  void watch();
+  void run_unseen();
+
+  PopulatedWorld* world_;
+  PlayOptions options_;
+  Player player_;
+  std::unique_ptr<host::Screen> screen_;
+  std::size_t next_event_ = 0;
+  std::vector<std::uint8_t> rgb_;
+  double step_seconds_ = 0;
+  double eps_ = 0;
+  bool needs_showing_ = true;
+  std::string shown_text_;
+};
+
+host::ScreenOptions screen_options(const ParticleWorld& world) {
+  host::ScreenOptions options;
+  options.title = "thimble particles";
+  options.width_px = world.config().width;
+  options.height_px = world.config().height;
+  options.status_lines = kWorldStatusLines;
+  options.status_columns = kStatusColumns;
+  options.look.ground = {24, 26, 32};
+  return options;
+}
+
+ParticleSession::ParticleSession(PopulatedWorld* world, const PlayOptions& options)
+    : world_(world),
+      options_(options),
+      player_(world, options.rate),
+      screen_(host::open_screen(options.view, screen_options(world->world()))) {
+  if (options_.frames_a_second == 0) {
+    options_.frames_a_second = screen_->name() == std::string("window") ? 60 : 30;
+  }
+  if (!watched() && !options_.steps) {
+    const std::uint64_t last = options_.script.empty() ? 0 : options_.script.back().tick;
+    options_.steps = std::max(kUnseenSteps, last);
+  }
+  if (options_.recording != nullptr) {
+    const ParticleConfig& config = world->world().config();
+    options_.recording->write(host::y4m_header(config.width, config.height, false, options_.frames_a_second));
+    record_frame();
+  }
+}
+
+bool ParticleSession::has_ended() const {
+  if (player_.has_ended() || (options_.steps && player_.counts().steps >= *options_.steps)) {
+    return true;
+  }
+  // A world that stands for ever, unseen.
+  return !watched() && player_.stands() && next_event_ == options_.script.size();
+}
+
+void ParticleSession::take(const InputEvent& event) {
+  if (options_.input_recording != nullptr && event.kind != InputKind::kEnd) {
+    options_.input_recording->write(to_text(event));
+  }
+  player_.take(event);
+  needs_showing_ = true;
+}
+
+void ParticleSession::take_script() {
+  while (next_event_ < options_.script.size() && options_.script[next_event_].tick <= player_.ticks() &&
+         !player_.has_ended()) {
+    take(options_.script[next_event_++]);
+  }
+}
+
+void ParticleSession::take_events(int timeout_ms) {
+  for (auto event = screen_->next_event(timeout_ms); event && !player_.has_ended();
+       event = screen_->next_event(0)) {
+    if (const auto input = input_event(*event, player_.ticks())) {
+      take(*input);
+    } else {
+      needs_showing_ = needs_showing_ || event->kind == host::EventKind::kResize;
+    }
+  }
+}
+
+// A tick with all that belongs to it. The caller has looked at has_ended().
+void ParticleSession::advance() {
+  take_script();
+  if (has_ended()) {
+    return;
+  }
+  needs_showing_ = needs_showing_ || player_.is_moving();
+  player_.tick();
+  if (options_.recording != nullptr) {
+    const auto frames = [&](std::uint64_t ticks) {
+      return ticks * static_cast<std::uint64_t>(options_.frames_a_second) /
+             static_cast<std::uint64_t>(options_.rate);
+    };
+    if (frames(player_.ticks()) != frames(player_.ticks() - 1)) {
+      record_frame();
+    }
+  }
+}
+
+void ParticleSession::record_frame() {
+  const ParticleConfig& config = world_->world().config();
+  draw_world(*world_, &rgb_);
+  if (options_.figures_in_files) {
+    draw_figures(config.width, config.height, player_.figures(options_.rate), &rgb_);
+  }
+  options_.recording->write(host::y4m_color_frame({rgb_.data(), config.width, config.height}));
+}
+
+void ParticleSession::show() {
+  const ParticleConfig& config = world_->world().config();
+  // A terminal has not the room for text on the picture, so the figures stand below it.
+  const bool is_window = screen_->name() == std::string("window");
+  const std::string overlay = player_.shows_help()                   ? Player::help()
+                              : is_window && player_.shows_figures() ? player_.figures(eps_)
+                                                                     : "";
+  std::string status = player_.tool_text();
+  status.resize(std::max(status.size() + 3, kToolColumns), ' ');
+  status += player_.world_text() + "\n? help   1-6 tools   arrows gravity   space pause   q ends";
+  if (is_window) {
+    status += "\n. one step   r reset   n m b c e g less, capitals more";
+  } else if (player_.shows_figures()) {
+    status = player_.figures_line(eps_) + "\n" + status;
+  }
+  const std::string text = overlay + "\f" + status;
+  if (!needs_showing_ && text == shown_text_) {
+    return;
+  }
+  if (needs_showing_ || rgb_.empty()) {
+    draw_world(*world_, &rgb_);
+  }
+  screen_->set_overlay(overlay);
+  screen_->set_status(status);
+  screen_->show({rgb_.data(), config.width, config.height});
+  shown_text_ = text;
+  needs_showing_ = false;
+}
+
+// Ticks go by the clock, pictures by another; what a slow machine does not manage is left out, not made up
+// for.
+void ParticleSession::watch() {
+  const Seconds frame_time(1.0 / options_.frames_a_second);
+  Clock::time_point drawn = Clock::now();
+  Clock::time_point ticked = drawn;
+  Clock::time_point counted = drawn;
+  std::uint64_t counted_steps = 0;
+  double owed = 0;
+  eps_ = player_.rate();
+  show();
+  while (!has_ended()) {
+    const Clock::time_point next = drawn + std::chrono::duration_cast<Clock::duration>(frame_time);
+    Clock::time_point now = Clock::now();
+    const double left_ms = 1000 * Seconds(next - now).count();
+    take_events(std::clamp(static_cast<int>(left_ms), 0, kIdleMs));
+    now = Clock::now();
+    if (now < next) {
+      continue;
+    }
+    drawn = std::max(next, now - std::chrono::duration_cast<Clock::duration>(frame_time));
+    owed += Seconds(now - ticked).count() * player_.rate();
+    ticked = now;
+    // A tenth of a second at most: after that this machine is too slow, or was stopped.
+    owed = std::min(owed, std::max(1.0, 0.1 * player_.rate()));
+    const Clock::time_point begin = Clock::now();
+    std::uint64_t made = 0;
+    while (owed >= 1 && !has_ended()) {
+      advance();
+      owed -= 1;
+      if (++made % kTimedSteps == 0 && Seconds(Clock::now() - begin) > frame_time) {
+        owed = 0;
+      }
+    }
+    const Clock::time_point end = Clock::now();
+    step_seconds_ += Seconds(end - begin).count();
+    const double since = Seconds(end - counted).count();
+    if (since >= kRateTime) {
+      eps_ = static_cast<double>(player_.counts().steps - counted_steps) / since;
+      counted_steps = player_.counts().steps;
+      counted = end;
+    }
+    show();
+  }
+}
+
+void ParticleSession::run_unseen() {
+  ProgressBar bar("steps", options_.quiet);
+  const Clock::time_point begin = Clock::now();
+  while (!has_ended()) {
+    advance();
+    if (player_.ticks() % 256 == 0) {
+      bar.update(static_cast<double>(player_.counts().steps) / static_cast<double>(*options_.steps));
+    }
+  }
+  step_seconds_ = Seconds(Clock::now() - begin).count();
+}
+
+PlayResult ParticleSession::run() {
+  if (watched()) {
+    watch();
+  } else {
+    run_unseen();
+  }
+  if (options_.input_recording != nullptr) {
+    InputEvent end;
+    end.tick = player_.ticks();
+    options_.input_recording->write(to_text(end));
+  }
+  return {player_.counts(), step_seconds_, player_.figures(options_.rate), watched() ? screen_->fault() : ""};
+}
 
 constexpr std::uint64_t kMostInputBytes = std::uint64_t{64} << 20;
 
@@ -149,7 +413,7 @@ void run(const ParticlesCommand& given) {
   }
   PlayResult result;
   try {
-    result = play(populated.get(), command.play);
+    result = ParticleSession(populated.get(), command.play).run();
   } catch (const host::ScreenError& error) {
     throw OutputError(error.what());
   }
@@ -177,20 +441,20 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
         return {};
       },
       "cells of the world, a pixel each")
-      .default_str("800x600");
+      ->default_str("800x600");
   add_whole_option(sub, "--count", "N", 0, kMaxBalls / 2, &world->count,
                    "balls at the start; of --bodies, the first N")
-      .default_str("693");
+      ->default_str("693");
   add_whole_option(sub, "--min-size", "D", 1, kMaxBallDiameter, &world->least_diameter,
                    "least diameter of a ball, cells")
-      .default_str("2");
+      ->default_str("2");
   add_whole_option(sub, "--max-size", "D", 1, kMaxBallDiameter, &world->most_diameter,
                    "largest diameter of a ball, cells, up to " + std::to_string(kMaxBallDiameter))
-      .default_str("12");
+      ->default_str("12");
   add_real_option(
       sub, "--bounciness", "B", 0, 1, [world](double value) { world->bounciness = value; },
       "the part of its speed that a ball keeps when it bounces, 0 to 1")
-      .default_str("0.8");
+      ->default_str("0.8");
   add_text_option(
       sub, "--gravity", "X,Y",
       [world](const std::string& text) -> std::string {
@@ -204,33 +468,31 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
         return {};
       },
       "gravity in cells a step a step; y down the picture; with --bodies there is none unless given")
-      .default_str("0,0.1");
+      ->default_str("0,0.1");
   add_real_option(
       sub, "--speed", "V", 0, 8192, [world](double value) { world->speed = value; },
       "random balls start with up to V cells a step on each axis; of --bodies the fastest has V")
-      .default_str("3");
-  add_whole_option(sub, "--seed", "S", 0, UINT32_MAX, &world->seed, "of random balls").default_str("1");
+      ->default_str("3");
+  add_whole_option(sub, "--seed", "S", 0, UINT32_MAX, &world->seed, "of random balls")->default_str("1");
   add_path_option(
       sub, "--bodies", "FILE", &command->bodies_path,
       "balls from a file: the number of bodies, the radius of the world, then a line \"x y vx vy m r g b\" "
-      "each. "
-      "The circle of that radius fills the box; area goes with mass, from --max-size down to --min-size; y "
-      "is "
-      "turned; a body whose place is taken goes to the nearest free one; those beyond the box are left out");
+      "each. The circle of that radius fills the box; area goes with mass, from --max-size down to "
+      "--min-size; y is turned; a body whose place is taken goes to the nearest free one; those beyond the "
+      "box are left out");
   add_choice_option(sub, "--substeps", {{"1", 0}, {"2", 1}, {"4", 2}, {"8", 3}, {"16", 4}},
                     &world->substeps_log2, "parts that each step is made in")
-      .default_str("1");
+      ->default_str("1");
   add_whole_option(sub, "--subpixel-bits", "N", 1, 15, &world->subpixel_bits,
                    "positions are kept to 2^-N cells")
-      .default_str("15");
+      ->default_str("15");
 }
 
 void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
   add_whole_option(
       sub, "--steps", "N", 0, 1'000'000'000'000, &command->play.steps,
       "end after N steps (default: where somebody watches, when the window is closed or q is pressed; else "
-      "2000, "
-      "or to the end of a longer --input)");
+      "2000, or to the end of a longer --input)");
   add_choice_option(
       sub, "--display",
       {{"auto", host::ScreenKind::kAuto},
@@ -239,10 +501,9 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
        {"terminal", host::ScreenKind::kTerminal}},
       &command->play.view,
       "where the world is shown; auto: nowhere where --steps or a file to write (but --record-input) is "
-      "given, "
-      "else in an X11 window where DISPLAY works, else in the terminal where standard output is one, else "
-      "nowhere")
-      .default_str("auto");
+      "given, else in an X11 window where DISPLAY works, else in the terminal where standard output is one, "
+      "else nowhere")
+      ->default_str("auto");
   add_whole_option(
       sub, "--eps", "N", 1, 1'000'000,
       [command](std::int64_t rate) {
@@ -250,7 +511,7 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
         command->paced_by = "--eps";
       },
       "steps a second in a window or terminal, and of a recording; the paper's Eps, which we read so")
-      .default_str("60");
+      ->default_str("60");
   add_whole_option(
       sub, "--fps", "N", 1, 1000,
       [command](std::int64_t rate) {
@@ -260,13 +521,10 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
       "pictures a second on the screen and in a recording (default: 60 in a window, else 30)");
   add_path_option(sub, "--input", "SCRIPT", &command->input_path,
                   "play mouse and keys from a file: lines \"TICK: EVENT\", EVENT one of \"key K\" (a "
-                  "character, or space up "
-                  "down left right enter tab escape backspace), \"move X,Y\", \"press BUTTON X,Y\", "
-                  "\"release BUTTON X,Y\" "
-                  "(left, middle, right), \"wheel STEPS X,Y\" and \"end\". A tick is the time of one step, "
-                  "the first is 0; "
-                  "events come before the step of their tick; while paused ticks count without steps; # "
-                  "begins a comment line");
+                  "character, or space up down left right enter tab escape backspace), \"move X,Y\", \"press "
+                  "BUTTON X,Y\", \"release BUTTON X,Y\" (left, middle, right), \"wheel STEPS X,Y\" and "
+                  "\"end\". A tick is the time of one step, the first is 0; events come before the step of "
+                  "their tick; while paused ticks count without steps; # begins a comment line");
   add_path_option(
       sub, "--record-input", "FILE", &command->input_recording_path,
       "write all mouse and key events as such a file: with the same other options it gives the same "

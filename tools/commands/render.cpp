@@ -1,6 +1,5 @@
 // thimble render: a scene as a picture.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -131,28 +130,29 @@ Light light_of(const RenderCommand& command, const SceneSource& source) {
 }
 
 // What of the budget is kept back for the picture.
-SceneOptions::DrawingBytes drawing_bytes(const RenderCommand& command, const SceneSource& source,
-                                         const Light& light, PixelFormat format) {
-  SceneOptions::DrawingBytes bytes;
+BuildOptions drawing_bytes(const RenderCommand& command, const SceneSource& source, const Light& light,
+                           PixelFormat format) {
+  BuildOptions bytes;
   const std::int32_t width = command.view.width_px;
   const bool plain = command.quality.plain();
   const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
-  bytes.band = plain ? band_bytes(format, width, plain_band_rows(command, format)) : quality_bytes;
-  bytes.least_band = plain ? band_bytes(format, width, 1) : quality_bytes;
+  bytes.band_bytes = plain ? band_bytes(format, width, plain_band_rows(command, format)) : quality_bytes;
+  bytes.least_band_bytes = plain ? band_bytes(format, width, 1) : quality_bytes;
   if (command.quality.at_edges) {
     const int threads = light.effects == Effect::kNone ? 1 : command.engine.threads;
     const std::uint64_t row = edge_band_bytes(format, width, 1, 1);
-    bytes.band = edge_band_bytes(format, width,
-                                 band_rows(command, static_cast<std::size_t>(row), kMostEdgeRows), threads);
-    bytes.least_band = edge_band_bytes(format, width, 1, threads);
+    bytes.band_bytes = edge_band_bytes(
+        format, width, band_rows(command, static_cast<std::size_t>(row), kMostEdgeRows), threads);
+    bytes.least_band_bytes = edge_band_bytes(format, width, 1, threads);
   }
   if (light.effects != Effect::kNone && command.quality.samples() > 1 && !command.quality.at_edges) {
     const std::int32_t most = std::max(1, kMostSamplesAtOnce / (width * command.quality.samples()));
-    bytes.band *=
+    bytes.band_bytes *=
         static_cast<std::uint64_t>(band_rows(command, static_cast<std::size_t>(quality_bytes), most));
   }
   const bool in_flash = command.scene.board != nullptr && source.baked() != nullptr;
-  bytes.state = in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);
+  bytes.render_state_bytes =
+      in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);
   return bytes;
 }
 
@@ -441,7 +441,7 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
   add_choice_option(
       app, "--ground", {{"auto", std::nullopt}, {"on", true}, {"off", false}}, &command->look.wishes.ground,
       "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light")
-      .default_str("auto");
+      ->default_str("auto");
   command->output.add_films(app);
   add_flag(app, "--verbose", &command->look.verbose, "say on standard error what the scene's look came to");
 }
@@ -526,7 +526,7 @@ void add_render(CLI::App& app) {
       std::string("the picture, ") + kImageEndings +
           " by its ending; - is a PPM on standard output; with --turntable, --camera-path or --frames a " +
           kFilmEndings)
-      .required();
+      ->required();
   add_picture_view(*sub, &command->view);
   add_shade(
       *sub, &command->look.shade,
@@ -543,8 +543,7 @@ void add_render(CLI::App& app) {
   add_path_option(*sub, "--depth-image", "FILE.pfm", &command->output.depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
   add_effect_options(*sub, &command->effects,
-                     "; what calls for none is drawn by --shade; --structure compact and --engine auto "
-                     "only",
+                     "; what calls for none is drawn by --shade; --structure compact and --engine auto only",
                      "the scene's own look; none with --shade; else auto");
   add_quality(*sub, &command->quality);
   command->engine.add_to(*sub);

@@ -1,7 +1,6 @@
 /// The options of `thimble render`, and the ways to draw it.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "commands/render_output.h"

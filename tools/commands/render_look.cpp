@@ -94,16 +94,17 @@ class LookStudio {
     const Look most = default_look(facts_expected(source_, lighting_), wishes_, any);
     const std::int32_t width = command_.view.width_px;
     const int threads = command_.engine.threads;
-    SceneOptions::DrawingBytes bytes;
-    bytes.state = lit_state_bytes(most.lit_scene(), most.effects);
+    BuildOptions bytes;
+    bytes.render_state_bytes = lit_state_bytes(most.lit_scene(), most.effects);
     if (wishes_.at_edges) {
-      bytes.least_band = look_edge_bytes(width, 1, threads);
-      bytes.band = look_edge_bytes(width, band_rows(command_, bytes.least_band, kMostRowsAtOnce), threads);
-      bytes.state += static_cast<std::uint64_t>(threads - 1) * lit_render_bytes(most.effects);
+      bytes.least_band_bytes = look_edge_bytes(width, 1, threads);
+      bytes.band_bytes =
+          look_edge_bytes(width, band_rows(command_, bytes.least_band_bytes, kMostRowsAtOnce), threads);
+      bytes.render_state_bytes += static_cast<std::uint64_t>(threads - 1) * lit_render_bytes(most.effects);
     } else {
       const std::size_t row = look_work_bytes(width, most.across);
-      bytes.band = row * static_cast<std::size_t>(band_rows(command_, row, kMostRowsAtOnce));
-      bytes.least_band = row;
+      bytes.band_bytes = row * static_cast<std::size_t>(band_rows(command_, row, kMostRowsAtOnce));
+      bytes.least_band_bytes = row;
     }
     return command_.scene.build(source_, bytes);
   }

@@ -80,7 +80,7 @@ void RenderOutput::add_films(CLI::App& app) {
   add_real_option(
       app, "--seconds", "S", 0.04, 3600, [this](double given) { seconds = given; },
       "with --camera-path: S seconds from each line to the next, on a smooth way through them all");
-  make_need(app, "--seconds", "--camera-path");
+  app.get_option("--seconds")->needs(app.get_option("--camera-path"));
   add_text_option(
       app, "--frames", "A:B",
       [this](const std::string& text) {
@@ -96,10 +96,10 @@ void RenderOutput::add_films(CLI::App& app) {
       },
       "a film of the frames A to B of a .vox animation, counted from 0, ten a second");
   for (const char* const place : {"--eye", "--target", "--up", "--view", "--turn", "--tilt", "--turntable"}) {
-    exclude_each_other(app, "--camera-path", place);
+    app.get_option("--camera-path")->excludes(app.get_option(place));
   }
   for (const char* const other : {"--frame", "--turntable", "--camera-path"}) {
-    exclude_each_other(app, "--frames", other);
+    app.get_option("--frames")->excludes(app.get_option(other));
   }
   add_range(
       app, "--rows", &rows,
@@ -108,8 +108,7 @@ void RenderOutput::add_films(CLI::App& app) {
   add_range(app, "--part", &frames,
             std::string("with ") + kFilmOptions +
                 ": draw only COUNT frames of the film from its frame FIRST on, counted from 0, and write "
-                "them as a part "
-                "for thimble join");
+                "them as a part for thimble join");
 }
 
 std::string RenderOutput::whole_path() const {

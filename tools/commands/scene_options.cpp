@@ -12,7 +12,6 @@
 #include "output/suggestion.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
-#include "scene/built_scene.h"
 #include "scene/gpu_engine.h"
 #include "scene/lit_streams.h"
 #include "scene/scene_source.h"
@@ -24,17 +23,15 @@
 namespace thimble::tools {
 
 void SceneOptions::add_scene(CLI::App& app, bool required) {
-  Option scene = add_argument(
-      app, "scene", "SCENE", &arguments.scene,
-      "a file (.vox .scene .oct .ply .obj .off .stl .glb .gltf .xyz .csv .txt .tsv .pts .pcd .las .npy "
-      ".npz .asc .binvox .qb .qbcl .kvx .kv6 .vxl .gox .schematic .schem .litematic .nbt .mts .bt .ot, a "
-      "Gadget-1 "
-      "snapshot, .gz .zst .xz of any, a .zip of one) or a generator: points:N, cluster:N, spheres, water or "
-      "demo, each "
-      "with ,seed=S,depth=L; or the name of a scene that comes with Thimble, such as castle");
-  if (required) {
-    scene.required();
-  }
+  app.add_option(
+         "scene", arguments.scene,
+         "a file (.vox .scene .oct .ply .obj .off .stl .glb .gltf .xyz .csv .txt .tsv .pts .pcd .las .npy "
+         ".npz .asc .binvox .qb .qbcl .kvx .kv6 .vxl .gox .schematic .schem .litematic .nbt .mts .bt .ot, a "
+         "Gadget-1 snapshot, .gz .zst .xz of any, a .zip of one) or a generator: points:N, cluster:N, "
+         "spheres, water "
+         "or demo, each with ,seed=S,depth=L; or the name of a scene that comes with Thimble, such as castle")
+      ->type_name("SCENE")
+      ->required(required);
   add_whole_option(
       app, "--depth", "L", kMinLevel, kMaxLevel, &arguments.depth,
       "the world is 2^L voxels a side, L from 1 to 12 (default: the least that holds a .vox, .scene or "
@@ -55,8 +52,7 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
   add_real_option(
       app, "--fit", "P", 50, 100, [this](double percent) { arguments.fit_percent = percent; },
       "point files: points far from P per cent of them are left out where the world would be eight times as "
-      "long "
-      "for them; 100 takes all (default: 99)");
+      "long for them; 100 takes all (default: 99)");
   add_text_option(
       app, "--clip", "BOX",
       [this](const std::string& text) {
@@ -93,7 +89,7 @@ void SceneOptions::add_to(CLI::App& app) {
        {"pool", StructureKind::kPool},
        {"compact", StructureKind::kCompact}},
       &structure, "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one")
-      .default_str("compact");
+      ->default_str("compact");
   add_report(app);
 }
 
@@ -115,7 +111,7 @@ void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64
       help);
 }
 
-Option add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help) {
+CLI::Option* add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help) {
   std::vector<std::string> all;
   for (const platform::BoardFacts& each : platform::boards()) {
     all.emplace_back(each.name);
@@ -128,7 +124,7 @@ Option add_board(CLI::App& app, const platform::BoardFacts** board, const std::s
                return *board != nullptr ? std::string() : "is not a board; there are " + names;
              },
              help + "; " + names)
-      .offers(all);
+      ->check(offering(all));
 }
 
 std::unique_ptr<SceneSource> SceneOptions::open() const {
@@ -140,8 +136,7 @@ std::unique_ptr<SceneSource> SceneOptions::open() const {
   return scene;
 }
 
-BuiltScene SceneOptions::build(const SceneSource& source, const DrawingBytes& drawing) const {
-  BuildOptions options;
+BuiltScene SceneOptions::build(const SceneSource& source, BuildOptions options) const {
   options.structure = structure;
   options.memory_bytes = budget_bytes();
   if (board != nullptr) {
@@ -157,35 +152,17 @@ BuiltScene SceneOptions::build(const SceneSource& source, const DrawingBytes& dr
     }
   }
   options.coarsen = coarsen;
-  options.band_bytes = drawing.band;
-  options.least_band_bytes = drawing.least_band;
-  options.render_state_bytes = drawing.state;
   options.threads = build_threads;
   return with_progress("building", quiet,
                        [&](const Progress& progress) { return BuiltScene(source, options, progress); });
 }
 
-BuiltScene SceneOptions::build(const SceneSource& source) const {
-  return build(source, {});
-}
-
 namespace {
-
-// For help, which breaks lines at blanks.
-std::string spaced_names() {
-  std::string text;
-  for (const char c : effect_names()) {
-    text += c == ',' ? ", " : std::string(1, c);
-  }
-  return text;
-}
 
 std::vector<std::string> offered() {
   std::vector<std::string> words{"auto", "none", "all"};
-  std::istringstream names(effect_names());
-  for (std::string name; std::getline(names, name, ',');) {
-    words.push_back(name);
-  }
+  const std::vector<std::string> names = effect_list(Effect::kAll);
+  words.insert(words.end(), names.begin(), names.end());
   return words;
 }
 
@@ -217,9 +194,8 @@ void add_normals(CLI::App& app, EffectChoice* choice) {
         return text == "auto" || text == "face" || text == "smooth" ? "" : "is not auto, face or smooth";
       },
       "what light sees: the faces of the voxels, the slope of the surface (the effect smooth-normals), or "
-      "what "
-      "the effects say")
-      .default_str("auto");
+      "what the effects say")
+      ->default_str("auto");
 }
 
 }  // namespace
@@ -228,8 +204,8 @@ void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& hel
   add_text_option(
       app, "--effects", "LIST", [choice](const std::string& text) { return take_effects(text, choice); },
       help)
-      .default_str(names_default ? "auto" : "")
-      .offers(offered());
+      ->default_str(names_default ? "auto" : "")
+      ->check(offering(offered()));
   add_normals(app, choice);
 }
 
@@ -243,9 +219,9 @@ void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& 
       },
       "what light does: auto (what the scene's materials, lights, water and sky call for), none, all (that, "
       "light, shadows, occlusion, glow and smooth normals), or with commas between them any of " +
-          spaced_names() + more)
-      .default_str(usual)
-      .offers(offered());
+          joined(effect_list(Effect::kAll), ", ") + more)
+      ->default_str(usual)
+      ->check(offering(offered()));
   add_normals(app, &wishes->choice);
   add_whole_option(app, "--bounces", "N", 0, kMaxBounces, &wishes->bounces,
                    "rays that follow one another from a pixel by mirrors, glass and water, 0 to " +
@@ -271,7 +247,7 @@ void add_engine(CLI::App& app, std::string* name, const std::vector<std::string>
                 const std::string& help) {
   add_choice_option(
       app, "--engine", names, [name, names](std::size_t index) { choose(names[index], name); }, help)
-      .default_str("auto");
+      ->default_str("auto");
   also_check(app, [&app, name, does] {
     const std::string structure = text_given(app, "--structure");
     if ((*name == "wide" || *name == "gpu") && !structure.empty() && structure != "compact") {
@@ -288,7 +264,7 @@ int all_cores() {
 
 void add_threads(CLI::App& app, int* threads, const std::string& help) {
   *threads = all_cores();
-  add_whole_option(app, "--threads", "N", 1, wide::kMaxThreads, threads, help).default_str("all cores");
+  add_whole_option(app, "--threads", "N", 1, wide::kMaxThreads, threads, help)->default_str("all cores");
 }
 
 void EngineOptions::add_to(CLI::App& app, bool all_cores) {
@@ -301,7 +277,7 @@ void EngineOptions::add_to(CLI::App& app, bool all_cores) {
   threads = all_cores ? tools::all_cores() : 1;
   add_whole_option(app, "--threads", "N", 1, wide::kMaxThreads, &threads,
                    "threads that build, and that draw with the wide engine or with effects")
-      .default_str(all_cores ? "all cores; 1 with --memory or --board, whose bytes they count in" : "1");
+      ->default_str(all_cores ? "all cores; 1 with --memory or --board, whose bytes they count in" : "1");
   also_check(app, [this, &app] { threads_given = is_given(app, "--threads"); });
 }
 
@@ -309,13 +285,9 @@ void EngineOptions::add_ray_engines_to(CLI::App& app) {
   add_engine(
       app, &name, {"auto", "gpu", "ray64", "ray32"}, "traces",
       "gpu: the best Vulkan device, for --structure compact, without --memory and --board (then nodes are "
-      "its "
-      "steps); ray64, ray32: products of that width; the answers are the same, but ray32 refuses rays that "
-      "need "
-      "more; auto: "
-      "with vectors from 100,000 rays on, where there is room and not with --board (then nodes are its "
-      "steps, "
-      "else those of the tree), else ray64");
+      "its steps); ray64, ray32: products of that width; the answers are the same, but ray32 refuses rays "
+      "that need more; auto: with vectors from 100,000 rays on, where there is room and not with --board "
+      "(then nodes are its steps, else those of the tree), else ray64");
 }
 
 std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built) const {
@@ -368,8 +340,7 @@ void EngineOptions::add_board_engines_to(CLI::App& app) {
   add_engine(
       app, &name, {"auto", "wide", "ray64"}, "draws",
       "what draws demo's frames without light; the pictures are the same. wide: object order, with vectors "
-      "and "
-      "threads, in memory of this machine's own, and the first frame by the core too, for the stack, and "
+      "and threads, in memory of this machine's own, and the first frame by the core too, for the stack, and "
       "compared; ray64: the core, as on the board (by bricks where the scene has a brick map); auto: wide "
       "where it can be, else ray64. Frames with light, those thinned or refined to hold a rate, and other "
       "applications are always the core's");

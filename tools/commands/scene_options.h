@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "scene/built_scene.h"
 #include "scene/lit_description.h"
 #include "scene/scene_arguments.h"
 #include "thimble/light/scene.h"
@@ -23,7 +24,6 @@ struct TraceOptions;
 namespace thimble::tools {
 
 class BuiltScene;
-class Option;
 class SceneSource;
 
 /// SCENE, --depth, --memory, --board and the rest that decides what is built.
@@ -47,21 +47,13 @@ struct SceneOptions {
   /// --memory or what the board's RAM has beside its stack, the smaller of both; nothing without either.
   std::optional<std::uint64_t> budget_bytes() const;
   std::unique_ptr<SceneSource> open() const;
-  /// What is kept back of the budget for pictures.
-  struct DrawingBytes {
-    std::uint64_t band = 0;        ///< of pixels; 0: none are drawn
-    std::uint64_t least_band = 0;  ///< what will do for a band when the budget is short
-    std::uint64_t state = 0;       ///< of what draws, beside the band
-  };
   /// Builds inside the budget. With --board a baked scene stays outside of it, in the board's flash, where it
-  /// must fit; the source must then outlive what is built.
-  BuiltScene build(const SceneSource& source, const DrawingBytes& drawing) const;
-  /// The same where nothing is drawn.
-  BuiltScene build(const SceneSource& source) const;
+  /// must fit; the source must then outlive what is built. Of `options` only what is kept back for pictures counts.
+  BuiltScene build(const SceneSource& source, BuildOptions options = {}) const;
 };
 
 /// An option --board, whose `help` says what of the board counts.
-Option add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help);
+CLI::Option* add_board(CLI::App& app, const platform::BoardFacts** board, const std::string& help);
 /// An option that is a number of bytes.
 void add_bytes(CLI::App& app, const std::string& name, std::optional<std::uint64_t>* bytes,
                const std::string& help);

@@ -333,7 +333,7 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
       &command->session.display,
       "where the display is shown; auto: in an X11 window where DISPLAY works, else in the terminal where "
       "standard output is one, else not at all; a board without a display gets one by window or terminal")
-      .default_str("auto");
+      ->default_str("auto");
   add_choice_option(sub, "--theme",
                     {{"auto", std::nullopt},
                      {"oled", host::Theme::kOled},
@@ -341,7 +341,7 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
                      {"plain", host::Theme::kPlain}},
                     &command->session.theme,
                     "how the display looks; auto: as the board's does; pictures in files never have a theme")
-      .default_str("auto");
+      ->default_str("auto");
   add_whole_option(sub, "--scale", "N", 1, 32, &command->session.scale,
                    "screen pixels a pixel at most (default: as fits)");
   add_whole_option(
@@ -352,7 +352,7 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
       "frame depends on the board alone, so the pictures are the board's");
   add_whole_option(sub, "--fps", "N", 1, 1000, &command->session.frames_a_second,
                    "frames a second at most in a window or terminal, and of the recording")
-      .default_str("30");
+      ->default_str("30");
 }
 
 void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {

@@ -71,13 +71,7 @@ std::string stats_text(const Stats& stats) {
   add("cutoff_px", stats.cutoff_px);
   add("max_depth", stats.max_depth);
   if (stats.effects) {
-    json["effects"] = nlohmann::ordered_json::array();
-    for (int bit = 0; bit < Effect::kCount; ++bit) {
-      const EffectSet effect = EffectSet{1} << bit;
-      if ((*stats.effects & effect) != 0) {
-        json["effects"].push_back(effect_name(effect));
-      }
-    }
+    json["effects"] = effect_list(*stats.effects);
   }
   add("bounces", stats.bounces);
   for (int kind = 0; stats.lit_counts && kind < kLitRayKinds; ++kind) {

@@ -3,7 +3,6 @@
 // Frames are seen and timed as instruments/timed_frames.h says. Every frame is judged: pixels are drawn at random and their rays handed to the exact reference, which holds
 // the scene's voxels in a grid of its own, filled from the generator and not from the tree.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <random>
@@ -250,11 +249,9 @@ void add_table(CLI::App& app) {
   CLI::App* sub = add_command(
       app, "table",
       "The paper's Tables I and II on this machine: seconds a frame of 800 x 600 grey pixels (the median of "
-      "5 "
-      "after one that does not count, each from a slightly different place; processor time, with more "
-      "threads "
-      "than one by the clock on the wall) beside the paper's, and how many of 10,000 pixels differ from the "
-      "exact reference.");
+      "5 after one that does not count, each from a slightly different place; processor time, with more "
+      "threads than one by the clock on the wall) beside the paper's, and how many of 10,000 pixels differ "
+      "from the exact reference.");
   add_text_option(
       *sub, "--points", "N,N,...",
       [command](const std::string& text) -> std::string {
@@ -276,10 +273,10 @@ void add_table(CLI::App& app) {
       *sub, "--scene", {"points", "cluster"},
       [command](std::size_t index) { command->scene = index == 0 ? "points" : "cluster"; },
       "uniformly random points, or points that crowd")
-      .default_str("points");
+      ->default_str("points");
   add_whole_option(*sub, "--depth", "L", kLeastTimedLevel, kMaxLevel, &command->depth,
                    "the world is 2^L voxels a side, L from 5 to 12; the paper's was probably smaller")
-      .default_str("10");
+      ->default_str("10");
   add_path_option(
       *sub, "--json", "FILE.json", &command->files.json,
       "an array, one object a row: points, projection, seconds, paper_seconds (null where the paper "

@@ -24,7 +24,6 @@
 #include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/formats.h"
-#include "readers/npy.h"
 #include "readers/text.h"
 #include "scene/built_scene.h"
 #include "scene/gpu_engine.h"
@@ -82,17 +81,12 @@ class RayFile {
   std::vector<std::size_t> ends_;  // of the chunks, bytes or rows
 };
 
-constexpr std::string_view kBlanks = " \t";
-
 // The six numbers of a line, or nothing when it does not hold just six numbers. One that no double holds is infinite.
 std::optional<std::array<double, 6>> parse_line(std::string_view line) {
   std::array<double, 6> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::size_t comma = line.find(',');
-    std::string_view cell = line.substr(0, comma);
-    cell.remove_prefix(std::min(cell.find_first_not_of(kBlanks), cell.size()));
-    cell = cell.substr(0, cell.find_last_not_of(kBlanks) + 1);
-    const NumberKind kind = parse_number(cell, numbers[i]);
+    const NumberKind kind = parse_number(trimmed(line.substr(0, comma)), numbers[i]);
     if (kind == NumberKind::kGarbage || (comma == std::string_view::npos) != (i + 1 == numbers.size())) {
       return std::nullopt;
     }
@@ -161,21 +155,6 @@ bool is_header(std::string_view line) {
   }
 }
 
-// Takes the next line off `text`.
-std::string_view next_line(std::string_view* text) {
-  const std::size_t end = std::min(text->find('\n'), text->size());
-  std::string_view line = text->substr(0, end);
-  text->remove_prefix(std::min(end + 1, text->size()));
-  if (!line.empty() && line.back() == '\r') {
-    line.remove_suffix(1);
-  }
-  return line;
-}
-
-bool is_blank(std::string_view line) {
-  return line.find_first_not_of(kBlanks) == std::string_view::npos;
-}
-
 // About so many bytes a chunk, some thousand rays.
 constexpr std::size_t kChunkBytes = 256 << 10;
 constexpr std::size_t kChunkRows = 4096;
@@ -200,23 +179,19 @@ RayFile::RayFile(const SharedBytes& file, const RayRules& rules) : file_(file), 
 void RayFile::find_lines() {
   const std::string_view text = file_.text();
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  std::string_view rest = text;
-  rest.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+  begin_ = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   // Up to the first ray.
+  LineReader lines(text.substr(begin_));
+  const std::size_t front = begin_;
   bool header = false;
-  while (!rest.empty()) {
-    std::string_view after = rest;
-    const std::string_view line = next_line(&after);
-    if (!is_blank(line)) {
+  for (std::string_view line; lines.next(line); begin_ = front + lines.offset(), ++first_line_) {
+    if (!trimmed(line).empty()) {
       if (header || parse_line(line) || !is_header(line)) {
         break;
       }
       header = true;
     }
-    rest = after;
-    ++first_line_;
   }
-  begin_ = text.size() - rest.size();
   for (std::size_t at = begin_; at < text.size();) {
     const std::size_t end = text.find('\n', std::min(at + kChunkBytes, text.size()));
     at = end == std::string_view::npos ? text.size() : end + 1;
@@ -241,10 +216,10 @@ std::optional<RayFault> RayFile::read(std::size_t chunk, std::vector<Ray>* rays,
     }
     return std::nullopt;
   }
-  std::string_view text = file_.text().substr(begin, ends_[chunk] - begin);
-  for (*lines = 0; !text.empty(); ++*lines) {
-    const std::string_view line = next_line(&text);
-    if (is_blank(line)) {
+  *lines = 0;
+  LineReader reader(file_.text().substr(begin, ends_[chunk] - begin));
+  for (std::string_view line; reader.next(line); ++*lines) {
+    if (trimmed(line).empty()) {
       continue;
     }
     const auto numbers = parse_line(line);
@@ -409,13 +384,13 @@ void add_trace(CLI::App& app) {
       *sub, "--rays", "FILE.csv|.npy", &command->rays_path,
       "one ray a line: ox,oy,oz,dx,dy,dz in voxels; a header line is allowed; or a NumPy array, a ray "
       "a row of six numbers")
-      .required();
+      ->required();
   add_path_option(*sub, "-o,--output", "FILE.csv|.npy", &command->output,
                   std::string("a header line, then one line a ray: ") + kHitColumns +
                       "; point = q-origin / 256 + t * q-direction, in voxels; a dense grid keeps no "
                       "material" +
                       kHitArray + "; - is standard output, lines")
-      .default_str("-");
+      ->default_str("-");
   add_direction_bits(*sub, &command->direction_bits);
   command->engine.add_ray_engines_to(*sub);
   add_threads(*sub, &command->threads, "threads that read, trace and write");

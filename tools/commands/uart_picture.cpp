@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -65,13 +64,13 @@ void add_uart_picture(CLI::App& app) {
   };
   auto command = std::make_shared<Command>();
   CLI::App* sub = add_command(app, "uart-picture", "Takes a picture out of what a board sent over its UART.");
-  add_argument(*sub, "scene", "LOG", &command->log, "the bytes that it sent").required();
+  sub->add_option("scene", command->log, "the bytes that it sent")->type_name("LOG")->required();
   add_output_option(
       *sub, "-o,--output", "FILE", &command->output,
       [](const std::string& text) { return image_kind(text).has_value(); }, kImageEndings,
       "the picture, .png, .ppm, .pgm or .pbm by its ending")
-      .required();
-  hide_command(*sub);
+      ->required();
+  sub->group("");
   when_chosen(*sub, [command] {
     const FileBytes log = load_file(command->log, std::uint64_t{1} << 30);
     const Image picture = find_picture(log.text());

@@ -65,7 +65,7 @@ void add_view_command(CLI::App& app) {
                      {"window", host::ScreenKind::kWindow},
                      {"terminal", host::ScreenKind::kTerminal}},
                     &options.display, "where; auto: an X11 window where DISPLAY works, else the terminal")
-      .default_str("auto");
+      ->default_str("auto");
   add_shade(*sub, &command->shade, "as for render; without it and --effects the scene decides, as there",
             &options.look.shade_word);
   add_effect_options(*sub, &command->effects, {}, "the scene's own look; none with --shade");
@@ -81,7 +81,7 @@ void add_view_command(CLI::App& app) {
   add_whole_option(
       *sub, "--bench", "N", 1, 100000, &command->bench_frames,
       "no screen: turn once around the scene in N frames, finish the picture, and print what it took as CSV");
-  add_help_lines(*sub, "Keys and mouse:\n" + viewer::keys_text());
+  sub->footer("Keys and mouse:\n" + viewer::keys_text());
   when_chosen(*sub, [command] { run(*command); });
 }
 

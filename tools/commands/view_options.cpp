@@ -1,6 +1,5 @@
 #include "commands/view_options.h"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <tuple>
@@ -43,10 +42,10 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
       },
       "the picture's size in pixels (default: " + std::to_string(view->width_px) + "x" +
           std::to_string(view->height_px) +
-          (has_option(app, "--board") ? ", or the display of --board)" : ")"));
+          (app.get_option_no_throw("--board") != nullptr ? ", or the display of --board)" : ")"));
   add_choice_option(app, "--projection", {{"perspective", false}, {"orthographic", true}},
                     &view->orthographic, "how rays leave the camera")
-      .default_str("perspective");
+      ->default_str("perspective");
   add_triple(app, "--eye", &view->eye,
              "where the camera is, in voxels (default: where it sees the whole scene)");
   add_triple(app, "--target", &view->target,
@@ -56,7 +55,7 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
   add_real_option(
       app, "--fov", "DEG", 1, 120, [view](double degrees) { view->fov_degrees = degrees; },
       "perspective: vertical field of view in degrees, 1 to 120")
-      .default_str(shortest(view->fov_degrees));
+      ->default_str(shortest(view->fov_degrees));
   add_text_option(
       app, "--span", "V",
       [view](const std::string& text) {
@@ -71,7 +70,7 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
     // Then the scene's own camera is not asked for.
     for (const char* const name :
          {"--projection", "--eye", "--target", "--up", "--fov", "--span", "--view", "--turn", "--tilt"}) {
-      view->placed = view->placed || (has_option(app, name) && is_given(app, name));
+      view->placed = view->placed || is_given(app, name);
     }
     if (!view->orthographic && is_given(app, "--span")) {
       refuse_usage("--span", "is the width of --projection orthographic; in perspective --fov is the angle");
@@ -98,10 +97,8 @@ void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits)
       &view->side,
       "from which side the scene fills nine tenths of the picture; best: of eight three-quarter views from "
       "above the one that shows the most distinct faces and colours; iso: of the four corners; front looks "
-      "along "
-      "+y, left along +x; "
-      "paper: where the instruments stand, which frame a box "
-      "(default: the scene's own camera, else best)");
+      "along +y, left along +x; paper: where the instruments stand, which frame a box (default: the scene's "
+      "own camera, else best)");
   const auto add_angle = [&](const char* name, double* angle, double most, const char* help) {
     add_real_option(
         app, name, "DEG", -most, most, [angle](double degrees) { *angle = degrees; }, help);
@@ -111,7 +108,7 @@ void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits)
   add_angle("--tilt", &view->onward.tilt, 180, "rise by so many degrees from there, straight above at most");
   add_view(app, view, with_direction_bits);
   for (const char* const angle : {"--view", "--turn", "--tilt"}) {
-    exclude_each_other(app, angle, "--eye");
+    app.get_option(angle)->excludes(app.get_option("--eye"));
   }
 }
 
@@ -146,12 +143,12 @@ void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& 
       "samples a pixel, " + of_what +
           ": 1, 4, 9, 16, 25, 36, 49 or 64; what lies between is taken as the next of them; auto: one, and "
           "2 or 4 more where the picture of one has edges")
-      .default_str(usual);
+      ->default_str(usual);
   also_check(app, [&app, across] {
     const std::string asked = text_given(app, "--samples");
     const auto number = parse_whole(asked, 1, kMostSamples);
     const int taken = *across * *across;
-    const bool quiet = has_option(app, "--quiet") && is_given(app, "--quiet");
+    const bool quiet = is_given(app, "--quiet");
     if (number && *number != taken && !quiet) {
       std::fprintf(stderr, "note: --samples %s is not a square; %d are taken\n", asked.c_str(), taken);
     }
@@ -169,7 +166,7 @@ void add_quality(CLI::App& app, Quality* quality) {
       },
       "stop at blocks of the tree that cover less than PX pixels, in their mean colour; 0 to 64, compact "
       "structure only")
-      .default_str("0");
+      ->default_str("0");
   add_whole_option(
       app, "--max-depth", "D", kMinLevel, kMaxLevel, &quality->max_depth,
       "stop at blocks D levels down in the tree, in their mean colour: the scene as with a depth of D; "
@@ -185,7 +182,7 @@ void add_shade(CLI::App& app, ShadeMode* mode, const std::string& help, std::str
     modes.emplace_back(kInk, ShadeMode::kColor);
   }
   add_choice_option(app, "--shade", modes, mode, help)
-      .default_str(given != nullptr ? "the scene's own look" : "depth");
+      ->default_str(given != nullptr ? "the scene's own look" : "depth");
   if (given != nullptr) {
     also_check(app, [&app, given] { *given = text_given(app, "--shade"); });
   }

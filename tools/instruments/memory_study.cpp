@@ -1,7 +1,6 @@
 #include "instruments/memory_study.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "output/hit_rows.h"

@@ -1,4 +1,4 @@
-#include "instruments/operation_errors.h"
+#include "instruments/hard_cases.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-/// The beginning of a NumPy array (readers/npy.h names the source of the format).
+/// The beginning of a NumPy array (readers/npy.cpp names the source of the format).
 #pragma once
 
 #include <string>

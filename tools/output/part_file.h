@@ -17,7 +17,6 @@
 /// has the same bytes wherever it was drawn.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -40,6 +40,11 @@ std::string polyline(const std::string& style, const Points& points, const Place
   return svg + "\"/>\n";
 }
 
+std::string circle(double x, double y, double radius, const std::string& style) {
+  return "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"" + number(radius) + "\" " + style +
+         "/>\n";
+}
+
 constexpr double kWidth = 760;
 
 // Where the axes of a plot lie, and what is written along them.
@@ -158,8 +163,7 @@ std::string log_plot_text(const Plot& plot) {
                       return std::pair{x_at(point.first), y_at(point.second)};
                     });
     for (const auto& [x, y] : series.points) {
-      svg += "<circle cx=\"" + number(x_at(x)) + "\" cy=\"" + number(y_at(y)) + "\" r=\"3\" fill=\"" + color +
-             "\"/>\n";
+      svg += circle(x_at(x), y_at(y), 3, "fill=\"" + color + "\"");
     }
     const std::size_t legend_row = i / 2;
     const double column = axes.left + static_cast<double>(i % 2) * axes.width() / 2;
@@ -249,11 +253,6 @@ constexpr std::size_t kManyNames = 8;
 // A tick's value without what powers of ten leave behind.
 std::string rounded(double value) {
   return shortest(std::round(value * 1e6) / 1e6);
-}
-
-std::string dot(double x, double y, double radius, const std::string& style) {
-  return "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"" + number(radius) + "\" " + style +
-         "/>\n";
 }
 
 // Where the axes begin and end: x at a 1, 2 or 5 of a decade, y at multiples of `step`.
@@ -404,12 +403,12 @@ std::string scatter_text(const Scatter& scatter) {
                       });
     }
     for (const auto& [x, y] : scatter.clouds[i].points) {
-      svg += dot(scales.x_at(x), scales.y_at(y), 4, fill);
+      svg += circle(scales.x_at(x), scales.y_at(y), 4, fill);
     }
     const double column = axes.left + static_cast<double>(i % 4) * axes.width() / 4;
     const std::size_t legend_row = i / 4;
     const double row = legend + kLineHeight * static_cast<double>(legend_row);
-    svg += dot(column + 5, row - 4, 4, fill) + label(column + 16, row, "start", scatter.clouds[i].name);
+    svg += circle(column + 5, row - 4, 4, fill) + label(column + 16, row, "start", scatter.clouds[i].name);
   }
   if (!scatter.front.empty()) {
     svg += label(axes.left, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
@@ -423,7 +422,7 @@ std::string scatter_text(const Scatter& scatter) {
     const FrontPoint& point = scatter.front[i];
     const double x = scales.x_at(point.x);
     const double y = scales.y_at(point.y);
-    svg += dot(x, y, 6, "class=\"ring\"");
+    svg += circle(x, y, 6, "class=\"ring\"");
     svg += numbers.label_at(x, y, std::to_string(i + 1));
     const std::size_t name_column = i / name_rows;
     const double column = axes.left + static_cast<double>(name_column) * axes.width() / 2;

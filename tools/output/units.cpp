@@ -7,9 +7,6 @@
 
 namespace thimble::tools {
 
-namespace {
-
-// Bytes of the character of UTF-8 that `text` begins with, which becomes `code`; 0 where it begins with none.
 std::size_t character_bytes(std::string_view text, unsigned* code) {
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
   const unsigned first = byte(0);
@@ -33,6 +30,8 @@ std::size_t character_bytes(std::string_view text, unsigned* code) {
   const bool is_surrogate = *code >= 0xD800 && *code < 0xE000;
   return *code < kLeast[bytes] || *code > 0x10FFFF || is_surrogate ? 0 : bytes;
 }
+
+namespace {
 
 bool is_of_xml(unsigned code) {
   return code < 0x20 ? code == '\t' || code == '\n' || code == '\r' : code != 0xFFFE && code != 0xFFFF;

@@ -43,6 +43,9 @@ std::string crc_text(std::uint32_t crc);
 /// `text` for a sentence on a terminal: control characters, line feeds too, as \xNN, so that a file's name
 /// can neither break the sentence nor steer the terminal. UTF-8 stays as it is.
 std::string printable(std::string_view text);
+/// Bytes of the character of UTF-8 that `text`, which is not empty, begins with, and which becomes `code`; 0 where it
+/// begins with none.
+std::size_t character_bytes(std::string_view text, unsigned* code);
 /// `text` as UTF-8: a byte that is none, and with `for_xml` what is no character of XML, becomes U+FFFD.
 std::string utf8_text(std::string_view text, bool for_xml = false);
 /// A scene for the title of a plot: of a path the file's name alone, printable.

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <initializer_list>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -26,7 +26,6 @@
 #include "readers/color_scale.h"
 #include "readers/file_bytes.h"
 #include "readers/height_grid.h"
-#include "readers/npy.h"
 #include "readers/text.h"
 #include "readers/zip.h"
 

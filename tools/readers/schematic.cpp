@@ -8,24 +8,167 @@
 // palette, or the first of several. Blocks have the colours of block_colors.h and all are whole cubes; entities,
 // biomes and what chests hold are passed over. Here z is up: (x, y, z) -> (x, -z, y).
 //
-// Sources of the formats: Minecraft Wiki, "Schematic file format", "Structure file"; SpongePowered, "Sponge Schematic
+// Sources of the formats: Markus Persson, "Named Binary Tag specification", 2011; Minecraft Wiki, "Schematic file format", "Structure file"; SpongePowered, "Sponge Schematic
 // Specification" 1 to 3; masa, Litematica, `LitematicaSchematic` and `LitematicaBitArray`.
-#include "readers/formats.h"
-
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "readers/block_colors.h"
-#include "readers/nbt.h"
+#include "readers/file_bytes.h"
+#include "readers/formats.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
 namespace {
+
+// Named binary tags, the bytes that all of them are made of.
+enum class NbtKind : std::uint8_t {
+  kEnd,
+  kByte,
+  kShort,
+  kInt,
+  kLong,
+  kFloat,
+  kDouble,
+  kBytes,
+  kText,
+  kList,
+  kCompound,
+  kInts,
+  kLongs
+};
+
+NbtKind kind_of(ByteReader& reader) {
+  const unsigned kind = reader.u8();
+  if (kind > static_cast<unsigned>(NbtKind::kLongs)) {
+    reader.fail("there is no tag of kind " + std::to_string(kind) + ", before byte offset " +
+                std::to_string(reader.offset()));
+  }
+  return static_cast<NbtKind>(kind);
+}
+
+/// Bytes of one value, 0 where that is not the same for all.
+std::uint64_t fixed_bytes(NbtKind kind) {
+  constexpr std::array<std::uint8_t, 13> kBytes{0, 1, 2, 4, 8, 4, 8, 0, 0, 0, 0, 0, 0};
+  return kBytes[static_cast<std::size_t>(kind)];
+}
+
+/// A list or a compound that is being passed over.
+struct Open {
+  NbtKind of;          ///< kEnd: a compound, whose entries say what they are
+  std::uint32_t left;  ///< of a list
+};
+
+/// A kind, and a name; `kEnd` has none.
+NbtKind nbt_head(ByteReader& reader, std::string_view* name) {
+  const NbtKind kind = kind_of(reader);
+  *name = kind == NbtKind::kEnd ? std::string_view() : reader.text(reader.u16_be());
+  return kind;
+}
+
+/// Reads the entries of a compound whose kind and name were read; `entry` reads each one's value, or passes
+/// over it.
+void nbt_compound(ByteReader& reader, const std::function<void(NbtKind kind, std::string_view name)>& entry) {
+  std::string_view name;
+  for (NbtKind kind = nbt_head(reader, &name); kind != NbtKind::kEnd; kind = nbt_head(reader, &name)) {
+    entry(kind, name);
+  }
+}
+
+/// The bytes of an array of `kind`; its numbers begin with their highest byte.
+std::span<const std::uint8_t> nbt_array(ByteReader& reader, NbtKind kind) {
+  const std::int32_t count = reader.i32_be();
+  const std::uint64_t each = kind == NbtKind::kBytes ? 1 : (kind == NbtKind::kInts ? 4 : 8);
+  if (count < 0) {
+    reader.fail("an array of " + std::to_string(count) + " numbers, before byte offset " +
+                std::to_string(reader.offset()));
+  }
+  return reader.take(each * static_cast<std::uint64_t>(count));
+}
+
+/// How many values of the kind `of` a list holds; they follow.
+std::uint32_t nbt_list(ByteReader& reader, NbtKind* of) {
+  *of = kind_of(reader);
+  const std::int32_t count = reader.i32_be();
+  if (count > 0 && *of == NbtKind::kEnd) {
+    reader.fail("a list of " + std::to_string(count) + " nothings, before byte offset " +
+                std::to_string(reader.offset()));
+  }
+  return static_cast<std::uint32_t>(std::max(count, 0));
+}
+
+/// A value of a kind that is a whole number.
+std::int64_t nbt_integer(ByteReader& reader, NbtKind kind) {
+  switch (kind) {
+    case NbtKind::kByte:
+      return reader.i8();
+    case NbtKind::kShort:
+      return reader.i16_be();
+    case NbtKind::kInt:
+      return reader.i32_be();
+    case NbtKind::kLong:
+      return static_cast<std::int64_t>(reader.u64_be());
+    default:
+      reader.fail("a tag before byte offset " + std::to_string(reader.offset()) + " is no whole number");
+  }
+}
+
+/// Passes over a value of `kind`. Nesting is limited to 512, as the format has it; nothing is kept.
+/// @throws InputError  a kind that there is not, values that the bytes do not hold
+void nbt_skip(ByteReader& reader, NbtKind kind) {
+  constexpr std::size_t kDeepest = 512;
+  std::vector<Open> open;
+  const auto skip_one = [&](NbtKind what) {
+    if (fixed_bytes(what) != 0) {
+      reader.skip(fixed_bytes(what));
+    } else if (what == NbtKind::kText) {
+      reader.text(reader.u16_be());
+    } else if (what == NbtKind::kCompound) {
+      open.push_back({NbtKind::kEnd, 0});
+    } else if (what == NbtKind::kList) {
+      NbtKind of = NbtKind::kEnd;
+      const std::uint32_t count = nbt_list(reader, &of);
+      if (fixed_bytes(of) != 0) {
+        reader.skip(fixed_bytes(of) * count);
+      } else if (count > 0) {
+        open.push_back({of, count});
+      }
+    } else {
+      nbt_array(reader, what);
+    }
+    if (open.size() > kDeepest) {
+      reader.fail("tags are nested deeper than the limit of " + std::to_string(kDeepest));
+    }
+  };
+  skip_one(kind);
+  while (!open.empty()) {
+    Open& last = open.back();
+    if (last.of == NbtKind::kEnd) {
+      std::string_view name;
+      const NbtKind next = nbt_head(reader, &name);
+      if (next == NbtKind::kEnd) {
+        open.pop_back();
+      } else {
+        skip_one(next);
+      }
+    } else if (last.left == 0) {
+      open.pop_back();
+    } else {
+      --last.left;
+      skip_one(last.of);
+    }
+  }
+}
 
 /// How the numbers of blocks are written.
 enum class BlockCode : std::uint8_t {

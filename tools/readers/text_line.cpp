@@ -13,33 +13,13 @@ constexpr bool is_continuation(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
 }
 
-// Length of the character of UTF-8 at the front of `text`; 0 when there is none.
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  if (first < 0x80) {
-    return 1;
-  }
-  const std::size_t length = first >= 0xC2 && first < 0xE0   ? 2
-                             : first >= 0xE0 && first < 0xF0 ? 3
-                             : first >= 0xF0 && first < 0xF5 ? 4
-                                                             : 0;
-  if (length == 0 || text.size() < length || !std::all_of(&text[1], text.data() + length, is_continuation)) {
-    return 0;
-  }
-  // Longer than needed, halves of UTF-16, beyond the last character.
-  const unsigned second = byte(1);
-  const bool wrong = (first == 0xE0 && second < 0xA0) || (first == 0xED && second >= 0xA0) ||
-                     (first == 0xF0 && second < 0x90) || (first == 0xF4 && second >= 0x90);
-  return wrong ? 0 : length;
-}
-
 }  // namespace
 
 void check_characters(std::string_view text) {
   TextPlace place{1, 1};
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = character_bytes(text.substr(at));
+    unsigned code = 0;
+    const std::size_t length = character_bytes(text.substr(at), &code);
     const auto byte = static_cast<unsigned char>(text[at]);
     if (length == 0) {
       fail_at(place, "the bytes here are not UTF-8 text");

@@ -2,16 +2,151 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "host/packed_picture.h"
 #include "host/y4m.h"
-#include "output/gif.h"
 #include "output/output_file.h"
 #include "output/output_set.h"
 #include "scene/palette.h"
+#include "thimble/picture/pixel.h"
 
 namespace thimble::tools {
+
+namespace {
+
+// Films as GIF89a: one palette for all frames, which repeat without end.
+//
+// The bytes, after the CompuServe specification of 1990: header and screen (13 bytes), the palette (256 times r, g, b),
+// the NETSCAPE2.0 extension that repeats; for each frame its delay (a graphic control extension), an image descriptor
+// and its pixels, one byte an index, by LZW in blocks of at most 255 bytes; at the end 0x3B. LZW: codes from 9 to 12
+// bits, lowest bit first; 256 clears the table, 257 ends the frame, new words count from 258; a full table is cleared.
+using GifPalette = std::array<Rgb8, 256>;
+
+void put(std::string* out, unsigned byte) {
+  out->push_back(static_cast<char>(byte & 0xFFU));
+}
+void put_16(std::string* out, std::int32_t value) {
+  put(out, static_cast<unsigned>(value));
+  put(out, static_cast<unsigned>(value) >> 8);
+}
+
+// Codes of a changing number of bits, in blocks that begin with their length.
+class Codes {
+ public:
+  explicit Codes(std::string* out) : out_(out) {}
+  void write(unsigned code, int bits) {
+    waiting_ |= code << count_;
+    count_ += bits;
+    for (; count_ >= 8; count_ -= 8, waiting_ >>= 8) {
+      block_.push_back(static_cast<char>(waiting_ & 0xFFU));
+      if (block_.size() == 255) {
+        end_block();
+      }
+    }
+  }
+  void end() {
+    if (count_ > 0) {
+      block_.push_back(static_cast<char>(waiting_ & 0xFFU));
+    }
+    if (!block_.empty()) {
+      end_block();
+    }
+    put(out_, 0);
+  }
+
+ private:
+  void end_block() {
+    put(out_, static_cast<unsigned>(block_.size()));
+    *out_ += block_;
+    block_.clear();
+  }
+
+  std::string* out_;
+  std::string block_;
+  unsigned waiting_ = 0;
+  int count_ = 0;
+};
+
+void compress(const std::vector<std::uint8_t>& indices, std::string* out) {
+  constexpr unsigned kClear = 256;
+  constexpr unsigned kEnd = 257;
+  constexpr unsigned kMostCodes = 4096;
+  // By word and next index, the word of both; 0 is none, since words of two begin at 258.
+  std::vector<std::uint16_t> next(std::size_t{kMostCodes} * 256);
+  unsigned used = kEnd + 1;
+  int bits = 9;
+  Codes codes(out);
+  codes.write(kClear, bits);
+  unsigned word = indices.empty() ? kEnd : indices[0];
+  for (std::size_t i = 1; i < indices.size(); ++i) {
+    std::uint16_t& longer = next[std::size_t{word} * 256 + indices[i]];
+    if (longer != 0) {
+      word = longer;
+      continue;
+    }
+    codes.write(word, bits);
+    if (used == kMostCodes) {
+      codes.write(kClear, bits);
+      std::fill(next.begin(), next.end(), std::uint16_t{0});
+      used = kEnd + 1;
+      bits = 9;
+    } else {
+      // A reader knows each word one code later than its writer.
+      bits += used == 1U << bits ? 1 : 0;
+      longer = static_cast<std::uint16_t>(used++);
+    }
+    word = indices[i];
+  }
+  if (word != kEnd) {
+    codes.write(word, bits);
+    bits += used == 1U << bits && bits < 12 ? 1 : 0;
+  }
+  codes.write(kEnd, bits);
+  codes.end();
+}
+
+/// What stands in front of the frames. Sides of 1 .. 65,535 pixels.
+std::string gif_header(std::int32_t width_px, std::int32_t height_px, const GifPalette& palette) {
+  std::string out = "GIF89a";
+  put_16(&out, width_px);
+  put_16(&out, height_px);
+  put(&out, 0xF7);  // a palette of 2^8 colours, 8 bits a channel
+  put(&out, 0);     // the background's index
+  put(&out, 0);     // pixels are square
+  for (const Rgb8& color : palette) {
+    put(&out, color.r);
+    put(&out, color.g);
+    put(&out, color.b);
+  }
+  out += "\x21\xFF\x0BNETSCAPE2.0\x03\x01";
+  put_16(&out, 0);  // for ever
+  put(&out, 0);
+  return out;
+}
+
+/// A frame: a palette index for each pixel, row by row from the top; shown for so many hundredths of a second.
+std::string gif_frame(std::int32_t width_px, std::int32_t height_px, const std::vector<std::uint8_t>& indices,
+                      int hundredths) {
+  std::string out = "\x21\xF9\x04\x04";  // what was drawn stays
+  put_16(&out, hundredths);
+  put(&out, 0);  // no colour is transparent
+  put(&out, 0);
+  put(&out, 0x2C);
+  put_16(&out, 0);
+  put_16(&out, 0);
+  put_16(&out, width_px);
+  put_16(&out, height_px);
+  put(&out, 0);  // the palette of all; rows in order
+  put(&out, 8);  // bits of an index
+  compress(indices, &out);
+  return out;
+}
+
+}  // namespace
 
 // What a GIF shows of pictures: one palette, and the entry of each pixel. An ordered dither of a bin's width
 // hides the steps of a gradient, and stands still from frame to frame.
@@ -160,7 +295,7 @@ void Film::add(const Image& image) {
 
 void Film::end() {
   if (colors_ != nullptr) {
-    file_->write(gif_end());
+    file_->write(";");  // a GIF ends with 0x3B
   }
 }
 

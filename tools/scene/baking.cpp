@@ -4,8 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <new>
-#include <string_view>
 
 #include "output/units.h"
 #include "readers/oct.h"

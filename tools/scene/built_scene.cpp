@@ -144,16 +144,14 @@ void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool
   arena_ = Arena(memory_.bytes());
   band_ = {};
   if (band_bytes != 0) {
-    if (arena_.take(static_cast<std::size_t>(options_.render_state_bytes)).empty()) {
-      throw StructureBuilder::Shortage{};
-    }
-    band_ = arena_.take(static_cast<std::size_t>(band_bytes));
+    const bool has_state = !arena_.take(static_cast<std::size_t>(options_.render_state_bytes)).empty();
+    band_ = has_state ? arena_.take(static_cast<std::size_t>(band_bytes)) : Bytes();
     if (band_.empty()) {
       throw StructureBuilder::Shortage{};
     }
   }
-  StructureBuilder builder(source, &arena_, options_.baked_in_flash, options_.threads, progress);
-  traced_ = builder.build(options_.structure, coarsen);
+  StructureBuilder builder(source, &arena_, options_, progress);
+  traced_ = builder.build(coarsen);
   least_budget_bytes_ = builder.least_bytes();
 }
 
@@ -182,7 +180,8 @@ Vec3i grid_size(Vec3i size, int level) {
   return size;
 }
 
-Structure StructureBuilder::build(StructureKind kind, bool coarsen) {
+Structure StructureBuilder::build(bool coarsen) {
+  const StructureKind kind = options_.structure;
   built_ = {};
   built_.kind = kind;
   if (source_.baked() != nullptr && !coarsen && kind == StructureKind::kCompact) {
@@ -225,7 +224,7 @@ void StructureBuilder::build_dense() {
 }
 
 void StructureBuilder::take_baked(const CompactTree& tree) {
-  if (baked_in_flash_) {
+  if (options_.baked_in_flash) {
     built_.compact = tree;
     return;
   }
@@ -420,9 +419,9 @@ void StructureBuilder::build_keys() {
       static_cast<std::size_t>(std::clamp(std::uint64_t{1} << (3 * source_.level()), kShortList, kLongList));
   const auto tidy = [&] {
     const Bytes free = aligned(rest.subspan(count * sizeof(Key)), alignof(std::uint64_t));
-    const Bytes scratch = free.subspan(0, key_sort_scratch_bytes(count, threads_));
+    const Bytes scratch = free.subspan(0, key_sort_scratch_bytes(count, options_.threads));
     most = std::max(most, static_cast<std::size_t>(free.data - rest.data) + scratch.size);
-    sort_keys_fast(Span<Key>(keys, count), key_bits, scratch, threads_);
+    sort_keys_fast(Span<Key>(keys, count), key_bits, scratch, options_.threads);
     count = unique_keys(Span<Key>(keys, count));
   };
   std::uint64_t streamed = 0;

@@ -43,6 +43,20 @@ class SceneSource;
 /// decides how rays are quantised, so the longest side grows until it is that.
 Vec3i grid_size(Vec3i size, int level);
 
+struct BuildOptions {
+  StructureKind structure = StructureKind::kCompact;
+  std::optional<std::uint64_t> memory_bytes;          ///< --memory: everything between reader and display
+  bool coarsen = false;                               ///< --coarsen
+  std::uint64_t band_bytes = 0;                       ///< one band of pixels; 0: nothing is rendered
+  std::uint64_t render_state_bytes = render_bytes();  ///< what draws keeps beside the band
+  std::uint64_t least_band_bytes = 0;                 ///< what will do for a band when the budget is short
+  int threads = 1;                                    ///< that may sort voxels, and look for the best view
+  std::string budget_name = "--memory";               ///< who set the budget, for errors
+  /// A baked scene is traced where the source has it, as a board does in flash: not part of the budget, and
+  /// the source must outlive the result. Otherwise its tree is copied into the arena. Compact trees only.
+  bool baked_in_flash = false;
+};
+
 /// Builds behind what the arena holds; its layout, front to back:
 ///
 ///   what is there | pool of nodes, or list of keys, while building | compact tree
@@ -53,19 +67,14 @@ class StructureBuilder {
  public:
   struct Shortage {};  ///< thrown: the arena is too small
 
-  /// `baked_in_flash`: a baked scene's tree is traced where the source has it. Otherwise it is copied into
-  /// the arena. `threads` may sort voxels. All that is given outlives the builder.
-  StructureBuilder(const SceneSource& source, Arena* arena, bool baked_in_flash, int threads,
+  /// All that is given outlives the builder.
+  StructureBuilder(const SceneSource& source, Arena* arena, const BuildOptions& options,
                    const Progress& progress)
-      : source_(source),
-        arena_(*arena),
-        baked_in_flash_(baked_in_flash),
-        threads_(threads),
-        progress_(progress) {}
+      : source_(source), arena_(*arena), options_(options), progress_(progress) {}
 
   /// `coarsen`: merges blocks until the arena is large enough. Throws Shortage, InputError and what the
   /// source throws; what the arena then holds behind what was there is lost.
-  Structure build(StructureKind kind, bool coarsen);
+  Structure build(bool coarsen);
   /// The least bytes of an arena in which the same comes out without coarsening, where that is less than the
   /// most that was in use; else 0. After `build`.
   std::uint64_t least_bytes() const { return least_bytes_; }
@@ -83,25 +92,10 @@ class StructureBuilder {
 
   const SceneSource& source_;
   Arena& arena_;
-  bool baked_in_flash_;
-  int threads_;
+  const BuildOptions& options_;
   const Progress& progress_;
   Structure built_;
   std::uint64_t least_bytes_ = 0;
-};
-
-struct BuildOptions {
-  StructureKind structure = StructureKind::kCompact;
-  std::optional<std::uint64_t> memory_bytes;          ///< --memory: everything between reader and display
-  bool coarsen = false;                               ///< --coarsen
-  std::uint64_t band_bytes = 0;                       ///< one band of pixels; 0: nothing is rendered
-  std::uint64_t render_state_bytes = render_bytes();  ///< what draws keeps beside the band
-  std::uint64_t least_band_bytes = 0;                 ///< what will do for a band when the budget is short
-  int threads = 1;                                    ///< that may sort voxels, and look for the best view
-  std::string budget_name = "--memory";               ///< who set the budget, for errors
-  /// A baked scene is traced where the source has it, as a board does in flash: not part of the budget, and
-  /// the source must outlive the result. Otherwise its tree is copied into the arena. Compact trees only.
-  bool baked_in_flash = false;
 };
 
 /// Built once, then only read. Layout of the arena, front to back: render state and band, the structure

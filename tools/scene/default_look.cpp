@@ -16,13 +16,14 @@ const char* const kDefaultLookText =
     "Without --shade and --effects the scene decides. Colours, from a palette or of points and corners, are "
     "drawn as they are; meshes and surfaces without are clay. A sun stands over the viewer's left shoulder "
     "(the right one where the side on the right is more than twice as large), with exact shadows, occlusion, "
-    "a soft gradient behind the scene, and under it a ground that only shows "
-    "the shadow. Water has ripples. What a scene states itself (camera, lights, occlusion, sky, effects off) "
-    "is kept. Round glass shows the slope of surfaces, not the faces of voxels. Points of "
-    "which less than 50 % have 3 neighbours are stars: brightness and colour by depth and size on the "
-    "picture. A pixel has 4 samples, or 1 where 4 would take more than 100,000,000 rays, counted in a small "
-    "picture. The exposure follows the scene. --structure dense|pool, --engine, "
-    "--cutoff, --max-depth and --board draw by --shade instead: colours where the scene has any, else depth.";
+    "a soft gradient behind the scene, and under it a ground that only shows the shadow. Water has ripples. "
+    "What a scene states itself (camera, lights, occlusion, sky, effects off) is kept. Round glass shows the "
+    "slope of surfaces, not the faces of voxels. Points of which less than 50 % have 3 neighbours are stars: "
+    "brightness and colour by depth and size on the picture. A pixel has 4 samples, or 1 where 4 would take "
+    "more than 100,000,000 rays, counted in a small picture. The exposure follows the scene. --structure "
+    "dense|pool, --engine, --cutoff, --max-depth and --board draw by --shade instead: colours where the "
+    "scene "
+    "has any, else depth.";
 
 namespace {
 

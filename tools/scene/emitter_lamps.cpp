@@ -1,4 +1,4 @@
-#include "scene/emitter_lamps.h"
+#include "scene/lit_description.h"
 
 #include <algorithm>
 #include <array>

@@ -210,33 +210,26 @@ void check(Status status, const std::string& advice) {
   }
 }
 
-Camera perspective_camera(const ViewWishes& wishes, int level, const Sight& sight, const SceneCamera& kept) {
-  PerspectiveView view;
-  view.eye = kept.eye;
-  view.forward = sight.forward;
-  view.up = sight.up;
-  view.fov_degrees = kept.fov_degrees;
-  view.width_px = wishes.width_px;
-  view.height_px = wishes.height_px;
-  view.direction_bits = wishes.direction_bits;
-  Camera camera;
-  const Status status = camera.set(view, level);
+Status set_camera(const ViewWishes& wishes, int level, Framing* framing) {
+  return set_camera(framing->kept, wishes.width_px, wishes.height_px, level, &framing->camera);
+}
+
+void set_perspective_camera(const ViewWishes& wishes, int level, Framing* framing) {
+  const Status status = set_camera(wishes, level, framing);
   check(status, status == Status::kTooFine && wishes.direction_bits != 0
                     ? "directions of " + std::to_string(wishes.direction_bits) +
                           " bits are too coarse for this picture; leave out --direction-bits"
                     : "directions of 20 bits cannot be kept within 1/8 pixel; a wider --fov or a smaller "
                       "--size helps");
-  return camera;
 }
 
 // How far, in pixels, rays lie from where they were wished: the core's bound starts from the eye and the span
 // as it got them, and what rounding them moved is added.
-double moved_px(const ViewWishes& wishes, const Camera& camera, const Sight& sight, const Vec3Q8& eye,
-                Q14 span) {
-  const double pixel = voxels_of(span) / wishes.width_px;
-  double moved = camera.error_bound_px_q16() / 65536.0;
+double moved_px(const ViewWishes& wishes, const Framing& framing, const Sight& sight) {
+  const double pixel = voxels_of(framing.kept.span) / wishes.width_px;
+  double moved = framing.camera.error_bound_px_q16() / 65536.0;
   if (wishes.eye) {
-    const Real3 rounding = minus(*wishes.eye, real_of(eye));
+    const Real3 rounding = minus(*wishes.eye, real_of(framing.kept.eye));
     moved += std::hypot(dot(rounding, sight.axes.right), dot(rounding, sight.axes.up)) / pixel;
   }
   if (wishes.span) {
@@ -246,45 +239,35 @@ double moved_px(const ViewWishes& wishes, const Camera& camera, const Sight& sig
   return moved;
 }
 
-// `whole`: the span that shows all. `partial` is set where that much cannot be shown.
-Camera orthographic_camera(const ViewWishes& wishes, int level, const Sight& sight, double whole,
-                           SceneCamera* kept, bool* partial) {
+// `whole`: the span that shows all. True where that much cannot be shown.
+bool set_orthographic_camera(const ViewWishes& wishes, int level, const Sight& sight, double whole,
+                             Framing* framing) {
   constexpr double kMostSpan = 131071;
   const double least = voxels_of(least_orthographic_span(wishes.width_px, level));
-  *partial = !wishes.span && whole > kMostSpan;
-  OrthographicView view;
-  view.eye = kept->eye;
-  view.forward = sight.forward;
-  view.up = sight.up;
-  view.span = span_q14(wishes.span.value_or(std::min(whole, kMostSpan)));
-  view.width_px = wishes.width_px;
-  view.height_px = wishes.height_px;
-  view.direction_bits = wishes.direction_bits;
-  Camera camera;
-  Status status = camera.set(view, level);
+  bool partial = !wishes.span && whole > kMostSpan;
+  Q14& span = framing->kept.span;
+  span = span_q14(wishes.span.value_or(std::min(whole, kMostSpan)));
+  Status status = set_camera(wishes, level, framing);
   if (status == Status::kTooFine && !wishes.span) {
-    view.span = span_q14(least);  // a scene of a few voxels is shown smaller instead
-    status = camera.set(view, level);
+    span = span_q14(least);  // a scene of a few voxels is shown smaller instead
+    status = set_camera(wishes, level, framing);
   }
   // A long thin picture of the whole scene may be wider than rays may start: then it shows less.
   for (int tries = 0; status == Status::kOutOfRange && !wishes.span && tries < 64; ++tries) {
-    view.span = span_q14(voxels_of(view.span) * 0.8);
-    status = camera.set(view, level);
-    *partial = true;
+    span = span_q14(voxels_of(span) * 0.8);
+    status = set_camera(wishes, level, framing);
+    partial = true;
   }
-  kept->span = view.span;
-  if (status == Status::kOk && wishes.direction_bits == 0 &&
-      moved_px(wishes, camera, sight, view.eye, view.span) > 0.125) {
+  if (status == Status::kOk && wishes.direction_bits == 0 && moved_px(wishes, *framing, sight) > 0.125) {
     status = Status::kTooFine;
   }
   check(status,
         status == Status::kTooFine
-            ? "the pixels are too fine for origins in 1/256 voxel; a wider picture helps, about "
-              "--span " +
+            ? "the pixels are too fine for origins in 1/256 voxel; a wider picture helps, about --span " +
                   shortest(std::ceil(2 * least * 100) / 100)
             : "the picture's corners must lie within -4 to 5 world sizes; a smaller --span or another "
               "--eye helps");
-  return camera;
+  return partial;
 }
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
@@ -539,10 +522,9 @@ Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   kept.fov_degrees = Q16::from_raw(static_cast<std::int32_t>(std::lround(wishes.fov_degrees * Q16::kOne)));
   bool partial = false;
   if (wishes.orthographic) {
-    framing.camera =
-        orthographic_camera(wishes, level, sight, 2 * room.half_width / wishes.fill, &kept, &partial);
+    partial = set_orthographic_camera(wishes, level, sight, 2 * room.half_width / wishes.fill, &framing);
   } else {
-    framing.camera = perspective_camera(wishes, level, sight, kept);
+    set_perspective_camera(wishes, level, &framing);
     // What the margin gives away may be enough to see it all even from too near.
     partial = !wishes.eye && !sees_all(corners, eye, sight.axes, lens);
   }
@@ -587,7 +569,6 @@ Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
   const Reach reach(shape.level);
   const Sight sight = sight_of(wishes, reach, corners_of(shape.bounds));
   const ViewWishes placed_view = fitted(wishes, shape, sight);
-  Framing framing;
   if (is_reachable(*placed_view.eye, reach) && is_reachable(*placed_view.target, reach)) {
     try {
       return frame_box(placed_view, shape.level, shape.bounds);
@@ -595,7 +576,7 @@ Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
       // Beyond what a camera can do; the next one makes do with less, or says why not.
     }
   }
-  framing = frame_box(wishes, shape.level, shape.bounds);
+  Framing framing = frame_box(wishes, shape.level, shape.bounds);
   if (shows_all(framing, shape, sight, Lens(wishes))) {
     framing.note.clear();  // what its box lacks holds nothing
   }

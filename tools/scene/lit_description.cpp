@@ -7,7 +7,6 @@
 #include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/oct.h"
-#include "scene/emitter_lamps.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
@@ -209,14 +208,17 @@ std::optional<EffectChoice> parse_effects(std::string_view text) {
 }
 
 std::string effects_text(EffectSet effects) {
-  std::string text;
+  return effects == Effect::kNone ? "none" : joined(effect_list(effects), ",");
+}
+
+std::vector<std::string> effect_list(EffectSet effects) {
+  std::vector<std::string> names;
   for (int bit = 0; bit < Effect::kCount; ++bit) {
-    const EffectSet effect = EffectSet{1} << bit;
-    if ((effects & effect) != 0) {
-      text += (text.empty() ? "" : ",") + std::string(effect_name(effect));
+    if ((effects >> bit & 1U) != 0) {
+      names.emplace_back(effect_name(EffectSet{1} << bit));
     }
   }
-  return text.empty() ? "none" : text;
+  return names;
 }
 
 std::string effect_names() {

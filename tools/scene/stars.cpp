@@ -2,7 +2,6 @@
 // the order of the points nor the height of a band makes a difference.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include "readers/oct.h"

@@ -1,7 +1,5 @@
 #include "scene/wide_frames.h"
 
-#include <string>
-
 #include "readers/source.h"
 
 namespace thimble::tools {
