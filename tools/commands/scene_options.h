@@ -13,6 +13,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }
 namespace thimble::platform {
 struct BoardFacts;
