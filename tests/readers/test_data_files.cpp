@@ -123,7 +123,7 @@ TEST_CASE(
                                    {"cloud/pdal_simple.las", 1065},
                                    {"cloud/pdal_1.2-with-color.las", 1065},
                                    {"cloud/urban.las", 13511},
-                                   {"cloud/pdal_simple.laz", -1},
+                                   {"cloud/pdal_simple.laz", 1065},
                                    {"nbody/galaxy_littleendian.dat", 60000},
                                    {"mesh/ChineseDragon-10kv.off", 10000, 19994},
                                    {"mesh/armadillo.off", 26002, 52000},

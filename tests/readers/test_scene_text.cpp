@@ -33,10 +33,10 @@ std::string error_of(const std::string& text) {
   return tools::test::error_of(read_scene_text, text);
 }
 
-using Voxels = std::map<std::array<int, 3>, int>;
+using VoxelMaterials = std::map<std::array<int, 3>, int>;
 
-Voxels voxels_of(const SceneSource& source) {
-  Voxels voxels;
+VoxelMaterials voxels_of(const SceneSource& source) {
+  VoxelMaterials voxels;
   source.stream([&](int x, int y, int z, std::uint8_t material) { voxels[{x, y, z}] = material; }, {});
   return voxels;
 }
@@ -313,7 +313,7 @@ TEST_CASE(
   const auto source = open_file(path);
   CHECK(source->kind() == "scene text");
   CHECK(source->level() == 3);
-  const Voxels voxels = voxels_of(*source);
+  const VoxelMaterials voxels = voxels_of(*source);
   CHECK(voxels.size() == 24 + 2 * 3 * 4 - 1 + 8);
   const int red = voxels.at({0, 0, 0});
   const int blue = voxels.at({3, 2, 1});
@@ -329,7 +329,7 @@ TEST_CASE(
 TEST_CASE("scene: a ball -> the voxels whose centres it holds") {
   const TemporaryFolder folder;
   const auto source = open_file(folder.write("a.scene", "material m\nball m at 8.25 7 6.5 radius 5.5\n"));
-  const Voxels voxels = voxels_of(*source);
+  const VoxelMaterials voxels = voxels_of(*source);
   std::size_t expected = 0;
   for (int z = 0; z < 16; ++z) {
     for (int y = 0; y < 16; ++y) {
@@ -351,7 +351,7 @@ TEST_CASE("scene: boxes and balls in blocks -> aligned, the voxels one by one; 1
                              "material m\nmaterial n color 9 9 9\nbox m from 1 3 5 to 17 30 13\n"
                              "ball n at 20.5 20 20.25 radius 11.7\n"
                              "box n from 30 30 -3 to 99 32 4\ndepth 5\n"));
-  Voxels voxels;
+  VoxelMaterials voxels;
   std::size_t calls = 0;
   mixed->stream_blocks(
       [&](const Vec3i& at, int level, std::uint8_t material) {
@@ -425,7 +425,7 @@ TEST_CASE("scene: a model out of the world -> an error with the depth; crop -> c
   CHECK(contains(open_error(folder.write("a.scene", "depth 4\nmodel spheres,depth=4 at 1 0 0\n")),
                  "line 2, column 1: the model's voxels from"));
   const auto cropped = open_file(folder.write("b.scene", "depth 4\nmodel spheres,depth=4 at 8 -3 0 crop\n"));
-  const Voxels part = voxels_of(*cropped);
+  const VoxelMaterials part = voxels_of(*cropped);
   CHECK_FALSE(part.empty());
   for (const auto& [at, material] : part) {
     CHECK((at[0] >= 8 && at[0] < 16 && at[1] >= 0 && at[1] < 16));
@@ -464,7 +464,7 @@ TEST_CASE("scene: replace -> a model's colours as other materials; those without
                                  "model l.xyz as-voxels\nmodel l.xyz as-voxels at 0 1 0 replace all clear\n"
                                  "model l.xyz as-voxels at 0 2 0 replace all gold\n");
   const auto source = open_file(path);
-  const Voxels voxels = voxels_of(*source);
+  const VoxelMaterials voxels = voxels_of(*source);
   const LitDescription lit = source->lighting();
   const auto surface = [&](int x, int y) {
     return lit.surfaces[static_cast<std::size_t>(voxels.at({x, y, 0}))];

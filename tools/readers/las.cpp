@@ -1,4 +1,4 @@
-// `.las` laser scans, versions 1.0 to 1.4, point formats 0 to 10.
+// `.las` and `.laz` laser scans, versions 1.0 to 1.4, point formats 0 to 10.
 //
 // What is read: positions, and colours of the formats that have them (2, 3, 5, 7, 8, 10). Colours have 16
 // bits, but many files hold bytes: where no component of the file is above 255, they are taken to be that;
@@ -6,7 +6,7 @@
 // All else (intensity, returns, classes, waves, records of variable length, the coordinate system) is passed
 // over. z is up, as it is in the file.
 //
-// Not read: `.laz`, the compressed form, for which Debian has no library. It is refused by name.
+// Points that are compressed (laz.h) are unpacked first, what is read of them alone.
 //
 // Source of the format: ASPRS, "LAS Specification 1.4 - R15", and those of the versions before it.
 #include "readers/formats.h"
@@ -17,6 +17,7 @@
 #include <string>
 
 #include "readers/file_bytes.h"
+#include "readers/laz.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -44,8 +45,8 @@ constexpr std::array<PointFormat, 11> kFormats{{{20, 0},
 class LasCloud final : public PointCloud {
  public:
   LasCloud(const SharedBytes& file, const ReadOptions& options, const Progress& progress) : file_(file) {
-    read_header();
-    ProgressMeter meter(progress, file.bytes.size());
+    read_header(progress);
+    ProgressMeter meter(progress, file_.bytes.size());
     std::uint16_t highest = 0;
     std::uint64_t kept = 0;
     walk([&](const CloudPoint& point, ByteReader& record) {
@@ -89,7 +90,7 @@ class LasCloud final : public PointCloud {
   bool has_color() const override { return has_color_; }
 
  private:
-  void read_header() {
+  void read_header(const Progress& progress) {
     if (!looks_like_las(file_.bytes)) {
       throw InputError("is not a LAS file: it does not begin with \"LASF\"");
     }
@@ -105,7 +106,9 @@ class LasCloud final : public PointCloud {
     const std::uint16_t header_bytes = header.u16();
     first_offset_ = header.u32();
     header.skip(4);
-    const unsigned format = header.u8();
+    const unsigned marked_format = header.u8();
+    const unsigned format = marked_format & 0x3FU;
+    const bool is_packed = marked_format != format;
     record_bytes_ = header.u16();
     count_ = header.u32();
     header.skip(20);
@@ -121,11 +124,6 @@ class LasCloud final : public PointCloud {
       const std::uint64_t count = header.u64();
       count_ = count != 0 ? count : count_;
     }
-    if ((format & 0xC0U) != 0) {
-      throw InputError(
-          "its points are compressed (LAZ), which is not read; unpack it first, for example with \"pdal "
-          "translate in.laz out.las\"");
-    }
     if (format >= kFormats.size()) {
       throw InputError("point format " + std::to_string(format) +
                        " at byte offset 104 is not supported, only 0 to 10 are");
@@ -136,6 +134,13 @@ class LasCloud final : public PointCloud {
       throw InputError("points of format " + std::to_string(format) + " take at least " +
                        std::to_string(kFormats[format].least_bytes) + " bytes, but the header says " +
                        std::to_string(record_bytes_));
+    }
+    if (is_packed) {
+      const bool has_color = color_offset_ != kNoColor;
+      file_ = unpack_laz(file_, {first_offset_, count_, record_bytes_}, has_color, progress);
+      first_offset_ = 0;
+      record_bytes_ = has_color ? kColoredPointBytes : kPlainPointBytes;
+      color_offset_ = has_color ? kPlainPointBytes : kNoColor;
     }
     const std::uint64_t room =
         first_offset_ < file_.bytes.size() ? (file_.bytes.size() - first_offset_) / record_bytes_ : 0;

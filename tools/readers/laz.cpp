@@ -1,0 +1,586 @@
+#include "readers/laz.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "readers/arithmetic_decoder.h"
+#include "readers/file_bytes.h"
+#include "readers/text.h"
+
+namespace thimble::tools {
+namespace {
+
+/// The median of the last five numbers, roughly: in turns the highest or the lowest makes room.
+class StreamingMedian {
+ public:
+  std::int32_t get() const { return sorted_[2]; }
+  void add(std::int32_t number) {
+    std::size_t at = drops_highest_ ? 4 : 0;
+    drops_highest_ = drops_highest_ ? number < sorted_[2] : number <= sorted_[2];
+    for (; at > 0 && sorted_[at - 1] > number; --at) {
+      sorted_[at] = sorted_[at - 1];
+    }
+    for (; at < 4 && sorted_[at + 1] < number; ++at) {
+      sorted_[at] = sorted_[at + 1];
+    }
+    sorted_[at] = number;
+  }
+
+ private:
+  std::array<std::int32_t, 5> sorted_{};
+  bool drops_highest_ = true;
+};
+
+struct Point {
+  std::uint32_t x = 0, y = 0, z = 0;
+  std::array<std::uint16_t, 3> color{};
+  std::uint8_t mark = 0;  ///< byte 15 of the record
+};
+
+/// x, y and z of both families of formats: differences by the medians of those before.
+class PlaceModel {
+ public:
+  /// @param median  which of the medians
+  void decode_xy(ArithmeticDecoder& decoder, std::size_t median, bool is_single, Point* point) {
+    point->x += step(decoder, dx_, medians_[median][0], is_single ? 1 : 0);
+    point->y += step(decoder, dy_, medians_[median][1], context(is_single, dx_.length(), 20));
+  }
+  std::uint32_t decode_z(ArithmeticDecoder& decoder, std::uint32_t predicted, bool is_single) {
+    return z_.decode(decoder, predicted, context(is_single, (dx_.length() + dy_.length()) / 2, 18));
+  }
+
+ private:
+  static std::size_t context(bool is_single, unsigned length, unsigned most) {
+    return (is_single ? 1U : 0U) + std::min(length & ~1U, most);
+  }
+  static std::uint32_t step(ArithmeticDecoder& decoder, IntegerModel& model, StreamingMedian& median,
+                            std::size_t context) {
+    const std::uint32_t step = model.decode(decoder, static_cast<std::uint32_t>(median.get()), context);
+    median.add(static_cast<std::int32_t>(step));
+    return step;
+  }
+
+  IntegerModel dx_{32, 2}, dy_{32, 22}, z_{32, 20};
+  std::array<std::array<StreamingMedian, 2>, 16> medians_{};
+};
+
+/// Colours: which of the six bytes changed, then by how much; green and blue follow what red did.
+class ColorModel {
+ public:
+  void decode(ArithmeticDecoder& decoder, std::array<std::uint16_t, 3>* color) {
+    const std::uint32_t changed = decoder.symbol(changed_);
+    std::array<std::array<int, 2>, 3> bytes{};  // [r, g or b][low, high]
+    const auto byte = [&](std::size_t component, std::size_t half, int shift) {
+      const int last = (*color)[component] >> (8 * half) & 255;
+      const std::size_t i = 2 * component + half;
+      bytes[component][half] =
+          (changed >> i & 1) == 0
+              ? last
+              : (std::clamp(last + shift, 0, 255) + static_cast<int>(decoder.symbol(bytes_[i]))) & 255;
+      return bytes[component][half] - last;
+    };
+    std::array<int, 2> shift{};
+    shift[0] = byte(0, 0, 0);
+    shift[1] = byte(0, 1, 0);
+    const bool is_grey = (changed & 64) == 0;
+    for (std::size_t half = 0; half < 2; ++half) {
+      if (is_grey) {
+        bytes[1][half] = bytes[2][half] = bytes[0][half];
+      } else {
+        const int green = byte(1, half, shift[half]);
+        byte(2, half, (shift[half] + green) / 2);
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      (*color)[i] = static_cast<std::uint16_t>(bytes[i][0] | bytes[i][1] << 8);
+    }
+  }
+
+ private:
+  SymbolModel changed_{128};
+  std::vector<SymbolModel> bytes_{6, SymbolModel(256)};
+};
+
+/// Times, which are passed over: where one ends depends on whether steps are 0, so that these are kept.
+class TimeModel {
+ public:
+  void skip(ArithmeticDecoder& decoder) {
+    for (int switches = 0;; ++switches) {
+      const bool is_still = steps_[now_] == 0;
+      const std::uint32_t way = decoder.symbol(is_still ? still_ : multiples_);
+      const std::uint32_t full = is_still ? 2 : kFull;
+      if (way == full) {
+        time_.decode(decoder, 0, 8);
+        decoder.bits(16);
+        decoder.bits(16);
+        newest_ = now_ = (newest_ + 1) & 3;
+        steps_[now_] = 0;
+        extremes_[now_] = 0;
+      } else if (way > full) {
+        if (switches == 3) {  // there are four sequences
+          refuse_damaged();
+        }
+        now_ = (now_ + way - full) & 3;
+        continue;
+      } else if (is_still) {
+        if (way == 1) {
+          steps_[now_] = time_.decode(decoder, 0, 0);
+          extremes_[now_] = 0;
+        }
+      } else {
+        step(decoder, way);
+      }
+      return;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kMost = 500, kLeast = 10, kUnchanged = kMost + kLeast + 1,
+                                 kFull = kUnchanged + 1;
+
+  // A multiple of the step before, 0 to 500, or -1 to -10; where it is often an extreme, the step is a new one.
+  void step(ArithmeticDecoder& decoder, std::uint32_t way) {
+    if (way == kUnchanged) {
+      return;
+    }
+    const std::uint32_t multiple = way <= kMost ? way : kMost - way;
+    const std::size_t context = way == 0               ? 7
+                                : way == 1             ? 1
+                                : way < 10             ? 2
+                                : way < kMost          ? 3
+                                : way == kMost         ? 4
+                                : way < kMost + kLeast ? 5
+                                                       : 6;
+    const std::uint32_t found = time_.decode(decoder, multiple * steps_[now_], context);
+    if (way == 1) {
+      extremes_[now_] = 0;
+    } else if ((way == 0 || way == kMost || way == kMost + kLeast) && ++extremes_[now_] > 3) {
+      steps_[now_] = found;
+      extremes_[now_] = 0;
+    }
+  }
+
+  SymbolModel still_{6}, multiples_{kMost + kLeast + 6};
+  IntegerModel time_{32, 9};
+  std::size_t now_ = 0, newest_ = 0;
+  std::array<std::uint32_t, 4> steps_{};
+  std::array<int, 4> extremes_{};
+};
+
+int distance(unsigned a, unsigned b) {
+  return a > b ? static_cast<int>(a - b) : static_cast<int>(b - a);
+}
+
+/// What a point's format keeps in its items.
+struct Layout {
+  bool has_time = false;
+  std::size_t color_offset = 0;  ///< in the raw record, 0 without
+  std::size_t extra_bytes = 0;
+  std::size_t record_bytes = 0;
+  std::size_t layers = 0;  ///< of the new formats
+};
+
+std::uint32_t u32_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
+  return static_cast<std::uint32_t>(load_bits(&bytes[offset], 4, false));
+}
+
+// What the first record of a chunk says, which is not packed.
+Point raw_point(std::span<const std::uint8_t> record, const Layout& layout) {
+  Point point{u32_at(record, 0), u32_at(record, 4), u32_at(record, 8), {}, record[15]};
+  for (std::size_t i = 0; i < 3 && layout.color_offset != 0; ++i) {
+    point.color[i] = static_cast<std::uint16_t>(load_bits(&record[layout.color_offset + 2 * i], 2, false));
+  }
+  return point;
+}
+
+/// A chunk of formats 0 to 5: all of a point, then the next one, from one stream.
+class PointwiseChunk {
+ public:
+  PointwiseChunk(std::span<const std::uint8_t> bytes, const Layout& layout)
+      : layout_(layout),
+        point_(raw_point(bytes, layout)),
+        flags_(bytes[14]),
+        user_(bytes[17]),
+        extra_(layout.extra_bytes, SymbolModel(256)),
+        decoder_(bytes.subspan(layout.record_bytes)) {}
+
+  const Point& first() const { return point_; }
+  const Point& next() {
+    const std::uint32_t changed = decoder_.symbol(changed_);
+    if ((changed & 32) != 0) {
+      flags_ = static_cast<std::uint8_t>(decoder_.symbol(flag_models_[flags_]));
+    }
+    const unsigned number = flags_ & 7U;
+    const unsigned returns = flags_ >> 3 & 7U;
+    // Which return of how many a point is, as one number: LASzip's table, which maps what cannot be as well.
+    static constexpr std::array<std::string_view, 8> kReturnMaps{
+        "fedcba98", "e0136aa9", "d1247bba", "c3458ccb", "b6789ddc", "aabcdeed", "9abcdefe", "89abcdef"};
+    const char digit = kReturnMaps[returns][number];
+    const auto map = static_cast<std::size_t>(digit <= '9' ? digit - '0' : digit - 'a' + 10);
+    if ((changed & 16) != 0) {
+      intensity_.decode(decoder_, 0, std::min<std::size_t>(map, 3));
+    }
+    if ((changed & 8) != 0) {
+      point_.mark = static_cast<std::uint8_t>(decoder_.symbol(classes_[point_.mark]));
+    }
+    if ((changed & 4) != 0) {
+      decoder_.symbol(angles_[flags_ >> 6 & 1]);
+    }
+    if ((changed & 2) != 0) {
+      user_ = static_cast<std::uint8_t>(decoder_.symbol(users_[user_]));
+    }
+    if ((changed & 1) != 0) {
+      source_.decode(decoder_, 0, 0);
+    }
+    place_.decode_xy(decoder_, map, returns == 1, &point_);
+    std::uint32_t& height = heights_[static_cast<std::size_t>(distance(returns, number))];
+    height = point_.z = place_.decode_z(decoder_, height, returns == 1);
+    if (layout_.has_time) {
+      time_.skip(decoder_);
+    }
+    if (layout_.color_offset != 0) {
+      color_.decode(decoder_, &point_.color);
+    }
+    for (SymbolModel& extra : extra_) {
+      decoder_.symbol(extra);
+    }
+    return point_;
+  }
+  std::size_t bytes() const { return layout_.record_bytes + decoder_.taken_bytes(); }
+
+ private:
+  Layout layout_;
+  Point point_;
+  std::uint8_t flags_, user_;
+  SymbolModel changed_{64};
+  std::vector<SymbolModel> flag_models_{256, SymbolModel(256)}, classes_{flag_models_}, users_{flag_models_};
+  std::vector<SymbolModel> angles_{2, SymbolModel(256)};
+  IntegerModel intensity_{16, 4}, source_{16, 1};
+  PlaceModel place_{};
+  TimeModel time_{};
+  ColorModel color_{};
+  std::vector<SymbolModel> extra_;
+  std::array<std::uint32_t, 8> heights_{};
+  ArithmeticDecoder decoder_;
+};
+
+/// A chunk of formats 6 to 10: layers of their own for x and y, heights, flags and colours; of the other layers
+/// nothing is wanted. Each of four scanners has its own models.
+class LayeredChunk {
+ public:
+  LayeredChunk(std::span<const std::uint8_t> bytes, const Layout& layout) : layout_(layout) {
+    ByteReader sizes(bytes, "a chunk of points");
+    sizes.skip(layout.record_bytes + 4);  // how many points it has is known already
+    std::uint64_t offset = layout.record_bytes + 4 + 4 * layout.layers;
+    for (std::size_t i = 0; i < layout.layers; ++i) {
+      const std::uint32_t size = sizes.u32();
+      if (size > bytes.size() - std::min<std::uint64_t>(offset, bytes.size())) {
+        refuse_damaged();
+      }
+      const auto layer = bytes.subspan(static_cast<std::size_t>(offset), size);
+      offset += size;
+      if (size != 0 && (i == kXy || i == kHeights || i == kFlags || i == kColors)) {
+        decoders_[i].emplace(layer);
+      }
+    }
+    bytes_ = static_cast<std::size_t>(offset);
+    scanner_ = unsigned{bytes[15]} >> 4U & 3U;
+    begin(scanner_, {raw_point(bytes, layout), unsigned{bytes[14]} & 15U, unsigned{bytes[14]} >> 4U, false});
+  }
+
+  const Point& first() const { return scanners_[scanner_]->last.point; }
+  const Point& next() {
+    if (!decoders_[kXy]) {
+      refuse_damaged();
+    }
+    ArithmeticDecoder& decoder = *decoders_[kXy];
+    Scanner* scanner = scanners_[scanner_].get();
+    const Last& before = scanner->last;
+    const std::size_t context = (before.number == 1 ? 1U : 0U) | (before.number >= before.returns ? 2U : 0U) |
+                                (before.time_changed ? 4U : 0U);
+    const std::uint32_t changed = decoder.symbol(scanner->changed[context]);
+    if ((changed & 64) != 0) {
+      const std::size_t other = (scanner_ + decoder.symbol(scanner->scanner) + 1) & 3;
+      if (!scanners_[other]) {
+        begin(other, before);
+      }
+      scanner_ = other;
+      scanner = scanners_[other].get();
+    }
+    Last& last = scanner->last;
+    const bool time_changed = (changed & 16) != 0;
+    if ((changed & 4) != 0) {
+      last.returns = decoder.symbol(scanner->returns[last.returns]);
+    }
+    if ((changed & 3) == 3) {
+      last.number = time_changed ? decoder.symbol(scanner->numbers[last.number])
+                                 : (last.number + decoder.symbol(scanner->number_steps) + 2) & 15U;
+    } else {
+      static constexpr std::array<std::uint32_t, 3> kSteps{0, 1, 15};
+      last.number = (last.number + kSteps[changed & 3]) & 15U;
+    }
+    const bool is_single = last.returns == 1;
+    scanner->place.decode_xy(decoder, 2 * return_map(last.returns, last.number) + (time_changed ? 1 : 0),
+                             is_single, &last.point);
+    if (decoders_[kHeights]) {
+      const auto level = static_cast<std::size_t>(std::min(distance(last.returns, last.number), 7));
+      std::uint32_t& height = scanner->heights[level];
+      height = last.point.z = scanner->place.decode_z(*decoders_[kHeights], height, is_single);
+    }
+    if (decoders_[kFlags]) {
+      // The record's byte is classification flags (4 bits), scanner (2), direction, edge; the layer's has no scanner.
+      const unsigned flags = (last.point.mark & 15U) | (last.point.mark >> 2 & 0x30U);
+      const std::uint32_t now = decoders_[kFlags]->symbol(scanner->flags[flags]);
+      last.point.mark = static_cast<std::uint8_t>((now & 15U) | (now & 0x30U) << 2);
+    }
+    if (decoders_[kColors] && layout_.color_offset != 0) {
+      scanner->color.decode(*decoders_[kColors], &last.point.color);
+    }
+    last.time_changed = time_changed;
+    return last.point;
+  }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  enum : std::size_t { kXy = 0, kHeights = 1, kFlags = 3, kColors = 9, kLayers = 10 };
+  struct Last {
+    Point point;
+    std::uint32_t number = 0, returns = 0;  ///< 0 to 15
+    bool time_changed = false;
+  };
+  struct Scanner {
+    Last last;
+    std::vector<SymbolModel> changed{8, SymbolModel(128)}, returns{16, SymbolModel(16)}, numbers{returns},
+        flags{64, SymbolModel(64)};
+    SymbolModel scanner{3}, number_steps{13};
+    PlaceModel place{};
+    ColorModel color{};
+    std::array<std::uint32_t, 8> heights{};
+  };
+
+  void begin(std::size_t scanner, const Last& last) {
+    scanners_[scanner] = std::make_unique<Scanner>();
+    scanners_[scanner]->last = last;
+    scanners_[scanner]->last.time_changed = false;
+    scanners_[scanner]->heights.fill(last.point.z);
+  }
+  // LASzip's six contexts of a return among others.
+  static std::size_t return_map(unsigned returns, unsigned number) {
+    static constexpr std::array<std::string_view, 16> kMaps{
+        "0123453445555555", "1013333333333333", "2124444444433333", "3345444444444444",
+        "4344544444444444", "5344454444444444", "3344445444444444", "4344444544444444",
+        "4344444454444444", "5344444445444444", "5344444444544444", "5334444444455444",
+        "5334444444455544", "5334444444445554", "5334444444444555", "5334444444444455"};
+    return static_cast<std::size_t>(kMaps[returns][number] - '0');
+  }
+
+  Layout layout_;
+  std::array<std::optional<ArithmeticDecoder>, kLayers> decoders_{};
+  std::array<std::unique_ptr<Scanner>, 4> scanners_{};
+  std::size_t scanner_ = 0;
+  std::size_t bytes_ = 0;
+};
+
+struct Packing {
+  bool is_layered = false;
+  bool is_chunked = true;
+  std::uint32_t chunk_points = 0;  ///< all ones where the table of chunks says
+  Layout layout{};
+};
+
+[[noreturn]] void refuse_item(unsigned type, unsigned version) {
+  throw InputError("item " + std::to_string(type) + " of version " + std::to_string(version) +
+                   " in its compressed points is not read (waveforms, or LASzip before 2.0)");
+}
+
+// The items of a point, in their order; each of the new formats has layers of its own.
+Layout read_items(ByteReader& record) {
+  enum Item : unsigned {
+    kByte,
+    kPoint10 = 6,
+    kTime11,
+    kColor12,
+    kPoint14 = 10,
+    kColor14,
+    kColorNir14,
+    kWave14,
+    kByte14
+  };
+  Layout layout;
+  const unsigned count = record.u16();
+  for (unsigned i = 0; i < count; ++i) {
+    const unsigned type = record.u16();
+    const std::size_t size = record.u16();
+    const unsigned version = record.u16();
+    const bool is_old = type == kByte || (type >= kPoint10 && type <= kColor12);
+    const bool is_new = type >= kPoint14 && type <= kByte14;
+    const bool is_first = type == kPoint10 || type == kPoint14;
+    if ((!is_old || version != 2) && (!is_new || version < 2 || version > 4)) {
+      refuse_item(type, version);
+    }
+    const std::size_t least = type == kPoint10 ? 20 : type == kPoint14 ? 30 : type == kTime11 ? 8 : 6;
+    if (is_first != (i == 0) || (type != kByte && type != kByte14 && size < least)) {
+      refuse_damaged();
+    }
+    if (type == kColor12 || type == kColor14 || type == kColorNir14) {
+      layout.color_offset = layout.record_bytes;
+    }
+    layout.has_time = layout.has_time || type == kTime11;
+    layout.extra_bytes += type == kByte ? size : 0;
+    layout.layers += type == kPoint14 ? 9 : type == kColorNir14 ? 2 : type == kByte14 ? size : is_new ? 1 : 0;
+    layout.record_bytes += size;
+  }
+  return layout;
+}
+
+Packing read_packing(const SharedBytes& file, const LasPoints& points) {
+  ByteReader header(file.bytes, "the header");
+  header.skip(94);
+  const std::uint64_t header_bytes = header.u16();
+  header.skip(4);
+  const std::uint32_t records = header.u32();
+  ByteReader all(file.bytes, "the records before the points");
+  all.skip(header_bytes);
+  for (std::uint32_t i = 0; i < records && all.offset() < points.first_offset; ++i) {
+    all.skip(18);
+    const unsigned id = all.u16();
+    const std::uint16_t size = all.u16();
+    all.skip(32);
+    const std::uint64_t behind = all.offset() + size;
+    if (id == 22204) {
+      Packing packing;
+      const unsigned compressor = all.u16();
+      const unsigned coder = all.u16();
+      if (compressor < 1 || compressor > 3 || coder != 0) {
+        throw InputError("compressor " + std::to_string(compressor) + " with coder " + std::to_string(coder) +
+                         " of its points is not read");
+      }
+      packing.is_layered = compressor == 3;
+      packing.is_chunked = compressor != 1;
+      all.skip(8);
+      packing.chunk_points = all.u32();
+      all.skip(16);
+      packing.layout = read_items(all);
+      if (packing.layout.record_bytes != points.record_bytes ||
+          packing.is_layered != (packing.layout.layers != 0)) {
+        refuse_damaged();
+      }
+      return packing;
+    }
+    all.skip(static_cast<std::size_t>(behind - all.offset()));
+  }
+  throw InputError("its points are compressed, but no record says how");
+}
+
+// How many points each chunk has, from the table behind them.
+std::vector<std::uint32_t> read_chunk_table(const SharedBytes& file, std::uint64_t table_offset) {
+  const std::uint64_t size = file.bytes.size();
+  if (table_offset == UINT64_MAX && size >= 8) {  // written to a pipe: the end says where
+    table_offset = load_bits(&file.bytes[static_cast<std::size_t>(size - 8)], 8, false);
+  }
+  if (table_offset > size || size - table_offset < 8) {
+    refuse_damaged();
+  }
+  ByteReader table(file.bytes.subspan(static_cast<std::size_t>(table_offset)), "the table of chunks",
+                   table_offset);
+  table.skip(4);
+  const std::uint32_t count = table.u32();
+  if (count > size / 16) {  // no chunk takes less than its first point
+    refuse_damaged();
+  }
+  ArithmeticDecoder decoder(file.bytes.subspan(static_cast<std::size_t>(table_offset) + 8));
+  IntegerModel model(32, 2);
+  std::vector<std::uint32_t> counts(count);
+  std::uint32_t bytes = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    counts[i] = model.decode(decoder, i == 0 ? 0 : counts[i - 1], 0);
+    bytes = model.decode(decoder, bytes, 1);
+  }
+  return counts;
+}
+
+void put_little(std::vector<std::uint8_t>* out, std::uint32_t value, int bytes) {
+  for (int i = 0; i < bytes; ++i) {
+    out->push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+  }
+}
+
+void put_point(std::vector<std::uint8_t>* out, const Point& point, bool has_color) {
+  for (const std::uint32_t axis : {point.x, point.y, point.z}) {
+    put_little(out, axis, 4);
+  }
+  put_little(out, std::uint32_t{point.mark} << 24, 4);
+  for (std::size_t i = 0; i < 3 && has_color; ++i) {
+    put_little(out, point.color[i], 2);
+  }
+}
+
+/// The records of `points` points from the chunk that begins at `bytes`. @return how many bytes it took
+template <class Chunk>
+std::size_t unpack_chunk(std::span<const std::uint8_t> bytes, const Layout& layout, std::uint64_t points,
+                         bool has_color, std::vector<std::uint8_t>* out) {
+  if (bytes.size() < layout.record_bytes) {
+    refuse_damaged();
+  }
+  Chunk chunk(bytes, layout);
+  put_point(out, chunk.first(), has_color);
+  for (std::uint64_t i = 1; i < points; ++i) {
+    put_point(out, chunk.next(), has_color);
+  }
+  return chunk.bytes();
+}
+
+}  // namespace
+
+SharedBytes unpack_laz(const SharedBytes& file, const LasPoints& points, bool has_color,
+                       const Progress& progress) {
+  const Packing packing = read_packing(file, points);
+  const std::uint64_t record_bytes = has_color ? kColoredPointBytes : kPlainPointBytes;
+  constexpr std::uint64_t kBelievedBytes = std::uint64_t{256} << 20;
+  constexpr std::uint64_t kBelievedRatio = 100;
+  const std::uint64_t most_bytes = std::max(kBelievedBytes, kBelievedRatio * file.bytes.size());
+  if (points.count > most_bytes / record_bytes) {
+    throw InputError("the header counts " + std::to_string(points.count) + " points in " +
+                     std::to_string(file.bytes.size()) + " bytes, more than they are believed to hold");
+  }
+  std::uint64_t offset = points.first_offset;
+  std::vector<std::uint32_t> table;
+  if (packing.is_chunked) {
+    ByteReader start(file.bytes, "where the table of chunks is");
+    start.skip(static_cast<std::size_t>(offset));
+    const std::uint64_t table_offset = start.u64();
+    offset += 8;
+    if (packing.chunk_points == UINT32_MAX) {
+      table = read_chunk_table(file, table_offset);
+    } else if (packing.chunk_points == 0) {
+      refuse_damaged();
+    }
+  }
+  auto out = std::make_shared<std::vector<std::uint8_t>>();
+  out->reserve(static_cast<std::size_t>(points.count * record_bytes));
+  ProgressMeter meter(progress, file.bytes.size());
+  std::uint64_t left = points.count;
+  for (std::size_t i = 0; left != 0; ++i) {
+    const bool is_in_table = packing.is_chunked && packing.chunk_points == UINT32_MAX;
+    const std::uint64_t chunk = is_in_table          ? (i < table.size() ? table[i] : 0)
+                                : packing.is_chunked ? packing.chunk_points
+                                                     : left;
+    if (chunk == 0 || chunk > left + (is_in_table ? 0 : chunk) || offset > file.bytes.size()) {
+      refuse_damaged();
+    }
+    const std::uint64_t count = std::min(chunk, left);
+    const auto bytes = file.bytes.subspan(static_cast<std::size_t>(offset));
+    offset += packing.is_layered
+                  ? unpack_chunk<LayeredChunk>(bytes, packing.layout, count, has_color, out.get())
+                  : unpack_chunk<PointwiseChunk>(bytes, packing.layout, count, has_color, out.get());
+    left -= count;
+    meter.at(static_cast<std::size_t>(offset));
+  }
+  return {*out, out};
+}
+
+}  // namespace thimble::tools
