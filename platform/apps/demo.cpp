@@ -11,8 +11,8 @@
 //
 // A scene that was baked for effects (scene_light.h) turns in their light where frames by the brick map allow it; what
 // these leave out (edges) comes when it stands still.
-// Else it stands still at first: while it moves, or while a rate is held, frames are fast and without effects; as
-// soon as it does not, one is drawn with them, and then nothing until it moves again.
+// Else it stands still at first: while it moves, or while a rate is held, frames are fast and without effects; the first,
+// and one as soon as it does not move, is drawn with them, and then nothing until it moves again.
 //
 // A frame is drawn in bands of a few rows. No picture is in RAM, but for the one that is refined while a rate
 // is held, and those that ink on a display of one bit is made from; nothing but the arena is used.
@@ -547,9 +547,11 @@ void tell_crew(const Demo& /*demo*/) {}
   demo->changed = true;
 }
 
-/// Whether the next frame is drawn with light: any, where that is fast and no rate is held; else once nothing moves.
+/// Whether the next frame is drawn with light: the first, and any where that is fast, unless a rate is held; else once nothing
+/// moves.
 bool lights_next(const Demo& demo) {
-  return kCanLight && demo.lights && !demo.builds && (!demo.changed || (demo.light.is_fast && !demo.holds));
+  return kCanLight && demo.lights && !demo.builds &&
+         (!demo.changed || ((demo.light.is_fast || demo.frame == 0) && !demo.holds));
 }
 
 /// Whether to continue.
@@ -610,7 +612,7 @@ bool lights_next(const Demo& demo) {
 [[gnu::noinline]] Status draw_picture(Demo* demo, bool lights, uint32_t* crc) {
   demo->is_lit = lights;
   if constexpr (kCanLight) {
-    demo->is_whole = lights && (!demo->changed || demo->light.moves_whole());
+    demo->is_whole = lights && (!demo->changed || !demo->light.is_fast || demo->light.moves_whole());
   }
   return kCanHold && demo->holds && !(kCanLight && lights) ? draw_held(demo, crc) : draw_frame(demo, crc);
 }
@@ -733,6 +735,10 @@ int demo() {
     put("instructions of a lit frame: ", demo->lit_instructions, "\n");
   }
   tell_crew(*demo);
+#if defined(THIMBLE_HOLDS)
+  while (port::holding() && obey(demo)) {
+  }
+#endif
   return 0;
 }
 
