@@ -146,6 +146,7 @@ export FRAMES EFFECTS BAKE SHOT CRC PLACE
 firmware: deps-boards ## Build an image for BOARD=NAME|all, of APP=demo with SCENE=... (build/firmware/NAME)
 	@if [ -n "$(SCENE)" ]; then $(MAKE) --no-print-directory all; fi
 	@sh platform/build.sh "$(BOARD)" "$(APP)" "$(SCENE)"
+emulate: export HOLD = $(if $(SHOT),$(if $(FRAMES),true,false),false)
 emulate: firmware ## Run that image under QEMU: the UART on this terminal, the exit status passed on
 	@sh platform/emulate.sh "$(BOARD)" "$(APP)" $(QEMU_ARGS)
 # All boards, unless one is named.

@@ -3,7 +3,7 @@
 #   emulate.sh BOARD APP [QEMU ARGUMENTS...]      (-display gtk shows the display)
 # In the environment: FLASHED=yes runs the image that `make flash` writes, which ends by standing still; PLACE=ram the image for RAM
 # where the board has one (BOARD_UF2). SHOT=PICTURE asks the demonstration for its picture over the UART, writes it (.png, .ppm,
-# .pgm, .pbm) and ends; CRC=1 shows the lines that the demonstration writes for each frame where the board has no display.
+# .pgm, .pbm) and ends, with FRAMES=N that of frame N, for which the image was built (HOLD); CRC=1 shows the lines that the demonstration writes for each frame where the board has no display.
 # -icount: time is counted in instructions, so every run is the same.
 set -eu
 cd "$(dirname "$0")/.."
@@ -49,7 +49,7 @@ if [ -n "${SHOT:-}" ]; then
   (run "$@") <"$folder/keys" >"$folder/log" 2>"$folder/noise" &
   machine=$!
   exec 3>"$folder/keys"
-  # What is sent before the UART is on is lost, so the request is repeated until the picture begins to come: ten minutes at most.
+  # What is sent before the UART is on is lost, so the request is repeated until the picture begins to come, as soon as its frame is drawn: ten minutes at most.
   try=0
   until build/release/thimble uart-picture "$folder/log" -o "$SHOT" 2>"$folder/why"; do
     try=$((try + 1))
@@ -60,7 +60,7 @@ if [ -n "${SHOT:-}" ]; then
       exit 1
     fi
     # Asked once a second: a picture is more than the UART sends at once.
-    if [ $((try % 5)) = 1 ] && ! grep -aqs '^P[56]' "$folder/log"; then
+    if [ $((try % 5)) = 1 ] && { [ "${FRAMES:-0}" = 0 ] || grep -aqs '^holding$' "$folder/log"; } && ! grep -aqs '^P[56]' "$folder/log"; then
       printf p >&3 2>/dev/null || true
     fi
     sleep 0.2

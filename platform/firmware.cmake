@@ -58,7 +58,7 @@ target_compile_options(thimble_firmware_flags INTERFACE ${THIMBLE_ARCH_FLAGS}
   -fno-asynchronous-unwind-tables -ffunction-sections -fdata-sections
   # The bound of the stack is computed from the call graph; without -fno-ipa-icf functions vanish from it.
   -fcallgraph-info=su,da -fno-ipa-icf)
-target_compile_definitions(thimble_firmware_flags INTERFACE $<$<BOOL:${BOARD_CORES}>:THIMBLE_CORES=${BOARD_CORES}>
+target_compile_definitions(thimble_firmware_flags INTERFACE $<$<BOOL:${THIMBLE_HOLD}>:THIMBLE_HOLDS> $<$<BOOL:${BOARD_CORES}>:THIMBLE_CORES=${BOARD_CORES}>
   $<$<BOOL:${BOARD_BAND_BUFFERS}>:THIMBLE_BAND_BUFFERS=${BOARD_BAND_BUFFERS}> $<$<BOOL:${BOARD_FLUSHES_AGAIN}>:THIMBLE_FLUSHES_AGAIN>)
 # The core for speed, the rest for size. The demonstration with the core for size, too, takes 1.26 times the
 # instructions a frame on a Cortex-M3, 1.04 on a Cortex-M0 and 1.47 on RV32, for 12 to 18 KB less flash.
@@ -72,8 +72,12 @@ file(GLOB sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/arch/common/*.cpp
   ${THIMBLE_PLATFORM_DIR}/arch/${BOARD_ARCH}/*.cpp ${THIMBLE_PLATFORM_DIR}/drivers/*.cpp)
 list(FILTER sources EXCLUDE REGEX "/common/main\\.cpp$")
 add_library(thimble_port STATIC ${sources} ${generated}/scene.cpp)
-file(GLOB board_sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME}/*.cpp
-  ${THIMBLE_PLATFORM_DIR}/chips/${BOARD_CHIP}/*.cpp)
+set(board_folders ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})
+foreach(folder IN LISTS BOARD_CHIP)
+  list(APPEND board_folders ${THIMBLE_PLATFORM_DIR}/chips/${folder})
+endforeach()
+list(TRANSFORM board_folders APPEND /*.cpp OUTPUT_VARIABLE board_sources)
+file(GLOB board_sources CONFIGURE_DEPENDS ${board_sources})
 add_library(thimble_board OBJECT ${board_sources})
 include(${THIMBLE_PLATFORM_DIR}/apps.cmake)
 thimble_list_app_sources(sources)
@@ -99,8 +103,7 @@ foreach(part thimble_port thimble_board thimble_apps)
   target_link_libraries(${part} PRIVATE thimble thimble_firmware_flags thimble_warnings)
 endforeach()
 target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)
-target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch
-  ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME} ${THIMBLE_PLATFORM_DIR}/chips/${BOARD_CHIP})
+target_include_directories(thimble_board PRIVATE ${THIMBLE_PLATFORM_DIR}/arch ${board_folders})
 target_include_directories(thimble_apps PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 # Those that draw a scene with light (apps/scene_light.h).
 set_source_files_properties(${THIMBLE_PLATFORM_DIR}/apps/demo.cpp ${THIMBLE_PLATFORM_DIR}/apps/bench.cpp

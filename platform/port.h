@@ -160,6 +160,10 @@ void write(ConstBytes bytes);
 /// Whether to draw another frame: false when the user closed the window, or the number of frames that was
 /// asked for has been drawn (`frames` = those drawn so far).
 bool running(uint32_t frames);
+#if defined(THIMBLE_HOLDS)
+/// True: an image that waits after its last frame, until a `q` is typed, answers what else is (platform/emulate.sh).
+bool holding();
+#endif
 
 /// Instructions executed so far, where the place can count them (an emulator with -icount, a counter of the
 /// core); modulo 2^32, 0 always where it cannot.

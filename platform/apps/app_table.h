@@ -15,6 +15,8 @@ struct Application {
   bool takes_pointer = false;
   bool asks_port =
       false;  ///< whether it draws frames that the port may draw in the core's place (port::draw)
+  const char* keys =
+      "";  ///< what it takes over the UART, lines for a person; w, a, s, d as capitals, since they are buttons
 };
 
 /// All of them; may be empty.

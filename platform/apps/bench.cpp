@@ -18,6 +18,7 @@
 #include "apps/band_turns.h"
 #include "apps/dda_baseline.h"
 #include "apps/demo_view.h"
+#include "apps/ink_frame.h"
 #include "apps/place.h"
 #include "apps/scene_light.h"
 #include "apps/shown_scene.h"
@@ -49,6 +50,7 @@ struct Bench : Placed {
   Shading shading;
   Camera camera;
   Bands bands;
+  [[no_unique_address]] InkFrame ink;
   BitWorld grid;  ///< of the baseline; without bits where there is no room
   uint8_t face_grays[6] = {};
   bool counts_instructions = false;
@@ -75,9 +77,10 @@ void tell(const char* name, uint64_t value) {
   put(name, ",", value, "\n");
 }
 
-Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* counts) {
+Status draw(const Bench& bench, Engine engine, const Shading& shading, const Band& band,
+            RenderCounts* counts) {
   if (engine == Engine::kTree) {
-    return render_band(bench.shown.scene.tree(), bench.camera, bench.shading, band, counts);
+    return render_band(bench.shown.scene.tree(), bench.camera, shading, band, counts);
   }
   if constexpr (kCanLight) {
     if (engine == Engine::kLit) {
@@ -92,7 +95,16 @@ Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* c
     }
     return Status::kOk;
   }
-  return render_band(bench.shown.scene.tree(), bench.shown.map, bench.camera, bench.shading, band, counts);
+  return render_band(bench.shown.scene.tree(), bench.shown.map, bench.camera, shading, band, counts);
+}
+
+/// What bands of ink are taken from: with light the depths come by the brick map.
+[[gnu::noinline]] Status draw_ink(Bench* bench, Engine engine, RenderCounts* counts) {
+  const Engine plain = engine == Engine::kLit ? Engine::kBrickMap : engine;
+  return bench->ink.draw(
+      bench->camera, bench->shown.scene.tree().bounds(),
+      [&](const Band& band) { return draw(*bench, engine, bench->shading, band, counts); },
+      [&](const Shading& depths, const Band& band) { return draw(*bench, plain, depths, band, nullptr); });
 }
 
 /// One frame from its camera to its last flush. With `crc` that of its bytes is computed too, and with
@@ -102,9 +114,13 @@ Status draw(const Bench& bench, Engine engine, const Band& band, RenderCounts* c
   const port::Display& screen = display();
   Status status = view_at(bench->orbit, bench->shown.scene.tree(), frame, {}, screen.width_px,
                           screen.height_px, &bench->camera);
+  if (bench->ink.is_there && status == Status::kOk) {
+    status = draw_ink(bench, engine, counts);
+  }
   for (int32_t y = 0; y < screen.height_px && status == Status::kOk; y += bench->bands.rows) {
     const Band band = bench->bands.next(y, screen.height_px);
-    status = draw(*bench, engine, band, counts);
+    status =
+        bench->ink.is_there ? bench->ink.store(band) : draw(*bench, engine, bench->shading, band, counts);
     if (status == Status::kOk) {
       bench->bands.send(band);
       if (crc != nullptr) {
@@ -275,6 +291,7 @@ int bench() {
     return refuse("the arena is too small");
   }
   bench->arena = arena;
+  bench->ink.take(&bench->arena);
   if (const char* wrong = open_scene(&bench->shown)) {
     return refuse(wrong);
   }

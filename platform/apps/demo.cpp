@@ -11,8 +11,8 @@
 //
 // A scene that was baked for effects (scene_light.h) turns in their light where frames by the brick map allow it; what
 // these leave out (edges) comes when it stands still.
-// Else it stands still at first: while it moves, or while a rate is held, frames are fast and without effects; as
-// soon as it does not, one is drawn with them, and then nothing until it moves again.
+// Else it stands still at first: while it moves, or while a rate is held, frames are fast and without effects; the first,
+// and one as soon as it does not move, is drawn with them, and then nothing until it moves again.
 //
 // A frame is drawn in bands of a few rows. No picture is in RAM, but for the one that is refined while a rate
 // is held, and those that ink on a display of one bit is made from; nothing but the arena is used.
@@ -21,6 +21,7 @@
 #include "apps/band_turns.h"
 #include "apps/demo_view.h"
 #include "apps/held_frame.h"
+#include "apps/ink_frame.h"
 #include "apps/place.h"
 #include "apps/scene_light.h"
 #include "apps/shown_scene.h"
@@ -28,7 +29,6 @@
 #include "apps/text.h"
 #include "port.h"
 #include "thimble/base/memory.h"
-#include "thimble/picture/ink.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/octree.h"
 
@@ -69,28 +69,6 @@ struct Crew {
 };
 #endif
 
-#if defined(THIMBLE_INK)
-/// What frames for a display of one bit are made from, where the arena holds that.
-struct Ink {
-  InkPicture picture;
-  bool is_there = false;
-
-  void take(Arena* arena) {
-    const port::Display& screen = display();
-    const size_t bytes = ink_bytes(screen.width_px, screen.height_px);
-    is_there =
-        bits_per_pixel(screen.format) == 1 && bytes <= arena->free_bytes() / 2 &&
-        InkPicture::make(screen.width_px, screen.height_px, arena->take(bytes), &picture) == Status::kOk;
-  }
-};
-#else
-struct Ink {
-  static constexpr bool is_there = false;
-
-  void take(Arena* /*arena*/) {}
-};
-#endif
-
 struct Demo : Placed {
   Arena arena{port::arena()};
   ShownScene shown;
@@ -104,7 +82,7 @@ struct Demo : Placed {
   bool turns = true;
   bool tells_crc = false;
   [[no_unique_address]] Crew crew;
-  [[no_unique_address]] Ink ink;
+  [[no_unique_address]] InkFrame ink;
 
   // Holding a rate of frames.
   HeldFrame* held = nullptr;  ///< once it is allocated
@@ -180,11 +158,9 @@ Status draw_plain(const Demo& demo, const Shading& shading, const Band& band,
 }
 
 Status draw(const Demo& demo, const Band& band) {
-#if defined(THIMBLE_INK)
   if (demo.ink.is_there) {
-    return demo.ink.picture.store(band);
+    return demo.ink.store(band);
   }
-#endif
   if constexpr (kCanLight) {
     if (demo.is_lit) {
       return draw_lit_scene(demo.shown, demo.camera, demo.shading, demo.light, band, !demo.is_whole);
@@ -193,36 +169,18 @@ Status draw(const Demo& demo, const Band& band) {
   return draw_plain(demo, demo.shading, band);
 }
 
-#if defined(THIMBLE_INK)
 /// What bands of ink are taken from. Counted, so that the core draws it: what a port draws is what a display is sent.
 [[gnu::noinline]] Status make_ink(Demo* demo) {
-  InkPicture& ink = demo->ink.picture;
   RenderCounts counts;
-  Status status = Status::kOk;
-  if (kCanLight && demo->is_lit) {
-    status =
-        draw_lit_scene(demo->shown, demo->camera, demo->shading, demo->light, ink.tones(), !demo->is_whole);
-  } else {
-    status = draw_plain(*demo, demo->shading, ink.tones(), &counts);
-  }
-  if (status == Status::kOk) {
-    Shading depths;
-    const DepthRange range =
-        depth_range(demo->camera, demo->builds ? demo->pool.bounds() : demo->shown.scene.tree().bounds());
-    depths.near_q8 = range.near_q8;
-    depths.far_q8 = range.far_q8;
-    status = draw_plain(*demo, depths, ink.depths(), &counts);
-  }
-  if (status == Status::kOk) {
-    ink.finish();
-  }
-  return status;
+  return demo->ink.draw(
+      demo->camera, demo->builds ? demo->pool.bounds() : demo->shown.scene.tree().bounds(),
+      [&](const Band& band) {
+        return kCanLight && demo->is_lit ? draw_lit_scene(demo->shown, demo->camera, demo->shading,
+                                                          demo->light, band, !demo->is_whole)
+                                         : draw_plain(*demo, demo->shading, band, &counts);
+      },
+      [&](const Shading& depths, const Band& band) { return draw_plain(*demo, depths, band, &counts); });
 }
-#else
-Status make_ink(Demo* /*demo*/) {
-  return Status::kOk;
-}
-#endif
 
 /// The rows of the picture from `y` on that the band's memory holds, those before `end`.
 [[gnu::noinline]] Band band_at(const Demo& demo, int32_t y, int32_t end) {
@@ -589,9 +547,11 @@ void tell_crew(const Demo& /*demo*/) {}
   demo->changed = true;
 }
 
-/// Whether the next frame is drawn with light: any, where that is fast and no rate is held; else once nothing moves.
+/// Whether the next frame is drawn with light: the first, and any where that is fast, unless a rate is held; else once nothing
+/// moves.
 bool lights_next(const Demo& demo) {
-  return kCanLight && demo.lights && !demo.builds && (!demo.changed || (demo.light.is_fast && !demo.holds));
+  return kCanLight && demo.lights && !demo.builds &&
+         (!demo.changed || ((demo.light.is_fast || demo.frame == 0) && !demo.holds));
 }
 
 /// Whether to continue.
@@ -652,7 +612,7 @@ bool lights_next(const Demo& demo) {
 [[gnu::noinline]] Status draw_picture(Demo* demo, bool lights, uint32_t* crc) {
   demo->is_lit = lights;
   if constexpr (kCanLight) {
-    demo->is_whole = lights && (!demo->changed || demo->light.moves_whole());
+    demo->is_whole = lights && (!demo->changed || !demo->light.is_fast || demo->light.moves_whole());
   }
   return kCanHold && demo->holds && !(kCanLight && lights) ? draw_held(demo, crc) : draw_frame(demo, crc);
 }
@@ -775,6 +735,10 @@ int demo() {
     put("instructions of a lit frame: ", demo->lit_instructions, "\n");
   }
   tell_crew(*demo);
+#if defined(THIMBLE_HOLDS)
+  while (port::holding() && obey(demo)) {
+  }
+#endif
   return 0;
 }
 

@@ -41,12 +41,16 @@ Levels levels_of(const uint32_t (&pixels)[kTones]) {
     }
     return (s * divide(s << 8, n)) >> 8;  // below 2^33 * 2^13
   };
+  uint64_t bright[kTones];
+  for (int white = 0; white < kTones; ++white) {
+    bright[white] = weight(white, kTones);
+  }
   Levels best;
   uint64_t most = 0;
   for (int checker = 0; checker < kTones; ++checker) {
     const uint64_t dark = weight(0, checker);
     for (int white = checker; white < kTones; ++white) {
-      const uint64_t all = dark + weight(checker, white) + weight(white, kTones);
+      const uint64_t all = dark + weight(checker, white) + bright[white];
       if (all > most) {
         most = all;
         best = {checker, white};
@@ -87,6 +91,11 @@ uint8_t commonest(const Near& near) {
   return counts[kWhite] > counts[best] ? kWhite : best;
 }
 
+// Whether a tone, and those on both sides of it, are `tone`.
+bool are_all(uint8_t tone, const uint8_t* middle) {
+  return middle[0] == tone && middle[-1] == tone && middle[1] == tone;
+}
+
 int distance(int one, int other) {
   return one < other ? other - one : one - other;
 }
@@ -121,6 +130,12 @@ void InkPicture::pass(Filter filter) {
     __builtin_memcpy(here, row, width);
     for (int32_t x = 0; x < width_px_; ++x) {
       if (depth[x] == 0) {
+        continue;
+      }
+      // Either filter leaves a tone among its like: most of a face.
+      const bool inside = x > 0 && x + 1 < width_px_ && y > 0 && y + 1 < height_px_;
+      if (inside && are_all(here[x], here + x) && are_all(here[x], above + x) &&
+          are_all(here[x], row + width + x)) {
         continue;
       }
       Near near;

@@ -78,7 +78,7 @@ EFFECTS=$effects HOLD=true FRAMES=$frames sh platform/build.sh "$board" "demo;fa
 }
 # QEMU magnifies the OLED.
 scale=1
-[ "$(fact DISPLAY)" = oled ] && scale=4
+[ "$(fact DISPLAY)" = oled ] && [ -z "$(fact EMULATOR)" ] && scale=4
 start demo ""
 if wait_for '^holding'; then
   if shows "$work/display.ppm" "$work/display.check.log" --effects "$effects" --frames $frames; then

@@ -31,21 +31,23 @@ elif ! build/release/thimble sim demo --effects depth-cue --board $board --displ
 else
   say "the picture over the UART is the simulator's"
 fi
-# In colour: 16 bits a pixel, so that red and blue are told apart.
+# In colour: 16 bits a pixel, so that red and blue are told apart. It turns, and frame 3 is wanted.
 board=mps2-an500
 rm -f "$picture"
-if ! EFFECTS=depth-cue sh platform/build.sh $board demo demo >"$work/build.log" 2>&1; then
+export FRAMES=3
+if ! HOLD=true EFFECTS=none sh platform/build.sh $board demo demo >"$work/build.log" 2>&1; then
   tail -n 5 "$work/build.log" >&2
   fail "does not build"
 elif ! SHOT=$picture timeout 240 sh platform/emulate.sh $board demo >"$work/shot.log" 2>&1; then
   tail -n 3 "$work/shot.log" >&2
   fail "no picture came over the UART"
-elif ! build/release/thimble sim demo --effects depth-cue --board $board --display none --frames 3 --check "$picture" --quiet \
+elif ! build/release/thimble sim demo --effects none --board $board --display none --frames 3 --check "$picture" --quiet \
   >"$work/check.log" 2>&1; then
-  fail "the picture in colour is not the simulator's ($(tail -n 1 "$work/check.log"))"
+  fail "the picture of frame 3, in colour, is not the simulator's ($(tail -n 1 "$work/check.log"))"
 else
-  say "the picture over the UART is the simulator's, in colour"
+  say "the picture of frame 3 over the UART is the simulator's, in colour"
 fi
+unset FRAMES
 board=microbit
 if SHOT=$picture sh platform/emulate.sh $board bench >/dev/null 2>"$work/why" || ! grep -q 'demo' "$work/why"; then
   fail "SHOT of another application: $(cat "$work/why")"

@@ -28,7 +28,7 @@ lint() {
   cmake -DROOT="$PWD" -DBOARD="$board" -DOUT="$work/$board" -P tests/boards/facts.cmake
   for file; do
     echo "$file -- --target=$target -std=c++20 -Wreserved-identifier -Werror -ffreestanding -fno-exceptions -fno-rtti -Iinclude -Iplatform -Iplatform/arch" \
-      "-Iplatform/boards/$board -Iplatform/chips/$(fact CHIP) -I$work/$board -DTHIMBLE_APPLICATION=demo$cores" >>"$jobs"
+      "-Iplatform/boards/$board $(printf " -Iplatform/chips/%s" $(fact CHIP)) -I$work/$board -DTHIMBLE_APPLICATION=demo$cores" >>"$jobs"
   done
 }
 lint lm3s6965evb platform/arch/common/*.cpp platform/arch/cortex-m/*.cpp platform/drivers/*.cpp
@@ -36,7 +36,7 @@ lint sifive_e platform/arch/riscv/*.cpp
 lint raspi0 platform/arch/arm11/*.cpp
 lint gba platform/arch/arm7/*.cpp
 # The demonstration as two cores draw it, too.
-lint pico platform/chips/rp2040/*.cpp platform/apps/demo.cpp
+lint pico platform/chips/rp2040/*.cpp platform/chips/rp2040/lcd/*.cpp platform/apps/demo.cpp
 for folder in platform/boards/*/; do
   for file in "$folder"*.cpp; do
     [ ! -f "$file" ] || lint "$(basename "$folder")" "$file"

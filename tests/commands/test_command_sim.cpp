@@ -3,9 +3,12 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "apps/app_table.h"
 #include "support/pty.h"
 #include "support/run_command.h"
 
@@ -187,6 +190,8 @@ TEST_CASE(
   CHECK(pty.wait_for("RAM "));
   CHECK(pty.wait_for("not the chip's; board: 4,096"));
   CHECK(pty.wait_for("UART: "));
+  pty.type("?");
+  CHECK(pty.wait_for("holds a rate of frames"));
   pty.type("\x1b[D");
   pty.type("\x1b");
   CHECK(pty.wait_for("\x1b[?1049l"));
@@ -194,4 +199,30 @@ TEST_CASE(
   CHECK(pty.wait_for(" frames, "));
   CHECK(pty.wait_for_end());
   CHECK(pty.exit_status() == 0);
+}
+
+TEST_CASE("sim: the keys that ? shows are those that each application takes") {
+  const auto platform = std::filesystem::path(__FILE__).parent_path() / "../../platform/apps";
+  int keys = 0;
+  for (const thimble::apps::Application& one : thimble::apps::applications()) {
+    const std::string source =
+        one.is_to_watch ? read_text((platform / (std::string(one.name) + ".cpp")).string()) : "";
+    CAPTURE(one.name);
+    for (std::size_t at = source.find("case '"); at != std::string::npos;
+         at = source.find("case '", at + 1)) {
+      const char key = source[at + 6];
+      CAPTURE(key);
+      // Those of buttons are typed with shift.
+      const char typed = std::strchr("wasd", key) != nullptr ? static_cast<char>(key - 'a' + 'A') : key;
+      bool is_there = false;
+      for (const std::string& line : lines_of(one.keys)) {
+        const std::string head = line.substr(0, line.find("  "));
+        is_there = is_there || (" " + head + " ").find(std::string{' ', typed, ' '}) != std::string::npos ||
+                   line.find("; " + std::string{typed} + " ") != std::string::npos;
+      }
+      CHECK(is_there);
+      ++keys;
+    }
+  }
+  CHECK(keys > 25);
 }

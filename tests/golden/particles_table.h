@@ -16,7 +16,7 @@ struct ParticlesState {
 };
 
 inline constexpr ParticlesState kParticlesStates[] = {
-    {128, 64, 160, 0xC395A8C1},   // lm3s6965evb, microbit, netduinoplus2, sifive_e
+    {128, 64, 160, 0xC395A8C1},   // lm3s6965evb, microbit, netduinoplus2, pico-oled, sifive_e
     {128, 64, 96, 0x0B51EDC5},    // stm32vldiscovery, 8 KiB of RAM
     {320, 240, 110, 0xBAEC228D},  // mps2-an500, pico-lcd-2
     {640, 480, 443, 0xC2852175},  // raspi0

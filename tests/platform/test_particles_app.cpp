@@ -79,7 +79,7 @@ TEST_CASE("particles app: golden states -> those of the core, run directly") {
 }
 
 TEST_CASE("particles app: every board -> its golden state first, then the steps shown, status 0") {
-  constexpr std::array<std::pair<const char*, std::size_t>, 10> kBoards{{{"lm3s6965evb", 0},
+  constexpr std::array<std::pair<const char*, std::size_t>, 11> kBoards{{{"lm3s6965evb", 0},
                                                                          {"microbit", 0},
                                                                          {"netduinoplus2", 0},
                                                                          {"sifive_e", 0},
@@ -88,6 +88,7 @@ TEST_CASE("particles app: every board -> its golden state first, then the steps 
                                                                          {"raspi0", 3},
                                                                          {"pico", 4},
                                                                          {"pico-lcd-2", 2},
+                                                                         {"pico-oled", 0},
                                                                          {"gba", 5}}};
   for (const auto& [board, index] : kBoards) {
     CAPTURE(std::string(board));

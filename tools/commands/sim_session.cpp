@@ -24,6 +24,7 @@ constexpr Milliseconds kEndingTime{2000};  // that an application may take to en
 constexpr Milliseconds kWatchedTime{40};   // the same where somebody watches, who wants to be gone
 constexpr int kEventsMs = 5;               // between two looks at keys and window while it draws
 constexpr int kStatusLines = 4;
+constexpr const char* kPointerKeys = "mouse  touches; another button drops a ball\n";
 constexpr std::size_t kKeptOutputBytes = 65536;
 
 struct KeyButton {
@@ -114,6 +115,7 @@ class SimSession {
   std::string output_;          // the end of what came over the UART
   std::uint32_t held_ = 0;      // by hand
   std::uint32_t scripted_ = 0;  // by the script
+  bool shows_keys_ = false;
   std::optional<Clock::time_point> closing_at_;
   Clock::time_point status_at_;
   std::uint32_t pictures_ = 0;
@@ -174,6 +176,14 @@ void SimSession::take(const host::Event& event) {
       held_ &= ~button_of(event.key);
       break;
     case host::EventKind::kText:
+      if (event.character == '?') {
+        shows_keys_ = !shows_keys_;
+        screen_->set_overlay(shows_keys_ ? std::string("arrows, WASD, space  buttons\n") +
+                                               (options_.application->takes_pointer ? kPointerKeys : "") +
+                                               options_.application->keys + "Esc  ends   ?  these keys"
+                                         : std::string());
+        break;
+      }
       if (const auto byte = byte_of(event.character)) {
         typed_ += static_cast<char>(*byte);
       }
@@ -268,14 +278,14 @@ void SimSession::update_status() {
                                        : 0.75 * shown_seconds_ + 0.25 * simulation_.frame_seconds();
   const std::string line = last_line(output_);
   seen_.use = simulation_.use();
-  screen_->set_status(
-      std::string(options_.board->name) + "  " + options_.application->name + "  frame " +
-      grouped(pictures_) + "  " + fixed(1000 * shown_seconds_, 2) + " ms a frame on this machine\n" +
-      memory_text(seen_.use, "\n") + "\n" +
-      (line.empty() || !uart_in_pane_
-           ? (options_.application->takes_pointer ? "mouse: touch, drop   arrows or WASD, space   Esc ends"
-                                                  : "buttons: arrows or WASD, space   Esc ends")
-           : "UART: " + line));
+  screen_->set_status(std::string(options_.board->name) + "  " + options_.application->name + "  frame " +
+                      grouped(pictures_) + "  " + fixed(1000 * shown_seconds_, 2) +
+                      " ms a frame on this machine\n" + memory_text(seen_.use, "\n") + "\n" +
+                      (line.empty() || !uart_in_pane_
+                           ? (options_.application->takes_pointer
+                                  ? "mouse: touch, drop   arrows or WASD, space   ?: keys   Esc ends"
+                                  : "buttons: arrows or WASD, space   ?: keys   Esc ends")
+                           : "UART: " + line));
 }
 
 void SimSession::take_picture() {

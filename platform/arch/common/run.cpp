@@ -48,7 +48,21 @@ bool is_stack_overflow(const Fault& fault) {
   return fault.stack_pointer < bottom + slack;
 }
 
+#if defined(THIMBLE_HOLDS)
+bool has_held = false;  // said so already
+#endif
+
 }  // namespace
+
+#if defined(THIMBLE_HOLDS)
+bool port::holding() {
+  if (!has_held) {
+    say("holding\n");
+  }
+  has_held = true;
+  return true;
+}
+#endif
 
 void report_fault(const Fault& fault) {
   say("\nfault: ");
@@ -75,10 +89,11 @@ void thimble_run() {
   thimble::board::start_clock();
   const int status = thimble_application();
   thimble::report_stack();
-  if constexpr (thimble::board::kHolds) {
-    thimble::say("holding\n");
-    while (thimble::board::get() != 'q') {
+#if defined(THIMBLE_HOLDS)
+  if (!thimble::has_held) {
+    while (thimble::port::holding() && thimble::board::get() != 'q') {
     }
   }
+#endif
   thimble::finish(status);
 }

@@ -1,7 +1,7 @@
 set(BOARD_TITLE "Raspberry Pi Pico (RP2040, Cortex-M0+) with a Pico-LCD-2")
 set(BOARD_ARCH cortex-m)
 set(BOARD_CPU cortex-m0plus)
-set(BOARD_CHIP rp2040)
+set(BOARD_CHIP rp2040 rp2040/lcd)
 set(BOARD_FLASH_ORIGIN 0x10000000)
 set(BOARD_FLASH_BYTES 2097152)
 set(BOARD_ERASE_BYTES 4096)

@@ -3,17 +3,34 @@
 
 #include <stdint.h>
 
+#include "cortex-m/system_control.h"
 #include "drivers/pl011.h"
 #include "registers.h"
 #include "rp2040.h"
 #include "thimble_board_facts.h"
 
-namespace thimble::board {
+namespace thimble {
+
+// SysTick wakes the core. A turn of it holds 126 ms.
+void rp2040::wait_ms(uint32_t ms) {
+  constexpr uint32_t kCountFlag = 1U << 16;
+  register32(cortex_m::kSystRvr) = board::kClockMhz * 1000 * ms - 1;
+  register32(cortex_m::kSystCvr) = 0;
+  register32(cortex_m::kSystCsr) =
+      cortex_m::kSystCsrEnable | cortex_m::kSystCsrInterrupt | cortex_m::kSystCsrCoreClock;
+  static_cast<void>(static_cast<uint32_t>(register32(cortex_m::kSystCsr)));  // a flag from before goes
+  while ((register32(cortex_m::kSystCsr) & kCountFlag) == 0) {
+    asm volatile("wfi");
+  }
+  register32(cortex_m::kSystCsr) = 0;
+}
+
+namespace board {
 namespace {
 
 constexpr uint32_t kBaud = 115200;
-constexpr uint32_t kBlocks =
-    rp2040::kBlockDma | rp2040::kBlockPins | rp2040::kBlockPads | rp2040::kBlockSpi1 | rp2040::kBlockUart0;
+constexpr uint32_t kBlocks = rp2040::kBlockDma | rp2040::kBlockI2c0 | rp2040::kBlockPins |
+                             rp2040::kBlockPads | rp2040::kBlockSpi1 | rp2040::kBlockUart0;
 
 // Through a reset, so that a block is as the data sheet says, whatever ran before us.
 void restart(uint32_t blocks) {
@@ -80,4 +97,5 @@ uint32_t buttons() {
   return down;
 }
 
-}  // namespace thimble::board
+}  // namespace board
+}  // namespace thimble

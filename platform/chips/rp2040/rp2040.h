@@ -13,6 +13,7 @@ namespace thimble::rp2040 {
 inline constexpr uintptr_t kReset = 0x4000C000;
 inline constexpr uintptr_t kResetDone = 0x4000C008;
 inline constexpr uint32_t kBlockDma = 1U << 2;
+inline constexpr uint32_t kBlockI2c0 = 1U << 3;
 inline constexpr uint32_t kBlockPins = 1U << 5;
 inline constexpr uint32_t kBlockPads = 1U << 8;
 inline constexpr uint32_t kBlockPllSys = 1U << 12;
@@ -60,6 +61,7 @@ constexpr uintptr_t pin_control(uint32_t pin) {
 }
 inline constexpr uint32_t kPinSpi = 1;
 inline constexpr uint32_t kPinUart = 2;
+inline constexpr uint32_t kPinI2c = 3;
 inline constexpr uint32_t kPinSio = 5;
 constexpr uintptr_t pad(uint32_t pin) {
   return 0x4001C004 + 4 * pin;
@@ -97,6 +99,25 @@ inline constexpr uintptr_t kSpiPrescale = 0x40040010;  ///< clock divider, even
 inline constexpr uintptr_t kSpiDma = 0x40040024;
 inline constexpr uint32_t kSpiDmaSends = 1U << 1;
 
+// I2C0, a DW_apb_i2c, 4.3.17.
+inline constexpr uintptr_t kI2cControl = 0x40044000;
+inline constexpr uint32_t kI2cFastMaster =
+    1U << 6 | 1U << 5 | 2U << 1 | 1U << 0;  ///< 7 bits of address, no slave
+inline constexpr uintptr_t kI2cTarget = 0x40044004;
+inline constexpr uintptr_t kI2cData = 0x40044010;
+inline constexpr uint32_t kI2cStop = 1U << 9;  ///< after this byte
+inline constexpr uintptr_t kI2cHighCount = 0x4004401C;
+inline constexpr uintptr_t kI2cLowCount = 0x40044020;
+inline constexpr uintptr_t kI2cEvents = 0x40044034;  ///< raw interrupt status
+inline constexpr uint32_t kI2cAborted = 1U << 6;
+inline constexpr uint32_t kI2cStopped = 1U << 9;
+inline constexpr uintptr_t kI2cClearEvents = 0x40044040;  ///< by reading
+inline constexpr uintptr_t kI2cEnable = 0x4004406C;
+inline constexpr uintptr_t kI2cStatus = 0x40044070;
+inline constexpr uint32_t kI2cNotFull = 1U << 1;
+inline constexpr uintptr_t kI2cHoldCount = 0x4004407C;
+inline constexpr uintptr_t kI2cSpikeCount = 0x400440A0;
+
 // DMA, 2.5: channel 0.
 inline constexpr uintptr_t kDmaRead = 0x50000000;
 inline constexpr uintptr_t kDmaWrite = 0x50000004;
@@ -128,7 +149,10 @@ struct Key {
 /// Supplied by each board (its keys.cpp), some for the same button.
 Span<const Key> keys();
 
-/// lcd.cpp: after the clocks run and the blocks are out of reset.
+/// After the clocks run and the blocks are out of reset: lcd/lcd.cpp, or the board's.
 void start_display();
+
+/// Asleep, before the clock of the port is started; at most 126 ms.
+void wait_ms(uint32_t ms);
 
 }  // namespace thimble::rp2040

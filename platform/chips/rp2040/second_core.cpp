@@ -1,5 +1,6 @@
 // The second core (port.h): the boot ROM holds it until the first sends it six words (RP2040 Datasheet, 2.8.2), then it
 // waits for shares of a frame. No interrupt goes to it. Both cores see one memory, without caches.
+#if defined(THIMBLE_CORES)
 #include <stddef.h>
 #include <stdint.h>
 
@@ -103,3 +104,4 @@ void thimble_second_core() {
     thimble::send(1);
   }
 }
+#endif

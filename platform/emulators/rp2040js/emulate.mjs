@@ -11,6 +11,7 @@ import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { Refusal, boot } from './bootrom.mjs';
 import { LockUp, Machine } from './machine.mjs';
+import { Oled } from './oled.mjs';
 import { Panel, kCarriers } from './panel.mjs';
 
 const kRefused = 96;
@@ -30,7 +31,7 @@ if (carrier === undefined) {
   tell(`there is no carrier ${option('-carrier')}; those there are: ${Object.keys(kCarriers).join(', ')}`);
   process.exit(2);
 }
-const panel = new Panel(chip, carrier);
+const panel = new (carrier.isOled ? Oled : Panel)(chip, carrier);
 const uart = chip.uart[0];
 let status = -1; // once it has ended
 

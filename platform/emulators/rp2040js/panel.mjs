@@ -3,6 +3,7 @@
 const kPins = { data: 8, select: 9, reset: 12, light: 13 };
 // As it is held: how wide and high the glass is, and the pin of each key.
 export const kCarriers = {
+  'pico-oled': { isOled: true, keys: { up: 10, down: 11, left: 12, right: 13 } }, // oled.mjs
   'pico-lcd-1.3': {
     width: 240,
     height: 240,
@@ -17,17 +18,27 @@ const kMostHz = 1e9 / 16; // 7.4.2: a bit takes 16 ns at least
 const kAfterResetNs = 120e6; // 7.4.5, before it may wake
 const kAfterWakeNs = 5e6; // 9.1.12, before the next command
 
-export class Panel {
+// What all have: keys, and a complaint once the display was sent what it would not take.
+export class Carrier {
   constructor(chip, carrier) {
     this.chip = chip;
     this.carrier = carrier;
-    this.memory = new Uint16Array(kColumns * kRows);
     this.complaint = '';
-    this.frames = 0;
-    this.restart();
     for (const pin of Object.values(carrier.keys)) {
       chip.gpio[pin].setInputValue(true); // pulled up, released
     }
+  }
+
+  press(key, isDown) {
+    this.chip.gpio[this.carrier.keys[key]].setInputValue(!isDown);
+  }
+}
+
+export class Panel extends Carrier {
+  constructor(chip, carrier) {
+    super(chip, carrier);
+    this.memory = new Uint16Array(kColumns * kRows);
+    this.restart();
     chip.gpio[kPins.reset].addListener(() => {
       this.restart();
     });
@@ -75,10 +86,6 @@ export class Panel {
     }
   }
 
-  press(key, isDown) {
-    this.chip.gpio[this.carrier.keys[key]].setInputValue(!isDown);
-  }
-
   isHigh(pin) {
     return this.chip.gpio[pin].outputEnable && this.chip.gpio[pin].outputValue;
   }
@@ -120,7 +127,6 @@ export class Panel {
       this.on = value === 0x29;
     } else if (value === 0x2c) {
       [this.x, this.y] = [this.columns[0], this.rows[0]];
-      this.frames += this.y === 0 ? 1 : 0;
     }
   }
 

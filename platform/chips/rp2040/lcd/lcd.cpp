@@ -5,7 +5,6 @@
 #include <stdint.h>
 
 #include "board.h"
-#include "cortex-m/system_control.h"
 #include "registers.h"
 #include "rp2040.h"
 #include "thimble_board_facts.h"
@@ -42,20 +41,6 @@ constexpr uint8_t k16Bits = 0x55;
 
 // After its reset and when it wakes (9.1.12; 7.4.5, reset timing).
 constexpr uint32_t kWakeMs = 120;
-
-// Asleep meanwhile: SysTick wakes the core. A turn of SysTick holds 126 ms.
-void wait_ms(uint32_t ms) {
-  constexpr uint32_t kCountFlag = 1U << 16;
-  register32(cortex_m::kSystRvr) = board::kClockMhz * 1000 * ms - 1;
-  register32(cortex_m::kSystCvr) = 0;
-  register32(cortex_m::kSystCsr) =
-      cortex_m::kSystCsrEnable | cortex_m::kSystCsrInterrupt | cortex_m::kSystCsrCoreClock;
-  static_cast<void>(static_cast<uint32_t>(register32(cortex_m::kSystCsr)));  // a flag from before goes
-  while ((register32(cortex_m::kSystCsr) & kCountFlag) == 0) {
-    asm volatile("wfi");
-  }
-  register32(cortex_m::kSystCsr) = 0;
-}
 
 // Frames of 8 or 16 bits, SPI mode 0; not before the last bit is out, since the pins hold for whole frames.
 void frames_of(uint32_t bits) {
