@@ -18,12 +18,14 @@ async function openViewer(own, made, board) {
   if (own !== generation) return;
   if (seen === null) throw new Error('there is no such view of it');
   look.take(seen.block);
-  viewer = {look, board, picture, baker: made.baker, step: look.x.has_map() ? 1 : 4, phase: 'moved', row: 0, crew: null,
+  viewer = {look, board, picture, baker: made.baker, step: look.x.has_map() && board.width * board.height <= 2 ** 20 ? 1 : 4, phase: 'moved', row: 0, crew: null,
     flown: 0, camera, view: {camera, ...seen}, exposure: FIRST_EXPOSURE, asks: false, saves: false,
     frames: made.frames, next: null, nextAt: 0, plays: made.frames > 1 && state.frame === null && !calm};
   hireCrew(viewer, {module: code, scene: made.baked, width: board.width, height: board.height});
   pointed = null;
   prepareCanvas(board);
+  if (isFilm()) state.turns = false;
+  showPause();
   showKeys('look', isFilm() ? [[' ', 'Play']] : look.x.has_water() ? [[' ', 'Rain']] : []);
   showPlays();
   $('uart').textContent = '';
@@ -83,6 +85,7 @@ function lookOn(now) {
     flight.flown = true;
     if (flight.ends) flying.delete(by);
   }
+  if (state.turns && !isFilm()) moved(() => orbit.turn(-TURN * seconds, 0));
   const hasPlayed = isPlaying() && play(now);
   const asks = !viewer.asks && !(isPlaying() && isFilm());  // each frame brings its own look
   if (viewer.phase === 'moved') {
@@ -122,7 +125,7 @@ function drawFast(now) {
   const time = performance.now() - began;
   // Every few pixels where that is what a frame has time for.
   if (time > 40) viewer.step = Math.min(8, viewer.step * (time > 160 ? 4 : 2));
-  if (time < 8 && viewer.step > 1) viewer.step /= 2;
+  if (time < 10 && viewer.step > 1) viewer.step /= 2;
   viewer.phase = 'waits';
   viewer.since = now;
   takeRows(0, viewer.board.height);

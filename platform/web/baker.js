@@ -47,8 +47,8 @@ class Baker {
     return at;
   }
 
-  // Bakes `scene` for `board`: {bytes, level, voxels, ...}. `options`: depth, coarsen, frame; look: to look
-  // around in, not for the board to turn.
+  // Bakes `scene` for `board`: {bytes, level, voxels, ...}. `options`: depth, coarsen, frame; size: to look around in,
+  // in a picture of that size; programs: those of the board, behind one of which it is to lie (then image() joins them).
   bake(scene, board, options = {}) {
     this.x = this.beside = null;  // of a scene that could not be baked there is no look
     const [x, made] = this.bakeIn(null, scene, board, options);
@@ -70,8 +70,9 @@ class Baker {
   bakeIn(given, scene, board, options) {
     try {
       const x = given ?? this.instance();
+      for (const program of options.programs ?? []) x.add_program(this.put(x, program), program.length, board.index);
       const size = x.bake(this.put(x, scene), board.index, options.depth ?? 0, options.coarsen ?? false, options.frame ?? -1,
-        !options.look);
+        ...options.size ?? [0, 0]);
       const at = x.baked();
       const memory = new Uint8Array(x.memory.buffer);
       const text = (from) => new TextDecoder().decode(memory.slice(from, memory.indexOf(0, from)));
@@ -105,11 +106,17 @@ class Baker {
     return {eye: numbers.slice(0, 3), target: numbers.slice(3, 6), zoom: numbers[6]};
   }
 
+  // What was baked behind its program: the file to drag onto the board.
+  image(board) {
+    const at = this.x.image(board.index, this.put(this.x, board.ending));
+    return new Uint8Array(this.x.memory.buffer).slice(at, at + this.x.image_bytes());
+  }
+
   // The greatest smaller depth that fits, as what bake() returns; null where none does.
-  smaller(scene, board, depth) {
+  smaller(scene, board, depth, programs) {
     for (let level = depth - 1; level >= 1; --level) {
       try {
-        return this.bake(scene, board, {depth: level});
+        return this.bake(scene, board, {depth: level, programs});
       } catch (error) {
         if (!(error instanceof BakeError)) throw error;
         if (!/bytes too many$/.test(error.message)) return null;

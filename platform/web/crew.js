@@ -138,7 +138,7 @@ class FarBaker {
     this.last = Promise.resolve();
     worker.postMessage({module, files});
     this.hire = () => (this.here ??= new Baker(module, files));
-    for (const call of ['bake', 'bakeAhead', 'turn', 'smaller', 'look', 'stars', 'frame']) {
+    for (const call of ['bake', 'bakeAhead', 'turn', 'smaller', 'look', 'stars', 'frame', 'image']) {
       this[call] = (...words) => {
         const answer = this.last.then(() => this.ask(call, words));
         this.last = answer.catch(() => {});

@@ -1,4 +1,4 @@
-// The page: a board with one of its applications, or a scene to look around in.
+// The page: a scene to look around in, in the whole window; or a board with one of its applications.
 'use strict';
 
 const SCENES = {
@@ -17,21 +17,25 @@ const APP_KEYS = {
     ['4', 'Right side'], ['5', 'Top'], ['6', 'Iso'], ['p', 'Name voxel']],
 };
 const MODULE_OF = {demo: 'scene', water: 'plane', particles: 'plane'};
-const VIEW_BOARD = 'raspi0';  // its display and flash are those of "look around"
+const MOST_PIXELS = 2 ** 23;  // of the picture in the window
+const LINK_BYTES = 8192;  // of a packed model that a link holds
+const TURN = 0.15;  // of the first picture, a second
 const FRAME_MS = 1000 / 30;
 const FILM_MS = 100;
 const SLICE_MS = 12;
+const RGB888 = 4;  // picture/pixel.h
 const TAP_MS = 300;  // shorter `s` saves
 const FIRST_EXPOSURE = 320;
 // To the right, up, forward, while held.
 const FLIGHTS = {w: [0, 0, 1], a: [-1, 0, 0], s: [0, 0, -1], d: [1, 0, 0], PageUp: [0, 1, 0], PageDown: [0, -1, 0],
   ArrowUp: [0, 0, 1], ArrowLeft: [-1, 0, 0], ArrowDown: [0, 0, -1], ArrowRight: [1, 0, 0]};
 const $ = (id) => document.getElementById(id);
-const LIES = matchMedia('(orientation: landscape) and (max-height: 34rem) and (min-width: 32rem)');  // page.css
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 const state = {
-  scene: 'valley', look: false, board: 'lm3s6965evb', paused: calm, depth: 0, coarsen: false,
+  scene: 'castle', look: true, board: 'pico', paused: calm, depth: 0, coarsen: false,
+  turns: false,  // the camera of Look around, by itself
+  size: null,  // of its picture; null: the window's
   frame: null,  // of an animation, in Look around; null: from the first on
   dropped: null,  // {title, scene, files: [{name, bytes}]}
   wanted: null,  // what a link asks for whose file stayed elsewhere
@@ -66,8 +70,10 @@ async function inflate(bytes, most = Infinity) {
   }
   return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
-// What bundle.js wrote: four bytes in five characters, base 85, whose digits begin at `(`; `}` stands for `<`.
-function unpack(id) {
+// What bundle.js wrote, unpacked: four bytes in five characters, base 85, whose digits begin at `(`; `}` stands for `<`.
+const archives = {};
+function archive(id) {
+  if (archives[id]) return archives[id];
   const {textContent: text, dataset} = $(id);
   const words = new DataView(new ArrayBuffer(text.length / 5 * 4));
   for (let at = 0; at < text.length; at += 5) {
@@ -78,12 +84,21 @@ function unpack(id) {
     }
     words.setUint32(at / 5 * 4, word);
   }
-  return inflate(new Uint8Array(words.buffer, 0, Number(dataset.bytes)));
+  const bytes = unlzma(new Uint8Array(words.buffer));
+  let from = 0;
+  return archives[id] = new Map(dataset.ends.split(',').map((entry) => {
+    const [name, end] = entry.split(':');
+    return [name, bytes.subarray(from, from = Number(end))];
+  }));
 }
 async function moduleOf(name) {
-  modules[name] ??= WebAssembly.compile(await unpack(`module-${name}`));
+  modules[name] ??= WebAssembly.compile(archive('modules').get(`${name}.wasm`));
   return modules[name];
 }
+// Those of a board, for what is downloaded.
+const hasPrograms = (board) => $('programs').dataset.ends.includes(`${board.name}-demo-`);
+const programsOf = (board) => (hasPrograms(board) ? ['plain', 'sun', 'all'].map((set) =>
+  archive('programs').get(`${board.name}-demo-${set}`)).filter((program) => program !== undefined) : []);
 
 // ---- what is said
 
@@ -114,7 +129,13 @@ function share(meter, text, used, of) {
 // ---- from a scene to something that runs
 
 const current = () => state.dropped ?? SCENES[state.scene];
-const shownBoard = () => boards.find((board) => board.name === (state.look ? VIEW_BOARD : state.board));
+// Of Look around a display as large as the window, in its own pixels.
+function shownBoard() {
+  if (!state.look) return boards.find((board) => board.name === state.board);
+  const ratio = Math.min(devicePixelRatio, Math.sqrt(MOST_PIXELS / (innerWidth * innerHeight)));
+  const [width, height] = state.size ?? [innerWidth, innerHeight].map((side) => Math.max(16, Math.round(side * ratio)));
+  return {...boards.find(({format}) => format === RGB888), width, height, row_bytes: 3 * width};
+}
 
 async function bakeCurrent(board) {
   const own = generation;
@@ -122,9 +143,9 @@ async function bakeCurrent(board) {
   if (entry.scene === null) return null;
   const key = [entry.scene, board.name, state.depth, state.coarsen, state.look].join('|');
   if (!state.look && state.dropped === null && cache.has(key)) return cache.get(key);
-  await busy(`Baking for ${board.name} ...`);
-  const files = state.dropped?.files ??
-    await Promise.all(entry.files.map(async (name) => ({name, bytes: await unpack(`file-${name}`)})));
+  await busy(state.look ? `Reading ${entry.title} ...` : `Fitting ${entry.title} onto the board ...`);
+  const files = state.dropped?.files ?? entry.files.map((name) => ({name, bytes: archive('modules').get(name)}));
+  const programs = state.look ? [] : programsOf(board);
   const code = await moduleOf('bake');
   if (own !== generation) return null;
   const worker = startWorker();
@@ -132,21 +153,22 @@ async function bakeCurrent(board) {
   let stays = false;
   try {
     const made = await baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen, frame: state.frame,
-      look: state.look});
+      size: state.look ? [board.width, board.height] : undefined, programs});
+    if (programs.length !== 0) Object.assign(made, {image: await baker.image(board), code: board.flash - made.room});
     if (state.dropped === null) cache.set(key, made);
     stays = state.look;
     return {...made, baker};
   } catch (error) {
-    if (/bytes too many$/.test(error.message) && !state.coarsen) await offerSmaller(baker, entry, board, error);
+    if (/bytes too many$/.test(error.message) && !state.coarsen) await offerSmaller(baker, entry, board, error, programs);
     throw error;
   } finally {
     if (!stays) baker.end?.();
   }
 }
-async function offerSmaller(baker, entry, board, error) {
+async function offerSmaller(baker, entry, board, error, programs) {
   const depth = Number(/at depth (\d+)/.exec(error.message)?.[1] ?? 0);
   await busy('Trying smaller depths ...');
-  const smaller = await baker.smaller(entry.scene, board, depth);
+  const smaller = await baker.smaller(entry.scene, board, depth, programs);
   const offers = [['Merge blocks until it fits', () => restart({coarsen: true})]];
   if (smaller !== null) {
     error.message += `. Depth ${smaller.level} fits with ${number(smaller.bytes)} bytes.`;
@@ -165,6 +187,7 @@ async function start() {
   const own = ++generation;
   closeAll();
   offer([]);
+  if (state.look && current().scene === null) state.look = false;
   const board = shownBoard();
   showChoices(board);
   try {
@@ -177,6 +200,7 @@ async function start() {
       await openMachine(own, made, board);
     }
     if (own !== generation) return;
+    if (!state.look) showGet();
     follow();
     if (machine?.state === 'ended') tellEnd();
     else if (state.wanted === null) say(sentenceOf(made, board));
@@ -185,7 +209,7 @@ async function start() {
     if (own !== generation) return;
     say(`${current().title}: ${error.message}`, true);
     offer(error.offers ?? []);
-    clear(board);
+    prepareCanvas(board);
   } finally {
     if (own === generation) await busy(null);
   }
@@ -196,10 +220,11 @@ function sentenceOf(made, board) {
   if (made === null) return `${board.title}.`;
   const others = state.dropped === null || /\.scene(\.gz)?$/i.test(state.dropped.title) ? 0 :
     state.dropped.files.filter((file) => !BESIDE.test(file.name)).length - 1;
-  let text = `${current().title}: ${number(made.voxels)} voxels in ${number(made.bytes)} bytes, depth ${made.level}`;
+  let text = `${current().title}: ${number(made.voxels)} voxels`;
+  if (!state.look) text += ` in ${number(made.bytes)} bytes, depth ${made.level}`;
   if (made.added !== 0) text += `; ${number(made.added)} voxels of solid volume added by merging`;
   if (made.notes !== '') text += `. Note: ${made.notes.replaceAll(`${current().scene}: `, '')}`;
-  return `${text}. ${board.title}.${others > 0 ? ` Of ${others + 1} files this one is shown; drop one at a time.` : ''}`;
+  return `${text}.${state.look ? '' : ` ${board.title}.`}${others > 0 ? ` Of ${others + 1} files this one is shown; drop one at a time.` : ''}`;
 }
 
 async function openMachine(own, made, board) {
@@ -240,21 +265,21 @@ function prepareCanvas(board) {
   $('ram-meter').hidden = state.look;
   fit();
 }
-// Magnified by a whole number where the screen has room for it.
+// Look around: as large as the window. A display: magnified by a whole number where there is room for it.
 function fit() {
   const canvas = $('canvas');
   const style = getComputedStyle($('screen'));
   const room = $('screen').clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-  const high = LIES.matches ? Math.max(200, innerHeight - canvas.parentElement.getBoundingClientRect().top - scrollY -
-    parseFloat(style.paddingTop) - parseFloat(style.paddingBottom) - 10) : Math.max(240, innerHeight * 0.72);
+  const high = state.look ? innerHeight : Math.max(200, Math.min(innerHeight * 0.66, innerHeight - canvas.parentElement.getBoundingClientRect().top - scrollY -
+    parseFloat(style.paddingTop) - parseFloat(style.paddingBottom) - 10));
   let scale = Math.min(room / canvas.width, high / canvas.height);
   const whole = Math.floor(scale * devicePixelRatio);
-  if (scale >= 1 && whole >= 1) scale = whole / devicePixelRatio;
+  if (scale >= 1 && whole >= 1 && !state.look) scale = whole / devicePixelRatio;
   canvas.style.width = `${canvas.width * scale}px`;
   canvas.style.height = `${canvas.height * scale}px`;
   const gaps = $('gaps');
   const board = shownBoard();
-  gaps.hidden = board === undefined || board.screen !== 1 || scale < 3;  // an OLED shows its pixels
+  gaps.hidden = state.look || board?.screen !== 1 || scale < 3;  // an OLED shows its pixels
   if (!gaps.hidden) {
     const line = `transparent 0 ${scale - Math.max(1, scale / 6)}px, #0007 0 ${scale}px`;
     Object.assign(gaps.style, {
@@ -267,9 +292,7 @@ function fit() {
 function put(display, first, end) {
   table.expand(display, first, end, image.data);
   $('canvas').getContext('2d').putImageData(image, 0, 0, 0, first, image.width, end - first);
-}
-function clear(board) {
-  prepareCanvas(board);
+  if (!$('true').hidden) $('glass').getContext('2d').drawImage($('canvas'), 0, 0);
 }
 // What the machine has drawn since.
 function present(all) {
@@ -341,12 +364,19 @@ const heldButtons = () => [...held.values()].reduce((all, bit) => all | bit, 0);
 function hold(by, name) {
   if (viewer !== null) {
     const flight = `Arrow${name[0].toUpperCase()}${name.slice(1)}`;
+    stopTurning();
     if (flight in FLIGHTS) flying.set(by, {name: flight, flown: false});
     return;
   }
   held.set(by, BUTTONS[name]);
   tapped |= BUTTONS[name];
   if (machine !== null) machine.wanted = true;
+}
+// A hand on the picture has it.
+function stopTurning() {
+  if (!state.turns) return;
+  state.turns = false;
+  showPause();
 }
 function letGo(by) {
   held.delete(by);
@@ -363,6 +393,7 @@ function type(text) {
     if (text === '-') moved(() => orbit.approach(1 / 0.85));
     if (text === '0') moved(() => orbit.reset());
     if (text in VIEWS) showView(viewer, text);
+    if ('+-0123456'.includes(text)) stopTurning();
     if (text === 'p') {
       const picked = viewer.look.pick(...pointed ?? [canvas.width >> 1, canvas.height >> 1]);
       say(picked === null ? 'There is nothing under the pointer.' : nameOf(picked));
@@ -391,6 +422,7 @@ addEventListener('keydown', (event) => {
   const flight = flightOf(event);
   if (flight !== undefined && !own?.matches(flight.length === 1 ? 'select' : 'select, pre')) {
     event.preventDefault();
+    stopTurning();
     if (!event.repeat) tappedS = flight === 's' && flying.size === 0 ? event.timeStamp : -Infinity;
     if (!flying.has(flight)) flying.set(flight, {name: flight, flown: flight === 's'});
   } else if (name !== undefined) {
@@ -448,6 +480,7 @@ canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 canvas.addEventListener('pointerdown', (event) => {
   canvas.setPointerCapture(event.pointerId);
   pointed = pixelAt(event);
+  stopTurning();
   pointers.set(event.pointerId, {x: event.clientX, y: event.clientY, from: [event.clientX, event.clientY]});
   if (machine?.app === 'water' && pointers.size === 1) type(`${event.button === 0 ? '@' : '!'}${pixelAt(event)}.`);
 });
@@ -504,6 +537,7 @@ function steerBy(dx, dy) {
 canvas.addEventListener('wheel', (event) => {
   if (viewer === null && machine?.app !== 'water') return;
   event.preventDefault();
+  stopTurning();
   goFarther(event.deltaY / NOTCH[event.deltaMode]);
 }, {passive: false});
 // By notches of a wheel; water takes whole ones.
@@ -591,6 +625,7 @@ function saveAs(name, blob) {
 }
 // Of Look around once it is finished, and with the command that makes the same one.
 function savePicture() {
+  stopTurning();
   if (viewer !== null) {
     viewer.saves = viewer.phase !== 'finished';
     say(viewer.saves ? 'It is saved once it is finished.' : `It is saved; so makes the same one: ${renderCommand()}`);
@@ -618,41 +653,70 @@ $('link').onclick = async () => {
 };
 $('help').onclick = () => $('dialog').showModal();
 $('pause').onclick = () => {
-  state.paused = !state.paused;
+  if (state.look) state.turns = !state.turns;
+  else state.paused = !state.paused;
   showPause();
 };
 function showPause() {
-  $('pause').setAttribute('aria-pressed', String(state.paused));
+  $('pause').setAttribute('aria-pressed', String(state.look ? !state.turns : state.paused));
 }
+$('act').onclick = () => restart({look: !state.look, ...AFRESH});
+$('full').onclick = () => $('screen').requestFullscreen();
+$('full').hidden = !document.fullscreenEnabled;
+$('download').onclick = () => saveAs(imageName(), new Blob([baked.image]));
+const imageName = () => `${(state.dropped?.title ?? state.scene).replace(/\.gz$/i, '').replace(/\.[^.]*$/, '').replace(/[^\p{L}\p{M}\p{N}._-]+/gu, '-')}.${shownBoard().ending}`;
 $('board').onchange = () => restart({board: $('board').value, ...AFRESH});
 
-function choice(name, title, checked, run) {
-  const button = document.createElement('button');
-  button.textContent = title;
-  button.id = `scene-${name}`;
-  button.setAttribute('aria-pressed', String(checked));
-  button.onclick = run;
-  return button;
+function button(title, id, pressed, run) {
+  const made = document.createElement('button');
+  made.append(title);
+  if (id) made.id = id;
+  if (pressed !== null) made.setAttribute('aria-pressed', String(pressed));
+  made.onclick = run;
+  return made;
+}
+function pictureOf({picture}) {
+  const [left, top, right, bottom] = [0, 1, 2, 3].map((i) => picture.map(([, x, y, w, h]) => [x, y, x + w, y + h][i])).map((sides, i) =>
+    Math[i < 2 ? 'min' : 'max'](...sides));
+  return `<svg viewBox="${left} ${top} ${right - left} ${bottom - top}" aria-hidden="true">${picture.map(([fill, x, y, width, height, rx]) =>
+    `<rect fill="${fill}" x="${x}" y="${y}" width="${width}" height="${height}" rx="${rx}"/>`).join('')}</svg>`;
 }
 function showChoices(board) {
   const focused = document.activeElement?.id;
-  const buttons = Object.entries(SCENES).map(([name, {title}]) => choice(name, title,
-    state.dropped === null && state.scene === name, () => restart({
-      scene: name, dropped: null, ...AFRESH, look: state.look && SCENES[name].scene !== null})));
-  if (state.dropped !== null) buttons.push(choice('dropped', state.dropped.title, true, () => {}));
-  const look = document.createElement('button');
-  look.id = 'look';
-  look.textContent = 'Look around';
-  look.setAttribute('aria-pressed', String(state.look));
-  look.disabled = current().scene === null;
-  look.onclick = () => restart({look: !state.look, ...AFRESH});
-  $('scenes').replaceChildren(...buttons, look);
+  document.documentElement.dataset.act = state.look ? 'look' : 'board';
+  const buttons = Object.entries(SCENES).map(([name, {title}]) => button(title, `scene-${name}`,
+    state.dropped === null && state.scene === name, () => restart({scene: name, dropped: null, ...AFRESH})));
+  for (const [i, name] of Object.keys(SCENES).entries()) buttons[i].prepend(Object.assign(new Image(), {src: PICTURES[name], alt: ''}));
+  if (state.dropped !== null) buttons.push(button(state.dropped.title, 'scene-dropped', true, () => {}));
+  $('scenes').replaceChildren(...buttons);
+  $('shelf').replaceChildren(...Object.entries(SHELF).filter(([name]) => boards.some((one) => one.name === name && hasPrograms(one))).map(([name, entry]) => {
+    const card = button('', `shelf-${name}`, state.board === name, () => restart({board: name, ...AFRESH}));
+    card.innerHTML = `${pictureOf(entry)}<span>${entry.title}</span><small>${entry.price}</small>`;
+    card.title = entry.parts;
+    return card;
+  }));
   if (focused) $(focused)?.focus({preventScroll: true});
+  $('act').textContent = state.look ? 'On a board' : 'Look around';
+  $('act').disabled = current().scene === null;
   $('board').value = state.board;
-  $('board').disabled = state.look;
-  $('pause').disabled = document.querySelector('[data-hold="select"]').disabled = state.look;
+  $('board').disabled = document.querySelector('[data-hold="select"]').disabled = state.look;
+  $('pause').textContent = state.look ? 'Stop' : 'Pause';
+  $('get').hidden = true;
+  const glass = state.look ? undefined : SHELF[board.name]?.glass;
+  $('true').hidden = !glass;
+  if (glass) {
+    Object.assign($('glass'), {width: board.width, height: board.height}).style.width = `${glass[0]}mm`;
+    $('size').textContent = `as large as it is: ${glass.map((mm) => number(mm)).join(' x ')} mm`;
+  }
   showPause();
   fit();
+}
+// What to do with the file for the board, where there is one.
+function showGet() {
+  const board = shownBoard();
+  $('get').hidden = baked?.image === undefined || machine.app !== 'demo';
+  $('steps').replaceChildren(...(STEPS[board.ending] ?? []).map((step) =>
+    Object.assign(document.createElement('li'), {textContent: step.replace('FILE', imageName())})));
 }
 function showKeys(app, more = []) {
   $('keys').replaceChildren(...[...more, ...APP_KEYS[app]].map(([key, title]) => {
@@ -664,7 +728,15 @@ function showKeys(app, more = []) {
     return button;
   }));
 }
-addEventListener('resize', fit);
+let resized = 0;
+addEventListener('resize', () => {
+  fit();
+  clearTimeout(resized);
+  resized = setTimeout(() => {
+    const board = viewer === null ? null : shownBoard();
+    if (board && (board.width !== viewer.board.width || board.height !== viewer.board.height)) restart({});
+  }, 250);
+});
 
 // What a link holds: what is shown, and from where.
 function fragment() {
@@ -673,7 +745,9 @@ function fragment() {
   if (state.depth !== 0) view.set('depth', state.depth);
   if (state.coarsen) view.set('merge', '1');
   if (viewer !== null && isFilm()) view.set('frame', state.frame ?? 0);
-  if (state.look) view.set('look', orbit === null || orbit.isOwn ? '1' : orbit.text());
+  if (state.look) view.set('look', orbit === null || orbit.isOwn || state.turns ? '1' : orbit.text());
+  if (state.look && state.turns) view.set('turns', '1');
+  if (state.size !== null) view.set('size', state.size.join('x'));
   return view;
 }
 // The address shows what the page shows, so that it can be kept and loaded again.
@@ -685,13 +759,15 @@ function follow() {
 }
 // Whatever of it means something here.
 function readFragment() {
-  const view = new URLSearchParams(location.hash.slice(1));
+  const view = new URLSearchParams(location.hash.slice(1) || 'look=1&turns=1');
   if (Object.hasOwn(SCENES, view.get('scene') ?? '')) state.scene = view.get('scene');
   if (boards.some((board) => board.name === view.get('board'))) state.board = view.get('board');
   const wishes = {look: null, ...AFRESH, coarsen: view.get('merge') === '1'};
   if (/^([1-9]|1[0-2])$/.test(view.get('depth') ?? '')) wishes.depth = Number(view.get('depth'));
   if (/^\d{1,9}$/.test(view.get('frame') ?? '')) wishes.frame = Number(view.get('frame'));
   wishes.look = view.get('look');
+  const size = /^(\d{2,4})x(\d{2,4})$/.exec(view.get('size') ?? '');
+  Object.assign(state, {turns: view.get('turns') === '1' && !calm, size: size && size.slice(1).map(Number)});
   state.wanted = view.get('file') ? {...wishes, file: view.get('file').slice(0, 255)} : null;
   Object.assign(state, {dropped: null, ...AFRESH, look: false, view: null});
   if (state.wanted === null) grant(wishes);
@@ -709,6 +785,7 @@ addEventListener('hashchange', () => {
 async function main() {
   table = new Table(await moduleOf('plane'));
   ({boards} = table);
+  if (!boards.some(({name}) => name === state.board)) state.board = boards[0].name;
   $('board').replaceChildren(...boards.map((board) => {
     const option = document.createElement('option');
     option.value = board.name;

@@ -35,6 +35,10 @@ extern "C" {
     apps::put(between);
     text_field("{\"name\":\"", board.name);
     text_field(",\"title\":\"", board.title);
+    // Of the file that is downloaded: what its drive or its emulators take.
+    text_field(",\"ending\":\"", board.uf2_family != 0        ? "uf2"
+                                 : board.image_ending[0] != 0 ? board.image_ending
+                                                              : "hex");
     field(",\"ram\":", board.ram_bytes);
     field(",\"flash\":", board.flash_bytes);
     field(",\"stack\":", board.stack_bytes);

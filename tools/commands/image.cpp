@@ -1,5 +1,7 @@
 // thimble image: a scene behind a program that is built already.
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 #include "commands/arguments.h"
@@ -7,8 +9,10 @@
 #include "commands/commands.h"
 #include "output/output_set.h"
 #include "output/units.h"
+#include "readers/file_bytes.h"
 #include "scene/board_fit.h"
 #include "scene/board_images.h"
+#include "scene/named_scenes.h"
 
 namespace thimble::tools {
 namespace {
@@ -20,26 +24,38 @@ struct ImageCommand : BakeCommand {
 
 const std::vector<std::string> kApps{"demo", "dig", "water"};
 
-// The smallest that draws it.
-const BoardImage& image_for(const ImageCommand& command, const std::vector<BoardImage>& images,
-                            const Baked& baked) {
-  BakedLighting lighting;
-  bool has_metal = false;
-  if (BakedLighting::open(baked.scene.section(SectionKind::kLighting), baked.scene.tree().level(),
-                          &lighting) == Status::kOk) {
-    for (const Surface& surface : lighting.scene.surfaces) {
-      has_metal = has_metal || surface.kind == SurfaceKind::kMetal;
+constexpr std::uint64_t kMostImageBytes = std::uint64_t{16} << 20;
+// Sets of effects that a board has programs for (platform/images.sh).
+constexpr const char* kSets[] = {"plain", "sun", "all"};
+
+// Those of the board and the application, sorted. `folder` empty: $THIMBLE_IMAGES, or the folder beside the program.
+std::vector<BoardImage> load_images(std::string folder, const platform::BoardFacts& board,
+                                    const std::string& app) {
+  if (const char* named = std::getenv("THIMBLE_IMAGES"); folder.empty() && named != nullptr) {
+    folder = named;
+  }
+  if (folder.empty()) {
+    folder = folder_beside_program("images");
+  }
+  std::vector<BoardImage> images;
+  for (const char* set : kSets) {
+    const std::string path = folder + "/" + board.name + "-" + app + "-" + set + ".elf.gz";
+    std::error_code error;
+    if (!folder.empty() && std::filesystem::exists(path, error)) {
+      try {
+        images.push_back(open_image(load_file(path, kMostImageBytes).text(), board));
+      } catch (const InputError& wrong) {
+        throw InputError(path + " " + wrong.what());
+      }
     }
   }
-  // Metals show their own light where nobody wants mirrors, and a program that has mirrors would show them.
-  const bool has_dull_metal = has_metal && (baked.effects & Effect::kMirror) == 0;
-  for (const BoardImage& image : images) {
-    if (command.app == "dig" ||
-        (image.draws(baked.effects) && !(has_dull_metal && (image.mark.effects & Effect::kMirror) != 0))) {
-      return image;
-    }
+  if (images.empty()) {
+    throw InputError("there is no image of " + app + " for " + board.name +
+                     (folder.empty() ? "" : " in " + folder) +
+                     "; make images builds them, --images or $THIMBLE_IMAGES says where they are");
   }
-  throw InputError(not_drawn_text(command, baked.effects));
+  sort_images(&images);
+  return images;
 }
 
 void run(const ImageCommand& given) {
@@ -51,20 +67,20 @@ void run(const ImageCommand& given) {
       about("the images", [&] { return load_images(command.folder, board, command.app); });
   const auto source = command.scene.open();
   // `dig` shows no light, whatever the scene has.
+  const bool is_dig = command.app == "dig";
   command.room = [&](EffectSet effects) {
-    std::uint64_t most = 0;
-    for (const BoardImage& image : images) {
-      most = std::max(most, command.app == "dig" || image.draws(effects) ? image.room() : 0);
-    }
-    return most;
+    return is_dig ? images.front().room() : room_behind(images, effects);
   };
   BakingOptions options;
   const Baked baked = bake(&command, *source, &options);
-  const BoardImage& image = image_for(command, images, baked);
+  const BoardImage* const image = is_dig ? &images.front() : image_for(images, baked);
+  if (image == nullptr) {
+    throw InputError(not_drawn_text(command, baked.effects));
+  }
   if (command.app == "water" && (baked.effects & Effect::kWater) == 0) {
     throw InputError("holds no water that water could move: it has no `water` statement");
   }
-  outputs[0]->write(image_file(image, baked.bytes, board, command.output));
+  outputs[0]->write(image_file(*image, baked.bytes, board, command.output));
   if (outputs[1] != nullptr) {
     outputs[1]->write(stats_text(baked_stats(command, *source, baked, options.limit_bytes)));
   }
@@ -72,7 +88,7 @@ void run(const ImageCommand& given) {
   if (!command.scene.quiet) {
     const std::uint64_t ram = drawing_ram_bytes(board, baked.effects);
     const std::string text = baked_text(command, options, baked) + board.name + ": flash " +
-                             grouped(baked.bytes.size()) + " of the " + grouped(image.room()) +
+                             grouped(baked.bytes.size()) + " of the " + grouped(image->room()) +
                              " bytes behind " + command.app +
                              (ram > board.ram_bytes ? "; too little RAM" : "") + "\n";
     std::fputs(text.c_str(), stderr);

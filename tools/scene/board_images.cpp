@@ -2,23 +2,16 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 
-#include "readers/file_bytes.h"
 #include "readers/input_error.h"
-#include "scene/named_scenes.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/render.h"
 
 namespace thimble::tools {
 namespace {
 
-constexpr std::uint64_t kMostImageBytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t kMostFlashBytes = std::uint64_t{64} << 20;
-// Sets of effects that a board has programs for (platform/images.sh).
-constexpr const char* kSets[] = {"plain", "sun", "all"};
 
 static_assert(std::endian::native == std::endian::little, "the mark is read as it lies");
 
@@ -70,34 +63,34 @@ BoardImage open_image(std::string_view elf, const platform::BoardFacts& board) {
   return image;
 }
 
-std::vector<BoardImage> load_images(std::string folder, const platform::BoardFacts& board,
-                                    const std::string& app) {
-  if (const char* named = std::getenv("THIMBLE_IMAGES"); folder.empty() && named != nullptr) {
-    folder = named;
+void sort_images(std::vector<BoardImage>* images) {
+  std::stable_sort(images->begin(), images->end(),
+                   [](const BoardImage& a, const BoardImage& b) { return a.room() > b.room(); });
+}
+
+std::uint64_t room_behind(std::span<const BoardImage> images, EffectSet effects) {
+  std::uint64_t most = 0;
+  for (const BoardImage& image : images) {
+    most = std::max(most, image.draws(effects) ? image.room() : 0);
   }
-  if (folder.empty()) {
-    folder = folder_beside_program("images");
-  }
-  std::vector<BoardImage> images;
-  for (const char* set : kSets) {
-    const std::string path = folder + "/" + board.name + "-" + app + "-" + set + ".elf.gz";
-    std::error_code error;
-    if (!folder.empty() && std::filesystem::exists(path, error)) {
-      try {
-        images.push_back(open_image(load_file(path, kMostImageBytes).text(), board));
-      } catch (const InputError& wrong) {
-        throw InputError(path + " " + wrong.what());
-      }
+  return most;
+}
+
+const BoardImage* image_for(std::span<const BoardImage> images, const Baked& baked) {
+  BakedLighting lighting;
+  bool has_metal = false;
+  if (BakedLighting::open(baked.scene.section(SectionKind::kLighting), baked.scene.tree().level(),
+                          &lighting) == Status::kOk) {
+    for (const Surface& surface : lighting.scene.surfaces) {
+      has_metal = has_metal || surface.kind == SurfaceKind::kMetal;
     }
   }
-  if (images.empty()) {
-    throw InputError("there is no image of " + app + " for " + board.name +
-                     (folder.empty() ? "" : " in " + folder) +
-                     "; make images builds them, --images or $THIMBLE_IMAGES says where they are");
-  }
-  std::stable_sort(images.begin(), images.end(),
-                   [](const BoardImage& a, const BoardImage& b) { return a.room() > b.room(); });
-  return images;
+  // Metals show their own light where nobody wants mirrors, and a program that has mirrors would show them.
+  const bool has_dull_metal = has_metal && (baked.effects & Effect::kMirror) == 0;
+  const auto found = std::find_if(images.begin(), images.end(), [&](const BoardImage& image) {
+    return image.draws(baked.effects) && !(has_dull_metal && (image.mark.effects & Effect::kMirror) != 0);
+  });
+  return found == images.end() ? nullptr : &*found;
 }
 
 bool takes_ending(const platform::BoardFacts& board, std::string_view path) {

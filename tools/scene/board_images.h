@@ -10,6 +10,7 @@
 #include "boards/board_table.h"
 #include "images/image_file.h"
 #include "images/scene_mark.h"
+#include "scene/baking.h"
 #include "thimble/light/scene.h"
 
 namespace thimble::tools {
@@ -27,10 +28,12 @@ struct BoardImage {
 /// file, another board's, one of another version, without a place for a scene.
 BoardImage open_image(std::string_view elf, const platform::BoardFacts& board);
 
-/// Those of a board and an application, the smallest program first. `folder` empty: $THIMBLE_IMAGES, or the folder beside
-/// the program. Throws InputError, also where there is none.
-std::vector<BoardImage> load_images(std::string folder, const platform::BoardFacts& board,
-                                    const std::string& app);
+/// The smallest program, which leaves most room, first.
+void sort_images(std::vector<BoardImage>* images);
+/// The most that one of them has for a scene with these effects; 0 where none draws it.
+std::uint64_t room_behind(std::span<const BoardImage> images, EffectSet effects);
+/// The first of those sorted that draws what was baked; null where none does.
+const BoardImage* image_for(std::span<const BoardImage> images, const Baked& baked);
 
 /// What a file of the board may end in: elf, bin, hex, and its own (uf2, gba).
 bool takes_ending(const platform::BoardFacts& board, std::string_view path);

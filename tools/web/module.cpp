@@ -9,6 +9,7 @@
 #include "output/units.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "scene/board_images.h"
 #include "scene/framing.h"
 #include "scene/generators.h"
 #include "scene/scene_source.h"
@@ -19,8 +20,10 @@ namespace thimble::tools {
 namespace {
 
 Baked baked;
-std::string facts;  // of what was baked, as JSON
-std::string notes;  // of what its file says and is not drawn
+std::string facts;               // of what was baked, as JSON
+std::string notes;               // of what its file says and is not drawn
+std::vector<BoardImage> images;  // of the board, for what is downloaded
+std::string image;
 
 std::string number_field(const char* name, std::uint64_t value) {
   return std::string(",\"") + name + "\":" + std::to_string(value);
@@ -33,6 +36,7 @@ void tell(const SceneSource& source, const platform::BoardFacts& board) {
           number_field("effects", baked.effects) + number_field("points", source.points()) +
           number_field("frames", source.frames()) +
           number_field("code", code_flash_bytes(board, baked.effects)) +
+          number_field("room", images.empty() ? 0 : room_behind(images, baked.effects)) +
           number_field("ram", drawing_ram_bytes(board, baked.effects)) +
           number_field("water", (baked.effects & Effect::kWater) != 0 ? 1 : 0) + ",\"kind\":\"" +
           source.kind() + "\"}";
@@ -58,10 +62,21 @@ extern "C" {
   thimble::tools::add_file(name, {bytes, size});
 }
 
+// A program of `make images` for board number `index`: the scene that is baked next is to lie behind one of those.
+[[clang::export_name("add_program")]] void thimble_add_program(const std::uint8_t* bytes, std::size_t size,
+                                                               std::uint32_t index) {
+  using namespace thimble::tools;
+  images.push_back(
+      open_image({reinterpret_cast<const char*>(bytes), size}, thimble::platform::boards()[index]));
+  sort_images(&images);
+}
+
 // Bakes `scene`, a file's name or a generator, for board number `index`; `depth` 0: its own; `frame` below 0: the first.
-// `turns`: the board turns it, so that all of it stays in the picture. How many bytes it takes.
+// `width_px` 0: for the board, which turns it, so that all of it stays in the picture; else to look around in, in a picture of
+// that size, whatever its bytes. How many they are.
 [[clang::export_name("bake")]] std::size_t thimble_bake(const char* scene, std::uint32_t index, int depth,
-                                                        bool coarsen, std::int32_t frame, bool turns) {
+                                                        bool coarsen, std::int32_t frame,
+                                                        std::int32_t width_px, std::int32_t height_px) {
   using namespace thimble;
   using namespace thimble::tools;
   const platform::BoardFacts& board = platform::boards()[index];
@@ -78,9 +93,13 @@ extern "C" {
   ViewWishes view;
   view.side = NamedView::kBest;
   view.fov_degrees = kPictureFov;
-  view.width_px = board.width_px;
-  view.height_px = board.height_px;
-  const FlashLimit limit{&board, std::nullopt};
+  const bool turns = width_px == 0;
+  view.width_px = turns ? board.width_px : width_px;
+  view.height_px = turns ? board.height_px : height_px;
+  FlashLimit limit{turns ? &board : nullptr, std::nullopt};
+  if (!images.empty()) {
+    limit.room = [](EffectSet effects) { return room_behind(images, effects); };
+  }
   BakingOptions options;
   options.limit_bytes = limit.bytes();
   options.name = scene_name(scene);
@@ -88,13 +107,17 @@ extern "C" {
   options.most_map_level = board.most_map_level;
   options.coarsen = coarsen;
   options.default_look = source->baked() == nullptr && !parse_generator(scene);
-  options.display = DisplayFacts{board.format, board.width_px, board.height_px};
+  options.display = DisplayFacts{board.format, view.width_px, view.height_px};
   SceneShape shape;
   options.camera = [&](const CompactTree& tree) {
     shape = shape_to_frame(*source, tree);
     return (turns ? frame_round(view, *source, shape) : frame_scene(view, *source, shape)).kept;
   };
   baked = bake_within(limit, *source, &options);
+  if (limit.room && limit.room(baked.effects) == 0) {
+    throw InputError("calls for " + effects_text(baked.effects) + ", which no image for " + board.name +
+                     " draws together");
+  }
   if (!baked.fits) {
     throw InputError(too_large_text(limit, baked, options, source->level()));
   }
@@ -105,6 +128,19 @@ extern "C" {
 
 [[clang::export_name("baked")]] const std::uint8_t* thimble_baked() {
   return thimble::tools::baked.bytes.data();
+}
+// The file for the board, in the format of that ending: its bytes, image_bytes() of them.
+[[clang::export_name("image")]] const char* thimble_image(std::uint32_t index, const char* ending) {
+  using namespace thimble::tools;
+  const BoardImage* const found = image_for(images, baked);
+  if (found == nullptr) {
+    throw thimble::tools::InputError("is drawn by no image for this board");
+  }
+  image = image_file(*found, baked.bytes, thimble::platform::boards()[index], ending);
+  return image.data();
+}
+[[clang::export_name("image_bytes")]] std::size_t thimble_image_bytes() {
+  return thimble::tools::image.size();
 }
 [[clang::export_name("facts")]] const char* thimble_facts() {
   return thimble::tools::facts.c_str();
