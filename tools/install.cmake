@@ -9,6 +9,17 @@ endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/images DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble OPTIONAL
   FILES_MATCHING PATTERN "*.elf.gz")
 
+# What desktops open files and draw their pictures by. The types are those of thimble.xml.
+file(STRINGS desktop/thimble.xml types REGEX "mime-type type=")
+list(TRANSFORM types REPLACE ".*type=\"([^\"]*)\".*" "\\1")
+foreach(file desktop thumbnailer)
+  configure_file(desktop/thimble.${file}.in ${PROJECT_BINARY_DIR}/generated/thimble.${file} @ONLY)
+endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/generated/thimble.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+install(FILES ${PROJECT_BINARY_DIR}/generated/thimble.thumbnailer DESTINATION ${CMAKE_INSTALL_DATADIR}/thumbnailers)
+install(FILES desktop/thimble.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
+install(FILES desktop/thimble.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
+
 # The manual page comes from the description that --help prints.
 set(manual ${PROJECT_BINARY_DIR}/generated/thimble.1.gz)
 add_custom_command(OUTPUT ${manual} DEPENDS thimble_command

@@ -26,6 +26,9 @@ try() {  # try NAME BELOW MAKE_ARGS
   [ -x "$at/bin/thimble" ] || complain "with $* there is no bin/thimble"
   [ -f "$at/include/thimble/thimble.h" ] || complain "with $* there is no header"
   [ -f "$at/share/thimble/scenes/castle.vox" ] || complain "with $* there are no scenes"
+  for entry in applications/thimble.desktop mime/packages/thimble.xml thumbnailers/thimble.thumbnailer; do
+    [ -s "$at/share/$entry" ] || complain "with $* there is no share/$entry"
+  done
   said=$(cd / && env -i "$at/bin/thimble" info castle 2>&1 | head -n 1)
   [ "$said" = "scene                castle" ] || complain "with $* the command says: $said"
   make_it uninstall "$@"

@@ -24,10 +24,17 @@ else
   logged dpkg-deb -x "$deb" "$WORK/root"
 fi
 for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/panel.h lib/libthimble.a lib/cmake/thimble/thimbleConfig.cmake \
-  share/doc/thimble/copyright share/doc/thimble/README.md.gz share/man/man1/thimble.1.gz; do
+  share/doc/thimble/copyright share/doc/thimble/README.md.gz share/man/man1/thimble.1.gz \
+  share/applications/thimble.desktop share/mime/packages/thimble.xml share/thumbnailers/thimble.thumbnailer \
+  share/icons/hicolor/scalable/apps/thimble.svg; do
   [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
 done
 env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "$WORK/castle.png" || fail "the command does not draw"
+# As a file manager runs it: the entry's own line, with its letters replaced.
+thumbnailer=$(sed -n 's/^Exec=//p' "$WORK/root/usr/share/thumbnailers/thimble.thumbnailer" |
+  sed "s|%s|64|; s|%i|$WORK/root/usr/share/thimble/scenes/castle.vox|; s|%o|$WORK/thumbnail.png|")
+env -i PATH="$WORK/root/usr/bin" $thumbnailer && [ -s "$WORK/thumbnail.png" ] || fail "this draws no picture: $thumbnailer"
+grep -q '^MimeType=model/x-vox;.*;model/gltf-binary;$' "$WORK/root/usr/share/applications/thimble.desktop" || fail "the desktop entry lacks types"
 if command -v pkg-config >/dev/null 2>&1; then
   PKG_CONFIG_PATH=$(dirname "$(find "$WORK/root/usr/lib" -name thimble.pc)")
   export PKG_CONFIG_PATH

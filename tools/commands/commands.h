@@ -18,6 +18,8 @@ void add_table(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_image(CLI::App& app);
 void add_export(CLI::App& app);
+void add_sheet(CLI::App& app);
+void add_thumbnail(CLI::App& app);
 void add_info(CLI::App& app);
 void add_boards(CLI::App& app);
 void add_memory(CLI::App& app);
@@ -42,6 +44,8 @@ inline void add_all_commands(CLI::App& app) {
   add_bake(app);
   add_image(app);
   add_export(app);
+  add_sheet(app);
+  add_thumbnail(app);
   add_info(app);
   add_boards(app);
   add_memory(app);

@@ -55,6 +55,13 @@ void finish(const RenderCommand& command, const Stats& stats, const std::string&
 
 /// Whether the scene's own look is drawn: nobody said how to shade, and nothing that was said forbids light.
 bool takes_look(const RenderCommand& command);
+/// The scene's own look in the view of `command`, for what is no file of a picture.
+struct LookPicture {
+  Image image;
+  std::uint64_t voxels = 0;
+  SceneCamera camera;
+};
+LookPicture draw_look(const RenderCommand& command, const SceneSource& source);
 /// Draws that: a picture, or a film; or a part of one.
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs);
 

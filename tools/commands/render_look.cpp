@@ -367,6 +367,12 @@ void render_film(const RenderCommand& command, const SceneSource& source, LookSt
 
 }  // namespace
 
+LookPicture draw_look(const RenderCommand& command, const SceneSource& source) {
+  LookStudio studio(command, source);
+  studio.look_from(frame_scene(command.view, source, studio.shape()));
+  return {studio.paint({}).image, studio.built().voxels(), studio.framing().kept};
+}
+
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs) {
   LookStudio studio(command, source);
   if (command.output.is_film()) {

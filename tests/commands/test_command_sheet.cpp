@@ -1,0 +1,102 @@
+// `thimble sheet` and `thimble thumbnail`: small pictures of files that nobody vouches for.
+#include <doctest/doctest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "support/check_command.h"
+#include "support/run_command.h"
+
+namespace {
+
+using namespace thimble::tests;
+
+constexpr const char* kCube = "2 2 2 255 0 0\n2 2 3 255 0 0\n2 3 2 255 0 0\n";
+
+// Width and height of a .ppm.
+std::vector<std::string> size_of(const std::string& path) {
+  return split(lines_of(read_text(path))[1], ' ');
+}
+
+// `megabytes` of zeros, in members of one each.
+std::string packed_zeros(int megabytes) {
+  const std::string zeros(1 << 20, '\0');
+  std::string member(zeros.size(), '\0');
+  z_stream stream{};
+  REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(zeros.data()));
+  stream.avail_in = static_cast<uInt>(zeros.size());
+  stream.next_out = reinterpret_cast<Bytef*>(member.data());
+  stream.avail_out = static_cast<uInt>(member.size());
+  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
+  member.resize(stream.total_out);
+  deflateEnd(&stream);
+  std::string all;
+  for (int i = 0; i < megabytes; ++i) {
+    all += member;
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("thumbnail: a model -> the picture that render draws of it, a mesh by as many voxels as pixels") {
+  const TemporaryFolder folder;
+  const std::string model = folder.write("m.xyz", kCube);
+  const std::string mesh = folder.write("m.obj", "v 0 0 0\nv 9 0 1\nv 0 5 7\nf 1 2 3\n");
+  const auto same = [&](const std::string& scene, const Words& more) {
+    check_done({"thumbnail", scene, folder.path("small"), "--size", "64"});
+    check_done(Words{"render", scene, "--size", "64x64", "-o", folder.path("large.png")} + more);
+    CHECK(read_text(folder.path("small")) == read_text(folder.path("large.png")));
+  };
+  same(model, {});
+  same(mesh, {"--depth", "6"});
+}
+
+TEST_CASE("thumbnail: what is broken, endless or huge -> a sentence in time, and no file") {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& scene, const char* named) {
+    check_refused({"thumbnail", scene, folder.path("t.png")}, 1, {scene, named});
+    const auto names = folder.names();
+    CHECK(std::find(names.begin(), names.end(), "t.png") == names.end());
+  };
+  refused(folder.write("broken.vox", "VOX ?"), "truncated");
+  refused(folder.path("nothing.vox"), "No such file");
+  std::string slow = "depth 9\n";
+  for (int i = 0; i < 2000; ++i) {
+    slow += "model cluster:100000,depth=9\n";
+  }
+  refused(folder.write("slow.scene", slow), "longer");
+  if (!kSanitized) {
+    refused(folder.write("zeros.kvx.gz", packed_zeros(400)), "memory");
+  }
+  check_refused({"thumbnail", folder.path("a")}, 2, {"picture"});
+  const std::string same = folder.write("same.xyz", kCube);
+  check_refused({"thumbnail", same, same}, 1, {"same.xyz"});
+}
+
+TEST_CASE("sheet: a folder -> a tile for each scene in it, what cannot be drawn counted; nothing else") {
+  const TemporaryFolder folder;
+  const TemporaryFolder out;
+  check_refused({"sheet", folder.path(), "-o", out.path("s.ppm")}, 1, {"no file in it is a scene"});
+  for (const char* const name : {"a.xyz", "b.xyz", "c.xyz", "d.xyz"}) {
+    folder.write(name, kCube);
+  }
+  folder.write(".hidden.xyz", kCube);
+  folder.write("notes.md", "no scene");
+  folder.write("broken.vox", "VOX ?");
+  const Words words{"sheet", folder.path(), "-o", out.path("s.ppm"), "--size", "96"};
+  CHECK(check_done(words).err == "5 scenes, 1 of them could not be drawn\n");
+  // Three in a row; 12 pixels between tiles, 38 for what is written below.
+  CHECK(size_of(out.path("s.ppm")) == Words{std::to_string(3 * 108 + 12), std::to_string(2 * 146 + 12)});
+  const std::string first = read_text(out.path("s.ppm"));
+  CHECK(check_done(words + Words{"--columns", "1", "--threads", "1", "--quiet"}).err.empty());
+  CHECK(size_of(out.path("s.ppm")) == Words{"120", std::to_string(5 * 146 + 12)});
+  check_done(words);
+  CHECK(read_text(out.path("s.ppm")) == first);
+  check_refused({"sheet", folder.path(), "-o", out.path("s.gif")}, 2, {".png"});
+  check_refused({"sheet", folder.path("none"), "-o", out.path("s.png")}, 1, {"none", "No such file"});
+  CHECK(out.names() == Words{"s.ppm"});
+}

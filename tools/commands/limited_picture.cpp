@@ -1,0 +1,144 @@
+#include "commands/limited_picture.h"
+
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <new>
+
+#include "commands/render_command.h"
+#include "output/output_file.h"
+#include "scene/scene_source.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::size_t kMostErrorBytes = 400;
+
+// Numbers of the signals that clean_up_on_signals() catches: this process has nothing to clean up.
+void die_by_signals() {
+  for (const int number : {SIGHUP, SIGINT, SIGQUIT, SIGABRT, SIGALRM, SIGTERM, SIGXCPU}) {
+    std::signal(number, SIG_DFL);
+  }
+}
+
+void limit_this_process(const PictureLimits& limits) {
+  const auto most = [](auto what, std::uint64_t amount) {
+    const rlimit both{amount, amount};
+    ::setrlimit(what, &both);
+  };
+#ifndef __SANITIZE_ADDRESS__  // its shadow memory takes terabytes of addresses
+  most(RLIMIT_AS, limits.memory_bytes);
+#endif
+  most(RLIMIT_CPU, static_cast<std::uint64_t>(limits.seconds));
+  most(RLIMIT_CORE, 0);
+  most(RLIMIT_FSIZE, 0);
+  ::alarm(static_cast<unsigned>(5 * limits.seconds));
+}
+
+}  // namespace
+
+struct LimitedPicture::Shared {
+  bool is_done;
+  std::uint64_t voxels;
+  std::array<char, kMostErrorBytes> error;
+
+  std::uint8_t* pixels() { return reinterpret_cast<std::uint8_t*>(this + 1); }
+  void fail(std::string_view sentence) {
+    std::copy_n(sentence.begin(), std::min(sentence.size(), error.size() - 1), error.begin());
+    is_done = true;
+  }
+  void draw(const std::string& path, std::int32_t side_px, const PictureLimits& limits) {
+    try {
+      RenderCommand command;
+      command.scene.arguments.scene = path;
+      command.scene.quiet = true;
+      // What is too fine for a small picture is merged. The rest is the program's, the file's and the picture's.
+      command.scene.memory_bytes = limits.memory_bytes / 3;
+      command.scene.coarsen = true;
+      command.view.side = NamedView::kBest;
+      command.view.fov_degrees = kPictureFov;
+      command.view.width_px = command.view.height_px = side_px;
+      auto source = command.scene.open();
+      const auto depth = static_cast<int>(std::bit_width(static_cast<unsigned>(side_px - 1)));
+      if (limits.coarse && source->is_mesh() && source->level() > depth) {
+        command.scene.arguments.depth = depth;
+        source = command.scene.open();
+      }
+      const LookPicture look = draw_look(command, *source);
+      voxels = look.voxels;
+      std::copy(look.image.pixels.begin(), look.image.pixels.end(), pixels());
+      is_done = true;
+    } catch (const std::bad_alloc&) {
+      fail("takes more memory than a small picture may");
+    } catch (const std::exception& wrong) {
+      fail(wrong.what());
+    }
+  }
+};
+
+LimitedPicture::LimitedPicture(const std::string& path, std::int32_t side_px, const PictureLimits& limits)
+    : side_px_(side_px),
+      limits_(limits),
+      bytes_(sizeof(Shared) + 3 * static_cast<std::size_t>(side_px) * static_cast<std::size_t>(side_px)) {
+  void* const memory = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  const int parent = ::getpid();
+  process_ = memory == MAP_FAILED ? -1 : ::fork();
+  if (process_ < 0) {
+    const std::string why = std::strerror(errno);
+    if (memory != MAP_FAILED) {
+      ::munmap(memory, bytes_);
+    }
+    throw OutputError("no process can be started to draw " + path + ": " + why);
+  }
+  shared_ = static_cast<Shared*>(memory);  // zeros, which are an empty one
+  if (process_ == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    die_by_signals();
+    limit_this_process(limits);
+    if (::getppid() == parent) {
+      shared_->draw(path, side_px, limits);
+    }
+    ::_exit(0);
+  }
+}
+
+LimitedPicture::~LimitedPicture() {
+  if (process_ > 0) {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  ::munmap(shared_, bytes_);
+}
+
+bool LimitedPicture::take(SmallPicture* picture, bool waits) {
+  int status = 0;
+  if (process_ <= 0 || ::waitpid(process_, &status, waits ? 0 : WNOHANG) != process_) {
+    return false;
+  }
+  process_ = -1;
+  if (WIFSIGNALED(status) || !shared_->is_done) {
+    const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    const bool took_long = number == SIGXCPU || number == SIGKILL || number == SIGALRM;
+    shared_->fail(took_long ? "takes longer than the " + std::to_string(limits_.seconds) +
+                                  " s that a small picture may"
+                            : "ended the process that read it");
+  }
+  picture->error = shared_->error.data();
+  picture->voxels = shared_->voxels;
+  if (picture->error.empty()) {
+    const std::uint8_t* const first = shared_->pixels();
+    picture->image = {side_px_, side_px_, PixelFormat::kRgb888, {first, first + (bytes_ - sizeof(Shared))}};
+  }
+  return true;
+}
+
+}  // namespace thimble::tools

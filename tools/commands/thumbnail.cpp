@@ -1,0 +1,47 @@
+// thimble thumbnail: a small picture for file managers, within limits that hold for any file.
+#include <memory>
+#include <string>
+
+#include "commands/arguments.h"
+#include "commands/commands.h"
+#include "commands/limited_picture.h"
+#include "output/output_set.h"
+
+namespace thimble::tools {
+namespace {
+
+struct ThumbnailCommand {
+  std::string scene;
+  std::string output;
+  std::int32_t side_px = 128;
+};
+
+void run(const ThumbnailCommand& command) {
+  constexpr PictureLimits kLimits{1, std::uint64_t{256} << 20, true};
+  OutputSet outputs({command.output}, {command.scene});
+  SmallPicture picture;
+  LimitedPicture(command.scene, command.side_px, kLimits).take(&picture, true);
+  if (!picture.error.empty()) {
+    throw InputError(picture.error);
+  }
+  write_image(outputs[0], ImageKind::kPng, picture.image);
+  outputs.commit();
+}
+
+}  // namespace
+
+void add_thumbnail(CLI::App& app) {
+  auto command = std::make_shared<ThumbnailCommand>();
+  CLI::App* sub =
+      add_command(app, "thumbnail",
+                  "Draw a small picture of a file in at most 1 s, 256 MB and one thread, whatever "
+                  "the file is, as file managers ask for it.");
+  sub->add_option("scene", command->scene, "the file")->type_name("SCENE")->required();
+  sub->add_option("picture", command->output, "the picture, a PNG whatever its name")
+      ->type_name("FILE")
+      ->required();
+  add_whole_option(*sub, "--size", "N", 16, 1024, &command->side_px, "pixels a side")->default_str("128");
+  when_chosen(*sub, [command] { run(*command); });
+}
+
+}  // namespace thimble::tools
