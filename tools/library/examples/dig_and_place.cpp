@@ -1,5 +1,5 @@
 // A world that is dug and built while it is drawn, 640 x 360 with a sun and exact shadows: dig_and_place FILE FRAMES OUT.ppm.
-// What the middle of the picture shows is dug away; every other frame a voxel is placed on it instead. The last frame is
+// What the middle of the picture shows is dug away; every fourth frame a voxel is placed on it instead. The last frame is
 // kept, and what a frame took is said.
 #include <chrono>
 #include <cstdio>
@@ -51,7 +51,7 @@ int main(int count, char** words) {
     if (closest_hit(world.tree(), ray, &hit) == Status::kOk && hit.kind == HitKind::kHit && hit.axis >= 0) {
       Vec3i beside = hit.voxel;  // the empty place before the face that the ray enters
       beside[hit.axis] += ray.direction[hit.axis] > 0 ? -1 : 1;
-      const Status status = frame % 2 == 1 ? world.set(beside, hit.material) : world.clear(hit.voxel);
+      const Status status = frame % 4 == 3 ? world.set(beside, hit.material) : world.clear(hit.voxel);
       edits += status == Status::kOk ? 1 : 0;  // out of room, or of the world: nothing has changed
     }
     threads.each(kHeight / kBandRows, [&](int band_number) {

@@ -1,7 +1,5 @@
 // Shows a model that turns, in a window: view FILE. With view FILE FRAMES OUT.ppm it draws so many frames without one and
 // keeps the last.
-#include <X11/Xlib.h>
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,6 +11,10 @@
 #include "thimble/picture/shading.h"
 #include "wide/raster/renderer.h"
 
+// Last, since it has macros of common names.
+#include <X11/Xlib.h>
+#undef Status
+
 using namespace thimble;
 
 namespace {
@@ -23,7 +25,7 @@ Camera camera_at(const CompactTree& tree, double turn) {
   const VoxelBox& box = tree.bounds();
   const double x = (box.low.x + box.high.x) / 2.0, y = (box.low.y + box.high.y) / 2.0;
   const double z = (box.low.z + box.high.z) / 2.0;
-  const double far = 1.3 * std::hypot(box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z);
+  const double far = 1.1 * std::hypot(box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z);
   const auto q8 = [](double value) {
     return Q8::from_raw(static_cast<std::int32_t>(std::lround(256 * value)));
   };
