@@ -23,7 +23,7 @@ if [ "$(id -u)" -eq 0 ]; then
 else
   logged dpkg-deb -x "$deb" "$WORK/root"
 fi
-for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/panel.h lib/libthimble.a lib/cmake/thimble/thimbleConfig.cmake \
+for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/panel.h lib/libthimble.a lib/libthimble_files.so lib/libthimble_wide.a include/thimble/files.h include/thimble/wide/threads.h lib/cmake/thimble/thimbleConfig.cmake \
   share/doc/thimble/copyright share/doc/thimble/README.md.gz share/man/man1/thimble.1.gz; do
   [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
 done
