@@ -1,6 +1,6 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
-.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install \
+.PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install install-python \
   uninstall deb packages release sanitize clang fuzz check test test-all coverage bench firmware emulate images flash test-boards test-packages \
   bench-frames test-framebuffer test-threads mutants ranges soak web test-web bench-web format tidy clean
 
@@ -16,7 +16,7 @@ deps: ## Install what building, testing and measuring need (apt-get; as root or 
 deps-build:
 	@.ci/deps build tools
 deps-test:
-	@.ci/deps build tools test
+	@.ci/deps build tools test python
 deps-bench:
 	@.ci/deps build tools bench
 deps-boards:
@@ -45,6 +45,17 @@ INSTALL = cmake --install build/release --prefix "$(or $(PREFIX),/)" --strip >/d
 install: all ## Install command, library, scenes, manual, completions (PREFIX=/usr/local, DESTDIR=...)
 	@DESTDIR="$(DESTDIR)" $(INSTALL)
 	@echo "installed in $(DESTDIR)$(or $(PREFIX),/)"
+PYTHON ?= $(or $(wildcard /usr/bin/python3),python3)
+# What is compiled for the command is linked once more as the module.
+PYTHON_MODULE = $(CONFIGURE) -B build/release -DTHIMBLE_PYTHON=ON -DPython3_EXECUTABLE=$(shell command -v $(PYTHON)) $(LEAN) \
+  >/dev/null && .ci/build "the module for Python" build/release thimble_python && mkdir -p build/packages && \
+  $(PYTHON) -B tools/packages/make.py python
+PIP = THIMBLE_BUILD="$(CURDIR)/build/release" $(PYTHON) -m pip --quiet --disable-pip-version-check
+PIP_OFFLINE = --no-index --no-build-isolation --no-deps
+install-python: all ## Install the Python package (PYTHON=venv/bin/python: into that environment)
+	@.ci/deps python
+	@$(PYTHON_MODULE)
+	@$(PIP) install $(PIP_OFFLINE) --force-reinstall $(PIP_ARGS) build/packages/thimble_voxels-*.tar.gz
 uninstall: all ## Remove what `make install` with the same PREFIX and DESTDIR installs
 	@sh tools/uninstall.sh build/release "$(DESTDIR)" "$(or $(PREFIX),/)"
 deb: all ## Make a Debian package of what `make install` installs (build/release/thimble_*.deb)
@@ -54,13 +65,16 @@ packages: all ## Make the packages of every ecosystem (build/packages); RELEASE=
 	@mkdir -p build/packages && rm -f build/packages/*
 	@$(or $(wildcard /usr/bin/python3),python3) -B tools/packages/make.py $(if $(RELEASE),--release)
 	@sh tools/package.sh build/release build/packages
+	@.ci/deps python
+	@$(PYTHON_MODULE)
+	@$(PIP) wheel $(PIP_OFFLINE) --wheel-dir build/packages build/packages/thimble_voxels-*.tar.gz
 test-packages: ## Unpack every package in an empty folder and build it by its ecosystem's rules
 	@.ci/deps boards
 	@$(MAKE) --no-print-directory packages
 	@sh tests/packages/run.sh
 
 # What is tested whole is built in four ways; STEP says which of how many steps this is.
-TESTED = -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON
+TESTED = -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON -DTHIMBLE_PYTHON=ON
 release:
 	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
 	@.ci/build "$(STEP)optimised build" build/release

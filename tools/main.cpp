@@ -15,7 +15,6 @@
 #include "commands/commands.h"
 #include "output/held_signals.h"
 #include "output/output_file.h"
-#include "output/suggestion.h"
 #include "output/units.h"
 #include "readers/input_error.h"
 #include "scene/named_scenes.h"
@@ -24,32 +23,6 @@ namespace {
 
 constexpr int kInputStatus = 1;
 constexpr int kUsageStatus = 2;
-
-std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) {
-      names.push_back("--" + name);
-    }
-  }
-  return names;
-}
-
-std::vector<std::string> subcommand_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    names.push_back(command->get_name());
-  }
-  return names;
-}
-
-// What the first argument may be: a subcommand, or the name of a scene.
-std::vector<std::string> first_words(const CLI::App& app) {
-  std::vector<std::string> words = subcommand_names(app);
-  const std::vector<std::string> scenes = thimble::tools::scene_names();
-  words.insert(words.end(), scenes.begin(), scenes.end());
-  return words;
-}
 
 // Whether the first argument is a scene, so that the command is to show it: a file, a generator, the name of a
 // scene that comes along, or what can only be a file that is not there.
@@ -77,55 +50,6 @@ constexpr const char* kFirstWords =
     "  thimble sim FILE --board microbit      see it as that board shows it\n"
     "  thimble bake FILE -o scene.h           write it as bytes for flash\n"
     "  thimble --help                         list all there is; thimble SUBCOMMAND --help each option\n";
-
-// What was wrong with the usage, as one sentence.
-std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, const std::string& first) {
-  using thimble::tools::in_quotes;
-  const auto chosen = app.get_subcommands();
-  const std::string command = chosen.empty() ? "thimble" : "thimble " + chosen.front()->get_name();
-  const std::string advice = "; " + command + " --help lists what there is";
-  if (chosen.empty()) {
-    return first.starts_with("-") ? in_quotes(first) + " is not an option here" +
-                                        thimble::tools::suggestion(first, option_names(app)) + advice
-                                  : in_quotes(first) + " is neither a subcommand nor a file" +
-                                        thimble::tools::suggestion(first, first_words(app)) + advice;
-  }
-  const std::vector<std::string> extras = app.remaining(true);
-  // What is required may be missing because it follows an option that is not there.
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
-      dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-    for (const std::string& extra : extras) {
-      if (extra == "--") {
-        break;  // what follows it is no option
-      }
-      if (extra.size() > 1 && extra.starts_with("-")) {
-        const std::string name = extra.substr(0, extra.find('='));
-        return in_quotes(extra) + " is not an option of " + command +
-               thimble::tools::suggestion(name, option_names(*chosen.front())) + advice;
-      }
-    }
-    if (!extras.empty() && dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-      const bool is_marked = extras.front() == "--" && extras.size() > 1;
-      return in_quotes(extras[is_marked ? 1 : 0]) + " is one argument too many" + advice;
-    }
-  }
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-    const std::string text = error.what();
-    const std::size_t flag_end = text.find(" was given a disallowed flag override");
-    if (flag_end != std::string::npos) {
-      return "--" + text.substr(0, flag_end) + " takes no value" + advice;
-    }
-    const std::string name = text.substr(0, text.find(':'));
-    const bool twice =
-        text.find("received") != std::string::npos && text.find("At Most") != std::string::npos;
-    return name + (twice ? " is given more than once" : " needs a value") + advice;
-  }
-  const std::string text = error.what();
-  return (text == "scene is required"   ? "SCENE is required"
-          : text == "parts is required" ? "PARTS are required"
-                                        : text) +
-         advice;
-}
 
 // Standard streams that are closed would be taken by the next file opened, and a picture would get the
 // sentences meant for a person. Reading from and writing to these stand-ins fails, as it should.
@@ -183,7 +107,7 @@ int main(int argc, char** argv) {
     std::vector<char*> words(argv, argv + argc);
     char view[] = "view";
     char end_of_options[] = "--";
-    const std::vector<std::string> names = subcommand_names(app);
+    const std::vector<std::string> names = thimble::tools::subcommand_names(app);
     const auto is_subcommand = [&](const char* word) {
       return std::find(names.begin(), names.end(), word) != names.end();
     };
@@ -204,7 +128,7 @@ int main(int argc, char** argv) {
     thimble::tools::check_standard_output();
     return 0;
   } catch (const CLI::ParseError& error) {
-    sentence = usage_sentence(app, error, argv[1]);
+    sentence = thimble::tools::usage_sentence(app, error, argv[1]);
     status = kUsageStatus;
   } catch (const thimble::tools::UsageError& error) {
     sentence = subject() + error.what();

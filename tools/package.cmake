@@ -5,15 +5,22 @@ set(root ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr)
 set(doc ${root}/share/doc/thimble)
 file(MAKE_DIRECTORY ${doc})
 
+# One package has the command, the shared library and what one builds with.
+file(WRITE ${root}/share/lintian/overrides/thimble
+  "thimble: package-name-doesnt-match-sonames\nthimble: non-dev-pkg-with-shlib-symlink\n")
+
 # Debian's zsh looks here for what packages bring.
 file(RENAME ${root}/share/zsh/site-functions ${root}/share/zsh/vendor-completions)
 
 # Debian's pkg-config looks in the folder of the architecture, one deeper, when it compiles for that.
 execute_process(COMMAND dpkg-architecture -qDEB_HOST_MULTIARCH OUTPUT_VARIABLE machine OUTPUT_STRIP_TRAILING_WHITESPACE)
 if(machine AND EXISTS ${root}/lib/pkgconfig)
-  file(READ ${root}/lib/pkgconfig/thimble.pc said)
-  string(REPLACE "\${pcfiledir}/../.." "\${pcfiledir}/../../.." said "${said}")
-  file(WRITE ${root}/lib/${machine}/pkgconfig/thimble.pc "${said}")
+  file(GLOB descriptions RELATIVE ${root}/lib/pkgconfig ${root}/lib/pkgconfig/*.pc)
+  foreach(description IN LISTS descriptions)
+    file(READ ${root}/lib/pkgconfig/${description} said)
+    string(REPLACE "\${pcfiledir}/../.." "\${pcfiledir}/../../.." said "${said}")
+    file(WRITE ${root}/lib/${machine}/pkgconfig/${description} "${said}")
+  endforeach()
   file(REMOVE_RECURSE ${root}/lib/pkgconfig)
 endif()
 

@@ -26,6 +26,7 @@ rm -rf _CPack_Packages
 made=$(ls thimble_*.deb)
 rm -rf package.root
 dpkg-deb -R "$made" package.root
+rm -f package.root/DEBIAN/postinst package.root/DEBIAN/postrm  # CPack's call ldconfig, which the trigger does
 find package.root -exec touch -h -d "@$SOURCE_DATE_EPOCH" {} +
 [ "$to" = "$PWD" ] || rm -f "$made"
 dpkg-deb --root-owner-group -Zxz -b package.root "$to/$made" >/dev/null

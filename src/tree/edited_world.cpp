@@ -224,6 +224,18 @@ bool EditedWorld::find(const Vec3i& voxel, int to_level, Place* place) const {
   return true;
 }
 
+int EditedWorld::material_within(const Vec3i& voxel) const {
+  Place place{};
+  if (!find(voxel, 1, &place)) {
+    return kEmpty;
+  }
+  const unsigned mask = masks_[place.node];
+  const unsigned octant = octant_of(voxel, 1);
+  return mask == 0                    ? tree_.block_material(place.node)
+         : (mask >> octant & 1U) == 0 ? kEmpty
+                                      : tree_.voxel_material(child_of(place.node, octant));
+}
+
 // Whether there is room for `voxel` to become `material` (-1: empty), and whether anything changes.
 Status EditedWorld::check_room(const Vec3i& voxel, int material, bool* changes) const {
   *changes = false;

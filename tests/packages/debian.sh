@@ -23,10 +23,11 @@ if [ "$(id -u)" -eq 0 ]; then
 else
   logged dpkg-deb -x "$deb" "$WORK/root"
 fi
-for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/panel.h lib/libthimble.a lib/cmake/thimble/thimbleConfig.cmake \
-  share/doc/thimble/copyright share/doc/thimble/README.md.gz share/man/man1/thimble.1.gz \
-  share/applications/thimble.desktop share/mime/packages/thimble.xml share/thumbnailers/thimble.thumbnailer \
-  share/icons/hicolor/scalable/apps/thimble.svg; do
+for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/panel.h include/thimble/files.h \
+  include/thimble/wide/threads.h lib/libthimble.a lib/libthimble_files.so lib/libthimble_wide.a \
+  lib/cmake/thimble/thimbleConfig.cmake share/doc/thimble/copyright share/doc/thimble/README.md.gz \
+  share/man/man1/thimble.1.gz share/applications/thimble.desktop share/mime/packages/thimble.xml \
+  share/thumbnailers/thimble.thumbnailer share/icons/hicolor/scalable/apps/thimble.svg; do
   [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
 done
 env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "$WORK/castle.png" || fail "the command does not draw"

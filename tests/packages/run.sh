@@ -25,7 +25,7 @@ g++ -std=c++17 -O1 -Iinclude tests/packages/panels.cpp "$LIBTHIMBLE" -o "$work/p
 }
 failed=0
 # Those that take longest begin.
-names=${*:-meson arduino cmake pair esp_idf zephyr platformio debian manifests}
+names=${*:-python library meson arduino cmake pair esp_idf zephyr platformio debian manifests}
 for one in $names; do
   rm -rf "${work:?}/$one"
   mkdir -p "$work/$one"

@@ -28,6 +28,7 @@ class VoxelModel {
   explicit VoxelModel(int level)
       : level_(level), side_(1 << level), voxels_(static_cast<std::size_t>(side_ * side_ * side_), -1) {}
 
+  int level() const { return level_; }
   int side() const { return side_; }
   std::int16_t& at(const Vec3i& voxel) {
     return voxels_[static_cast<std::size_t>((voxel.z * side_ + voxel.y) * side_ + voxel.x)];
@@ -227,6 +228,110 @@ TEST_CASE("edited world: random edits of random worlds -> bytes, map and picture
   }
   CHECK(edits > 3000);
   CHECK(refused > 100);
+}
+
+TEST_CASE(
+    "edited world: boxes and balls as one edit -> those voxels or none; taken back -> the bytes of before") {
+  std::mt19937_64 random(40);
+  int refused = 0;
+  int undone = 0;
+  for (int trial = 0; trial < kWorlds; ++trial) {
+    CAPTURE(trial);
+    const int materials = trial % 2 == 0 ? 3 : 60;
+    VoxelModel model(pick_int(random, 2, 4));
+    fill(random, materials, &model);
+    const HeapBytes first = model.built();
+    EditRoom room = EditedWorld::room_of(open_or_throw(first));
+    const bool is_tight = pick_int(random, 0, 1) == 0;
+    room.nodes += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 40)) : 3000;
+    room.leaves += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 60)) : 5000;
+    room.bricks += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 4)) : 300;
+    HeapBytes bytes(edited_world_bytes(model.level(), room));
+    EditedWorld world;
+    if (EditedWorld::make(open_or_throw(first), room, bytes.span(), &world) != Status::kOk) {
+      continue;  // more kinds of solid bricks than there may be
+    }
+    HeapBytes entries(static_cast<std::size_t>(pick_int(random, 0, 2000) * 8 + pick_int(random, 0, 7)));
+    EditJournal journal(entries.span());
+    std::vector<VoxelModel> states{model};
+    for (int edit = 0; edit < 24; ++edit) {
+      CAPTURE(edit);
+      VoxelBox box;
+      for (int axis = 0; axis < 3; ++axis) {
+        box.low[axis] = pick_int(random, -3, model.side());
+        box.high[axis] = box.low[axis] + pick_int(random, 0, 7);
+      }
+      const EditShape shape = pick_int(random, 0, 1) == 0 ? EditShape::kBox : EditShape::kBall;
+      const int material = pick_int(random, -1, materials - 1);
+      const Status status = world.edit(box, shape, material, &journal);
+      REQUIRE(journal.size() <= journal.capacity());
+      if (status == Status::kOk) {
+        model.for_each([&](const Vec3i& at, std::int16_t& voxel) {
+          double from_middle = 0;
+          bool inside = true;
+          for (int axis = 0; axis < 3; ++axis) {
+            const double radius = (box.high[axis] - box.low[axis]) / 2.0;
+            const double part = (at[axis] + 0.5 - box.low[axis] - radius) / radius;
+            inside = inside && at[axis] >= box.low[axis] && at[axis] < box.high[axis];
+            from_middle += part * part;
+          }
+          // A middle on the surface itself counts; none lies so near to it that doubles could not tell.
+          if (inside && (shape == EditShape::kBox || from_middle <= 1 + 1e-9)) {
+            voxel = static_cast<std::int16_t>(material);
+          }
+        });
+        states.push_back(model);
+      } else {
+        REQUIRE(status == Status::kOutOfMemory);
+        ++refused;
+      }
+      REQUIRE(same_bytes(packed(world), model.built()));
+      REQUIRE(map_is_right(world, model));
+    }
+    model.for_each([&](const Vec3i& at, int voxel) { REQUIRE(world.material(at) == voxel); });
+    for (; states.size() > 1; ++undone) {
+      states.pop_back();
+      REQUIRE(world.undo(&journal) == Status::kOk);
+      REQUIRE(same_bytes(packed(world), states.back().built()));
+      REQUIRE(map_is_right(world, states.back()));
+    }
+    REQUIRE(world.undo(&journal) == Status::kBadArgument);
+  }
+  CHECK(refused > 100);
+  CHECK(undone > 300);
+}
+
+TEST_CASE("edited world: edits that cannot be -> a status, and nothing done") {
+  VoxelModel model(3);
+  const HeapBytes first = model.built();
+  HeapBytes bytes(edited_world_bytes(3, {100, 100, 10}));
+  EditedWorld world;
+  REQUIRE(EditedWorld::make(open_or_throw(first), {100, 100, 10}, bytes.span(), &world) == Status::kOk);
+  HeapBytes entries(800);
+  EditJournal journal(entries.span());
+  const VoxelBox one{{1, 1, 1}, {2, 2, 2}};
+  CHECK(world.edit(one, EditShape::kBox, 256, &journal) == Status::kBadArgument);
+  CHECK(world.edit(one, EditShape::kBox, -2, &journal) == Status::kBadArgument);
+  CHECK(world.edit({{0, 0, 0}, {513, 1, 1}}, EditShape::kBox, 1, &journal) == Status::kOutOfRange);
+  CHECK(world.edit({{INT32_MIN, 0, 0}, {1, 1, 1}}, EditShape::kBall, 1, &journal) == Status::kOutOfRange);
+  CHECK(world.edit({{0, 0, 0}, {1, 1, INT32_MAX}}, EditShape::kBall, 1, &journal) == Status::kOutOfRange);
+  CHECK(EditedWorld().edit(one, EditShape::kBox, 1, &journal) == Status::kBadArgument);
+  EditJournal none;
+  CHECK(world.edit(one, EditShape::kBox, 1, &none) == Status::kOutOfMemory);
+  CHECK(world.undo(&none) == Status::kBadArgument);
+  CHECK(journal.size() == 0);
+  CHECK(world.empty());
+  // A voxel and an edit; nothing outside, and nothing that is so already.
+  CHECK(world.edit(one, EditShape::kBall, 7, &journal) == Status::kOk);
+  CHECK(journal.size() == 2);
+  CHECK(world.material({1, 1, 1}) == 7);
+  CHECK(world.material({-1, 0, 0}) == EditedWorld::kEmpty);
+  CHECK(world.edit({{-400, -400, -400}, {-3, -3, -3}}, EditShape::kBox, 1, &journal) == Status::kOk);
+  CHECK(world.edit(one, EditShape::kBox, 7, &journal) == Status::kOk);
+  CHECK(journal.size() == 4);
+  journal.clear();
+  CHECK(world.undo(&journal) == Status::kBadArgument);
+  CHECK(world.material({1, 1, 1}) == 7);
 }
 
 TEST_CASE("edited world: emptied and filled voxel by voxel -> no node, then one solid block, and back") {

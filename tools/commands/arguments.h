@@ -112,6 +112,10 @@ std::vector<std::string> options_given(const CLI::App& app);
 [[noreturn]] void refuse_usage(const std::string& name, const std::string& what);
 [[noreturn]] void refuse_usage(const std::string& what);
 
+/// What was wrong with the usage, as one sentence. `first`: the first argument.
+std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, const std::string& first);
+std::vector<std::string> subcommand_names(const CLI::App& app);
+
 /// For CLI::Option::check: words that a shell completes the value to, besides those that the type's name tells.
 CLI::Validator offering(const std::vector<std::string>& words);
 /// What was given to offering(), else what the type's name tells: those words of `a|b|NAME` that are not in

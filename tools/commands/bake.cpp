@@ -331,13 +331,10 @@ void run(const BakeCommand& given) {
 
 }  // namespace
 
-void add_bake(CLI::App& app) {
-  auto command = std::make_shared<BakeCommand>();
-  CLI::App* sub = add_command(
-      app, "bake", "Bake a scene: its compact tree, palette and camera as one block of bytes for flash.");
-  command->scene.add_scene(*sub);
+void add_bake_options(CLI::App& app, const std::shared_ptr<BakeCommand>& command) {
+  command->scene.add_scene(app);
   add_text_option(
-      *sub, "-o,--output", "FILE",
+      app, "-o,--output", "FILE",
       [command](const std::string& text) {
         command->output = text;
         command->as_header = ends_in(text, ".h");
@@ -345,16 +342,16 @@ void add_bake(CLI::App& app) {
       },
       "the bytes as a file (.oct) or as a C and C++ header (.h); - is the bytes on standard output")
       ->required();
-  add_fitting(*sub, command.get());
-  add_board(*sub, &command->scene.board,
+  add_fitting(app, command.get());
+  add_board(app, &command->scene.board,
             "the limit is what the demonstration leaves of the board's flash (the smaller counts if --memory "
             "is given too), and the camera frames the scene for its display, so that all of it stays in the "
             "picture while it turns");
-  add_flag(*sub, "--brick-map", &command->brick_map,
+  add_flag(app, "--brick-map", &command->brick_map,
            "add a table that makes frames on a chip several times faster, in worlds of up to 1,024 a side "
            "(256 on most boards), as long as all keeps the limit; --board always does");
   add_effect_list(
-      *sub, &command->effects,
+      app, &command->effects,
       "what the scene is baked for: auto (what its materials and lights call for), none, or effects with "
       "commas between them; a header states the set as a macro, so that firmware holds no others (default: "
       "auto, for a file that states no light a sun over the viewer's shoulder with shadows and a light "
@@ -363,15 +360,22 @@ void add_bake(CLI::App& app) {
       "baked scene as for its file, and never by a chip)",
       false);
   add_text_option(
-      *sub, "--name", "IDENT",
+      app, "--name", "IDENT",
       [command](const std::string& text) {
         command->identifier = text;
         return is_identifier(text) ? "" : "cannot be the name of an array in C and C++";
       },
       "what a header calls the array; its macros begin with the same in capitals")
       ->default_str(kDefaultIdentifier);
-  add_picture_view(*sub, &command->view);
-  command->scene.add_report(*sub);
+  add_picture_view(app, &command->view);
+  command->scene.add_report(app);
+}
+
+void add_bake(CLI::App& app) {
+  auto command = std::make_shared<BakeCommand>();
+  CLI::App* sub = add_command(
+      app, "bake", "Bake a scene: its compact tree, palette and camera as one block of bytes for flash.");
+  add_bake_options(*sub, command);
   when_chosen(*sub, [command] { run(*command); });
 }
 

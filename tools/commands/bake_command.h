@@ -46,6 +46,9 @@ Stats baked_stats(const BakeCommand& command, const SceneSource& source, const B
 /// What is wrong with a scene that wants these effects, for which there is no program.
 std::string not_drawn_text(const BakeCommand& command, EffectSet effects);
 
+/// All options of `thimble bake`, for `command`.
+void add_bake_options(CLI::App& app, const std::shared_ptr<BakeCommand>& command);
+
 /// --memory and --coarsen.
 void add_fitting(CLI::App& app, BakeCommand* command);
 

@@ -424,6 +424,10 @@ void run(const MemoryCommand& command) {
 
 }  // namespace
 
+std::string memory_json(const MemoryStudy& study) {
+  return depth_objects(study).dump();
+}
+
 void add_memory(CLI::App& app) {
   auto command = std::make_shared<MemoryCommand>();
   CLI::App* sub = add_command(

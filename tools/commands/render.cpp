@@ -331,9 +331,9 @@ PartHeader part_of(const Subject& subject, const SceneSource& source, const Ligh
   return part;
 }
 
-// From a file to a picture: reader, source, builder, tree, painter, output.
-void run(const RenderCommand& given) {
-  RenderCommand command = given;
+// What is wrong with the options whatever the scene is; and what they leave to the display and the budget.
+void prepare(RenderCommand* given) {
+  RenderCommand& command = *given;
   check_usage(command);
   use_display(command.scene.board, &command.view);
   if (command.quality.at_edges &&
@@ -344,37 +344,34 @@ void run(const RenderCommand& given) {
   command.output.read_sizes(command.view, command.fov_given);
   command.engine.check_budget(command.scene.budget_bytes().has_value());
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
-  OutputSet outputs({command.output.whole_path(), command.output.hits_path, command.output.depth_path,
-                     command.scene.stats_path},
-                    {command.scene.arguments.scene, command.output.camera_path}, command.output.sequence());
+}
+
+// From a source to a picture: builder, tree, painter, output.
+void draw(RenderCommand& command, const SceneSource& source, OutputSet& outputs) {
   const ImageKind kind = command.output.kind(ImageKind::kPpm);
   // A board's picture is drawn as its display takes it.
   const PixelFormat display =
       command.scene.board != nullptr ? command.scene.board->format : pixel_format(kind);
   const PixelFormat format = command.look.is_ink() ? PixelFormat::kGray8 : display;
 
-  if (command.output.played) {
-    command.scene.arguments.frame = static_cast<std::uint32_t>(command.output.played->first);
-  }
-  const auto source = command.scene.open();
   command.scene.build_threads = command.engine.threads;
   if (takes_look(command)) {
-    render_look(command, *source, outputs);
+    render_look(command, source, outputs);
     return;
   }
   if (command.look.shade_name.empty()) {
-    command.look.shade = source->single_material() ? ShadeMode::kDepth : ShadeMode::kColor;
+    command.look.shade = source.single_material() ? ShadeMode::kDepth : ShadeMode::kColor;
   }
-  Light light = light_of(command, *source);
+  Light light = light_of(command, source);
 
-  BuiltScene built = command.scene.build(*source, drawing_bytes(command, *source, light, format));
+  BuiltScene built = command.scene.build(source, drawing_bytes(command, source, light, format));
   if (light.effects != Effect::kNone) {
     light.used = used_materials(built.compact());
     light.effects = chosen_effects(light.lighting, light.used, light.choice);
     light.lighting.find_glow(built.compact());
   }
 
-  const Subject subject = subject_of(command, *source, &built, format);
+  const Subject subject = subject_of(command, source, &built, format);
   const NodeColors colors = take_node_colors(&built, command.quality, subject.shading);
   const QualityFrame frame(built, command.quality, subject.camera(), subject.fine, subject.shading, colors);
   ProgressBar bar("tracing", command.scene.quiet);
@@ -390,16 +387,30 @@ void run(const RenderCommand& given) {
 
   const Image shown = converted(painting.image, pixel_format(kind));
   if (command.output.rows) {
-    write_rows(outputs[kPicture], part_of(subject, *source, light), shown, subject.camera().height_px());
+    write_rows(outputs[kPicture], part_of(subject, source, light), shown, subject.camera().height_px());
   } else {
-    write_image(outputs[kPicture], kind, shown);
+    write_picture(command, kind, shown, outputs);
   }
   if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
     write_hits(command, frame, gpu.get(), subject.camera(), outputs[kHits], outputs[kDepths]);
   }
-  Stats stats = stats_of(subject, *source, light, painting);
+  Stats stats = stats_of(subject, source, light, painting);
   stats.frame_crc32 = crc_of(file_pixels(shown, kind));
   finish(command, stats, subject.framing.note, outputs);
+}
+
+// From a file to a picture.
+void run(const RenderCommand& given) {
+  RenderCommand command = given;
+  prepare(&command);
+  OutputSet outputs({command.output.whole_path(), command.output.hits_path, command.output.depth_path,
+                     command.scene.stats_path},
+                    {command.scene.arguments.scene, command.output.camera_path}, command.output.sequence());
+  if (command.output.played) {
+    command.scene.arguments.frame = static_cast<std::uint32_t>(command.output.played->first);
+  }
+  const auto source = command.scene.open();
+  draw(command, *source, outputs);
 }
 
 // For a person: what the scene takes, and what came of it.
@@ -455,6 +466,24 @@ void finish(const RenderCommand& command, const Stats& stats, const std::string&
   outputs.commit();
   if (!command.scene.quiet) {
     print_summary(stats, note);
+  }
+}
+
+void render(RenderCommand command, const SceneSource& source) {
+  if (command.output.is_film() || command.output.rows || !command.output.hits_path.empty() ||
+      !command.output.depth_path.empty() || !command.scene.stats_path.empty()) {
+    refuse_usage("films, --rows, --hits, --depth-image and --stats are files, which only the command writes");
+  }
+  prepare(&command);
+  OutputSet outputs({"", "", "", ""}, {});
+  draw(command, source, outputs);
+}
+
+void write_picture(const RenderCommand& command, ImageKind kind, const Image& image, OutputSet& outputs) {
+  if (command.output.take) {
+    command.output.take(image);
+  } else {
+    write_image(outputs[kPicture], kind, image);
   }
 }
 
@@ -517,42 +546,46 @@ void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngi
   }
 }
 
-void add_render(CLI::App& app) {
-  auto command = std::make_shared<RenderCommand>();
-  CLI::App* sub = add_command(app, "render", "Draw a scene as a picture.");
-  command->scene.add_to(*sub);
+void add_render_options(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
+  command->scene.add_to(app);
   add_path_option(
-      *sub, "-o,--output", "FILE", &command->output.path,
+      app, "-o,--output", "FILE", &command->output.path,
       std::string("the picture, ") + kImageEndings +
           " by its ending; - is a PPM on standard output; with --turntable, --camera-path or --frames a " +
           kFilmEndings)
       ->required();
-  add_picture_view(*sub, &command->view);
+  add_picture_view(app, &command->view);
   add_shade(
-      *sub, &command->look.shade,
+      app, &command->look.shade,
       "brightness by distance (the paper's), the face's direction, the palette in one light, white "
       "where anything is, or ink: black, a pattern and white with outlines, for displays of one bit; given "
       "without --effects it draws none",
       &command->look.shade_name, true);
-  add_look(*sub, command);
+  add_look(app, command);
   add_path_option(
-      *sub, "--hits", "FILE.csv|.npy", &command->output.hits_path,
+      app, "--hits", "FILE.csv|.npy", &command->output.hits_path,
       std::string("what the ray of each pixel's centre hits, a line a pixel, row by row from the top "
                   "left: px,py and the columns that trace writes") +
           kHitArray);
-  add_path_option(*sub, "--depth-image", "FILE.pfm", &command->output.depth_path,
+  add_path_option(app, "--depth-image", "FILE.pfm", &command->output.depth_path,
                   "distance in voxels along the unit ray as float32, +inf for a miss");
-  add_effect_options(*sub, &command->effects,
+  add_effect_options(app, &command->effects,
                      "; what calls for none is drawn by --shade; --structure compact and --engine auto only",
                      "the scene's own look; none with --shade; else auto");
-  add_quality(*sub, &command->quality);
-  command->engine.add_to(*sub);
-  add_paragraph_below(*sub, kDefaultLookText);
-  when_chosen(*sub, [command, sub] {
-    command->fov_given = is_given(*sub, "--fov");
-    command->look.given = is_given(*sub, "--background") || is_given(*sub, "--ground");
-    run(*command);
+  add_quality(app, &command->quality);
+  command->engine.add_to(app);
+  also_check(app, [command, &app] {
+    command->fov_given = is_given(app, "--fov");
+    command->look.given = is_given(app, "--background") || is_given(app, "--ground");
   });
+}
+
+void add_render(CLI::App& app) {
+  auto command = std::make_shared<RenderCommand>();
+  CLI::App* sub = add_command(app, "render", "Draw a scene as a picture.");
+  add_render_options(*sub, command);
+  add_paragraph_below(*sub, kDefaultLookText);
+  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,6 +1,7 @@
 /// The options of `thimble render`, and the ways to draw it.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "commands/render_output.h"
@@ -42,9 +43,17 @@ struct RenderCommand {
 /// The files that it writes, by their place in the set.
 enum RenderFile : std::size_t { kPicture, kHits, kDepths, kStats };
 
+/// All of its options, for `command`.
+void add_render_options(CLI::App& app, const std::shared_ptr<RenderCommand>& command);
+/// Draws `source` instead of opening the command's scene, for whoever takes the picture (`RenderOutput::take`).
+void render(RenderCommand command, const SceneSource& source);
+
 /// Rows in a band of `row_bytes` each: as many as a sixteenth of the budget holds, fewer when the scene needs
 /// the room; at most `most`.
 std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std::int32_t most);
+
+/// Where the picture goes: to the command's file, or whoever takes it.
+void write_picture(const RenderCommand& command, ImageKind kind, const Image& image, OutputSet& outputs);
 
 /// Pixel by pixel once more, for the files that hold hits and distances; by `gpu` if it is not null.
 void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngine* gpu, const Camera& camera,

@@ -227,7 +227,7 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
   if (command.output.rows) {
     write_rows(outputs[kPicture], part_of(source, studio, {studio.framing()}), shown, command.view.height_px);
   } else {
-    write_image(outputs[kPicture], kind, shown);
+    write_picture(command, kind, shown, outputs);
   }
   if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
     const Camera& camera = studio.framing().camera;

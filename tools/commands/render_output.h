@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,8 @@ class OutputFile;
 
 struct RenderOutput {
   std::string path;  ///< --output
+  std::function<void(const Image& image)>
+      take{};  ///< gets the picture, as its file would hold it, in place of that
   std::string hits_path;
   std::string depth_path;
   int turntable = 0;               ///< frames of a film; 0: none

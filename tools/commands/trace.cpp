@@ -26,6 +26,7 @@
 #include "readers/formats.h"
 #include "readers/text.h"
 #include "scene/built_scene.h"
+#include "scene/given_ray.h"
 #include "scene/gpu_engine.h"
 #include "scene/scene_source.h"
 #include "scene/wide_renderer.h"
@@ -36,13 +37,6 @@ namespace thimble::tools {
 namespace {
 
 // ---- A file of rays, read in chunks that do not know of one another.
-
-/// How lines become rays.
-struct RayRules {
-  int level = 0;           ///< of the world
-  int direction_bits = 0;  ///< 0: as the core allows
-  bool only_32 = false;    ///< refuses rays that 32-bit products do not take
-};
 
 /// What is wrong with a line, or with a row of an array.
 struct RayFault {
@@ -94,47 +88,6 @@ std::optional<std::array<double, 6>> parse_line(std::string_view line) {
     line.remove_prefix(std::min(comma, line.size() - 1) + 1);
   }
   return numbers;
-}
-
-// The ray as it is traced: origin to the nearest 1/256 voxel; a direction of integers within the limit as it
-// is, any other scaled so that its largest component is the limit. A zero component stays zero.
-// Otherwise the answer is what is wrong.
-std::string quantise(const std::array<double, 6>& numbers, const RayRules& rules, Ray* to) {
-  const double low = static_cast<double>(kMinOriginWorlds) * (1 << rules.level);
-  const double high = static_cast<double>(kMaxOriginWorlds) * (1 << rules.level);
-  for (const double number : numbers) {
-    if (!std::isfinite(number)) {
-      return "a ray has a coordinate that is not a finite number";
-    }
-  }
-  Ray& ray = *to;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double value = numbers[static_cast<std::size_t>(axis)];
-    if (value < low || value > high) {
-      return "the origin's " + shortest(value) + " is outside the accepted " + shortest(low) + " to " +
-             shortest(high) + " (-4 to 5 world sizes)";
-    }
-    ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(std::lround(value * Q8::kOne)));
-  }
-  double largest = 0;
-  bool whole = true;
-  for (std::size_t i = 3; i < 6; ++i) {
-    largest = std::max(largest, std::abs(numbers[i]));
-    whole = whole && numbers[i] == std::trunc(numbers[i]);
-  }
-  if (largest == 0) {
-    return "the direction is zero";
-  }
-  const double limit = rules.direction_bits == 0 ? kMaxDirection : (1 << rules.direction_bits) - 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double value = numbers[static_cast<std::size_t>(axis) + 3];
-    const double scaled = whole && largest <= limit ? value : value / largest * limit;
-    ray.direction[axis] = static_cast<std::int32_t>(std::lround(scaled));
-  }
-  if (rules.only_32 && !accepts_32(ray, rules.level)) {
-    return "--engine ray32 does not take this ray; auto does";
-  }
-  return {};
 }
 
 // Whether a line holds names only: a header. A line with a number among its columns is a ray gone wrong.
@@ -209,7 +162,7 @@ std::optional<RayFault> RayFile::read(std::size_t chunk, std::vector<Ray>* rays,
       for (std::size_t i = 0; i < numbers.size(); ++i) {
         numbers[i] = table_->at(begin + row, i);
       }
-      std::string fault = quantise(numbers, rules_, &rays->emplace_back());
+      std::string fault = quantised_ray(numbers, rules_, &rays->emplace_back());
       if (!fault.empty()) {
         return RayFault{row, std::move(fault)};
       }
@@ -226,7 +179,7 @@ std::optional<RayFault> RayFile::read(std::size_t chunk, std::vector<Ray>* rays,
     if (!numbers) {
       return RayFault{*lines, "these are not the six numbers ox,oy,oz,dx,dy,dz"};
     }
-    std::string fault = quantise(*numbers, rules_, &rays->emplace_back());
+    std::string fault = quantised_ray(*numbers, rules_, &rays->emplace_back());
     if (!fault.empty()) {
       return RayFault{*lines, std::move(fault)};
     }

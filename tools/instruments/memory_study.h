@@ -88,5 +88,7 @@ inline constexpr std::uint64_t kMostDenseBytes = std::uint64_t{128} << 20;
 /// Measures. Throws InputError.
 MemoryStudy study_memory(const SceneSource& source, const std::string& name, const StudyOptions& options,
                          const Progress& progress);
+/// What `thimble memory --json` writes of it: an array of objects, one a depth (commands/memory.cpp).
+std::string memory_json(const MemoryStudy& study);
 
 }  // namespace thimble::tools

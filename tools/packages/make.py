@@ -1,6 +1,6 @@
 """Makes the packages of every ecosystem from the tree: make.py [--out FOLDER] [--thimble COMMAND] [--release] [NAME...]
 
-NAME is arduino, platformio, esp_idf, zephyr, source or pair (default: all). The .deb is tools/package.sh's.
+NAME is arduino, platformio, esp_idf, zephyr, source, pair or python (default: all). The .deb is tools/package.sh's.
 """
 
 import argparse
@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import archive  # noqa: E402
 import tree  # noqa: E402
 
-ECOSYSTEMS = ["arduino", "platformio", "esp_idf", "zephyr", "source", "pair"]
+ECOSYSTEMS = ["arduino", "platformio", "esp_idf", "zephyr", "source", "pair", "python"]
 
 
 def main():

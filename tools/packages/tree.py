@@ -30,7 +30,8 @@ def read(name):
     return (ROOT / name).read_bytes()
 
 
-def _walk(folder, endings):
+def walk(folder, endings):
+    """The files below a folder that end so, as names below the root; compiled Python aside."""
     for path in sorted((ROOT / folder).rglob("*")):
         if path.is_symlink():
             raise SystemExit(f"packages: {path.relative_to(ROOT)} is a link; no package may hold one")
@@ -40,12 +41,12 @@ def _walk(folder, endings):
 
 def headers():
     """The public headers, as names below the root."""
-    return list(_walk("include", {".h"}))
+    return list(walk("include", {".h"}))
 
 
 def sources():
     """All of src: what is compiled, and the headers that it keeps to itself."""
-    return list(_walk("src", {".cpp", ".h", ".inc"}))
+    return list(walk("src", {".cpp", ".h", ".inc"}))
 
 
 def core():

@@ -184,8 +184,8 @@ Structure StructureBuilder::build(bool coarsen) {
   const StructureKind kind = options_.structure;
   built_ = {};
   built_.kind = kind;
-  if (source_.baked() != nullptr && !coarsen && kind == StructureKind::kCompact) {
-    take_baked(source_.baked()->tree());
+  if (source_.tree() != nullptr && !coarsen && kind == StructureKind::kCompact) {
+    take_baked(*source_.tree());
     return built_;
   }
   if (coarsen && kind == StructureKind::kCompact) {

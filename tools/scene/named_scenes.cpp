@@ -1,5 +1,7 @@
 #include "scene/named_scenes.h"
 
+#include <dlfcn.h>
+
 #include <array>
 #include <filesystem>
 #include <map>
@@ -39,16 +41,18 @@ std::map<std::string, std::string> known_scenes() {
 }  // namespace
 
 std::string folder_beside_program(const std::string& name) {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  if (error) {
-    return {};
-  }
   const fs::path installed = fs::path(THIMBLE_SCENES_FROM_PROGRAM).parent_path() / name;
-  for (const fs::path& from_program : {installed, fs::path(name)}) {
-    fs::path folder = (program / from_program).lexically_normal();
-    if (fs::is_directory(folder, error)) {
-      return folder.string();
+  std::error_code error;
+  // Beside the program, else beside the library that this is part of.
+  Dl_info library{};
+  const bool is_known = dladdr(&kEndings, &library) != 0 && library.dli_fname != nullptr;
+  for (const fs::path& file :
+       {fs::read_symlink("/proc/self/exe", error), fs::path(is_known ? library.dli_fname : "")}) {
+    for (const fs::path& from_file : {installed, fs::path(name)}) {
+      fs::path folder = (file.parent_path() / from_file).lexically_normal();
+      if (!file.empty() && fs::is_directory(folder, error)) {
+        return folder.string();
+      }
     }
   }
   return {};

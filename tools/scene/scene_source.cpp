@@ -407,7 +407,7 @@ void SceneSource::stream_blocks(const VisitBlock& visit, const Progress& progres
 
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const Progress& progress) {
   SceneArguments found = arguments;
-  if (!parse_generator(arguments.scene)) {
+  if (!arguments.content && !parse_generator(arguments.scene)) {
     found.scene = scene_path(arguments.scene);
   }
   return open_scene(found, nullptr, progress);
@@ -418,7 +418,7 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
   if (arguments.depth) {
     check_depth(*arguments.depth);
   }
-  if (auto spec = parse_generator(arguments.scene)) {
+  if (auto spec = parse_generator(arguments.scene); spec && !arguments.content) {
     if (arguments.as_voxels) {
       throw UsageError("--as-voxels is for point files, and this is a generator");
     }
@@ -442,7 +442,9 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
   const ArrayAs as = arguments.as_heights  ? ArrayAs::kHeights
                      : arguments.as_points ? ArrayAs::kPoints
                                            : ArrayAs::kByShape;
-  Source source = read_scene_file({arguments.scene, arguments.frame, as, arguments.full_color}, progress);
+  const ReadOptions options{arguments.scene, arguments.frame, as, arguments.full_color};
+  Source source = arguments.content ? read_any(options, *arguments.content, progress)
+                                    : read_scene_file(options, progress);
   Notes notes = notes_of(source);
   auto scene = scene_of(std::move(source), arguments, opening, progress);
   scene->add_file(arguments.scene);

@@ -76,6 +76,10 @@ class SceneSource {
   }
   /// Its bytes live as long as the source.
   const BakedScene* baked() const { return facts_.baked != nullptr ? &facts_.baked->scene : nullptr; }
+  /// Its voxels as a tree that is there, which building then copies; null where there is none.
+  const CompactTree* tree() const { return built_ || baked() == nullptr ? built_ : &baked()->tree(); }
+  /// For whoever builds one scene many times: `tree`, built of it without coarsening, outlives the source.
+  void keep(const CompactTree* tree) { built_ = tree; }
   const std::optional<LookNote>& look_note() const { return facts_.look_note; }
   std::uint32_t frames() const { return facts_.frames; }
   /// Null where it has one frame.
@@ -95,6 +99,7 @@ class SceneSource {
   SourceFacts facts_;
   Stream stream_;
   StreamBlocks blocks_;
+  const CompactTree* built_ = nullptr;
   std::vector<std::string> files_;
   Notes notes_;
 };

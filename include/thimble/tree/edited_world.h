@@ -56,6 +56,32 @@ constexpr size_t edited_world_bytes(int level, const EditRoom& room) {
          kSolidBrickKinds;
 }
 
+/// What edits of many voxels changed, in the caller's bytes, so that they can be taken back: 8 bytes a voxel and 8 an
+/// edit. Of one world, between whose edits nothing else changes it. Copies share the bytes.
+class EditJournal {
+ public:
+  EditJournal() = default;
+  /// An empty one in `bytes`, at any address, which outlive it.
+  explicit EditJournal(Bytes bytes) : bytes_(bytes) {}
+
+  /// Voxels and edits that it holds room for, and that it holds.
+  size_t capacity() const { return bytes_.size / kEntryBytes; }
+  size_t size() const { return size_; }
+  /// Forgets the edits, which then stay.
+  void clear() { size_ = 0; }
+
+ private:
+  friend class EditedWorld;
+  static constexpr size_t kEntryBytes = 8;
+
+  Bytes bytes_;
+  size_t size_ = 0;
+};
+
+/// What of a box is edited: all of it, or the voxels whose centre lies in the ellipsoid that touches its sides, in a cube
+/// a ball.
+enum class EditShape : uint8_t { kBox, kBall };
+
 /// A world that changes. It is the one owner of its bytes: a copy of it would change them behind its back.
 class EditedWorld {
  public:
@@ -80,6 +106,20 @@ class EditedWorld {
   /// Makes `voxel` empty, whatever it was. Errors as `set`: opening a solid block takes room, too.
   Status clear(const Vec3i& voxel);
 
+  /// Makes all voxels of a shape solid with `material`, or empty with kEmpty, as one edit, which `undo` takes back. What
+  /// lies outside the world is passed over. Costs a `set` or a `clear` for each voxel that changes, a look for each
+  /// other. `journal` is of this world. Errors, with every voxel as it was: `kOutOfRange` (a side of more than
+  /// kMostEditSide, a corner beyond +-2^20), `kBadArgument` (a material outside of -1 .. 255), `kOutOfMemory` (no room in the
+  /// world or in the journal).
+  Status edit(const VoxelBox& box, EditShape shape, int material, EditJournal* journal);
+  /// Takes the journal's last edit back. Errors, with nothing changed: `kBadArgument` for a journal without a whole edit.
+  Status undo(EditJournal* journal);
+  static constexpr int kEmpty = -1;
+  static constexpr int32_t kMostEditSide = 512;
+
+  /// The material of `voxel`; kEmpty where nothing is, and outside the world.
+  int material(const Vec3i& voxel) const;
+
   const CompactTree& tree() const { return tree_; }
   const BrickMap& map() const { return map_; }
   int level() const { return tree_.level(); }
@@ -98,6 +138,9 @@ class EditedWorld {
 
   uint32_t child_of(uint32_t node, unsigned octant) const;
   bool find(const Vec3i& voxel, int to_level, Place* place) const;
+  int material_within(const Vec3i& voxel) const;
+  Status make_voxel(const Vec3i& voxel, int material);
+  void take_back(EditJournal* journal, size_t to);
   Status check_room(const Vec3i& voxel, int material, bool* changes) const;
   void insert_nodes(uint32_t at, uint32_t count);
   void remove_nodes(uint32_t at, uint32_t count);
