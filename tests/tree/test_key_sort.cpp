@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "scene/built_scene.h"
+#include "scene/host_memory.h"
 #include "scene/key_sort.h"
+#include "scene/point_tree.h"
 #include "scene/scene_source.h"
 #include "support/counts.h"
 #include "support/ray_cases.h"
@@ -107,8 +109,8 @@ class Voxels : public tools::SceneSource {
 };
 
 // Points, crowds and solid boxes; every third time voxels repeat, with other materials.
-Voxels random_world(std::mt19937_64& random) {
-  const int level = static_cast<int>(pick(random, 1, 12));
+Voxels random_world(std::mt19937_64& random, int least_level = 1) {
+  const int level = static_cast<int>(pick(random, least_level, 12));
   const std::int32_t side = std::int32_t{1} << level;
   const bool single = pick(random, 0, 1) == 0;
   const std::int64_t materials = pick(random, 1, 4);
@@ -196,6 +198,54 @@ TEST_CASE("key sort: any voxels, repeats, materials and threads -> the tree that
     REQUIRE(tight.compact().size_bytes() == expected.view().size);
     CHECK(std::memcmp(tight.compact().bytes(), expected.view().data, expected.view().size) == 0);
   }
+}
+
+TEST_CASE(
+    "points in parts: any voxels, repeats, materials, threads and room for lists -> the tree that the octree "
+    "gives") {
+  const std::uint64_t seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937_64 random(seed);
+  const tools::HostMemory memory(std::size_t{4} << 30);
+  for (int world = 0; world < kWorlds; ++world) {
+    CAPTURE(world);
+    const Voxels source = random_world(random, tools::kPartLevel + 1);
+    const std::uint64_t lists = std::uint64_t{1} << pick(random, 10, 24);
+    const int threads = static_cast<int>(pick(random, 1, 3));
+    const auto place = static_cast<std::size_t>(pick(random, 0, 600) * 8);
+    const Bytes tree =
+        tools::build_point_tree(source, memory.bytes().subspan(place), threads, {}, lists).tree;
+    const HeapBytes expected = tree_by_octree(source);
+    CHECK(tree.empty() == (source.points() == 0));
+    if (!tree.empty()) {
+      REQUIRE(tree.size == expected.view().size);
+      CHECK(std::memcmp(tree.data, expected.view().data, tree.size) == 0);
+    }
+    CHECK(tools::build_point_tree(source, memory.bytes().subspan(0, 4096), 1, {}, lists).tree.empty());
+  }
+}
+
+TEST_CASE("points in parts: points that repeat -> no more memory than a grid of their part takes") {
+  constexpr std::size_t kGridBytes = std::size_t{2} << 20;
+  constexpr std::int32_t kSide = 30;
+  tools::SourceFacts facts;
+  facts.level = tools::kPartLevel + 1;
+  facts.points = 4'000'000;
+  facts.is_point_set = true;
+  facts.single_material = true;
+  const tools::SceneSource source(std::move(facts), [](const tools::VoxelSink& sink, const tools::Progress&) {
+    for (std::int32_t i = 0; i < 4'000'000; ++i) {
+      const std::int32_t place = i % (kSide * kSide * kSide);
+      sink(100 + place % kSide, 100 + place / kSide % kSide, 100 + place / kSide / kSide, 0);
+    }
+  });
+  const tools::HostMemory memory(std::size_t{1} << 30);
+  const tools::PointTree built = tools::build_point_tree(source, memory.bytes(), 1, {});
+  CHECK(built.most_bytes < 2 * kGridBytes + 65536);
+  CHECK(built.voxels == kSide * kSide * kSide);
+  CompactTree tree;
+  REQUIRE(CompactTree::open({built.tree.data, built.tree.size}, &tree) == Status::kOk);
+  CHECK(CompactTree::validate({built.tree.data, built.tree.size}) == nullptr);
 }
 
 TEST_CASE("key sort: many points -> built within twice the bytes of their keys, whatever the threads") {

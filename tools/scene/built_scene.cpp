@@ -9,6 +9,7 @@
 #include "output/units.h"
 #include "readers/oct.h"
 #include "scene/key_sort.h"
+#include "scene/point_tree.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
@@ -168,6 +169,33 @@ constexpr std::size_t most_after_tidying(std::size_t capacity) {
   return capacity - capacity / 16 - (capacity >= 1 && capacity < 16 ? 1 : 0);
 }
 
+// The least bytes of `rest` in which sorted keys would do: all that came, or room enough for the different ones when
+// tidied; or those and the tree.
+std::size_t least_key_bytes(std::uint64_t streamed, std::uint64_t voxels, std::size_t key_bytes,
+                            std::size_t tree_bytes, Bytes rest) {
+  const auto count = static_cast<std::size_t>(voxels);
+  std::size_t fewest = count + count / 15;
+  while (most_after_tidying(fewest) < count) {
+    ++fewest;
+  }
+  while (fewest > 0 && most_after_tidying(fewest - 1) >= count) {
+    --fewest;
+  }
+  fewest = static_cast<std::size_t>(std::min<std::uint64_t>(fewest, streamed));
+  const Bytes keys = aligned(rest, alignof(std::uint64_t));
+  const Bytes tree = aligned(keys.subspan(count * key_bytes), alignof(std::uint64_t));
+  return std::max(static_cast<std::size_t>(keys.data - rest.data) + fewest * key_bytes,
+                  static_cast<std::size_t>(tree.data - rest.data) + tree_bytes);
+}
+
+// Where memory is the machine's own, many points are built in parts; else, or without room for that, nothing.
+PointTree parted_tree(const SceneSource& source, Bytes rest, const BuildOptions& options,
+                      const Progress& progress) {
+  constexpr std::uint64_t kManyPoints = std::uint64_t{1} << 24;
+  const bool takes = !options.memory_bytes && source.points() >= kManyPoints && source.level() > kPartLevel;
+  return takes ? build_point_tree(source, rest, options.threads, progress) : PointTree();
+}
+
 }  // namespace
 
 Vec3i grid_size(Vec3i size, int level) {
@@ -182,6 +210,7 @@ Vec3i grid_size(Vec3i size, int level) {
 
 Structure StructureBuilder::build(bool coarsen) {
   const StructureKind kind = options_.structure;
+  const Bytes rest = aligned(arena_.rest(), alignof(std::uint64_t));
   built_ = {};
   built_.kind = kind;
   if (source_.tree() != nullptr && !coarsen && kind == StructureKind::kCompact) {
@@ -200,6 +229,13 @@ Structure StructureBuilder::build(bool coarsen) {
     build_dense();
   } else if (kind == StructureKind::kPool || coarsen || !source_.is_point_set()) {
     build_pool(coarsen);
+  } else if (const PointTree parted = parted_tree(source_, rest, options_, progress_); !parted.tree.empty()) {
+    arena_.note_scratch(static_cast<std::size_t>(rest.data - arena_.rest().data) +
+                        static_cast<std::size_t>(parted.most_bytes));
+    const std::size_t key_bytes = source_.single_material() && source_.level() <= 10 ? 4 : 8;
+    least_bytes_ = arena_.used_bytes() + least_key_bytes(source_.points(), parted.voxels, key_bytes,
+                                                         parted.tree.size, arena_.rest());
+    keep_compact(parted.tree);
   } else if (source_.single_material() && source_.level() <= 10) {
     build_keys<std::uint32_t>();
   } else {
@@ -463,25 +499,16 @@ void StructureBuilder::build_keys() {
   const std::size_t offset = static_cast<std::size_t>(rest.data - arena_.rest().data);
   arena_.note_scratch(
       std::max(offset + most, static_cast<std::size_t>(target.data - arena_.rest().data) + size));
-  // The fewest keys that would have done: all that came, or room enough for the different ones when tidied.
-  std::size_t fewest = count + count / 15;
-  while (most_after_tidying(fewest) < count) {
-    ++fewest;
-  }
-  while (fewest > 0 && most_after_tidying(fewest - 1) >= count) {
-    --fewest;
-  }
-  fewest = static_cast<std::size_t>(std::min<std::uint64_t>(fewest, streamed));
-  least_bytes_ =
-      arena_.used_bytes() + std::max(offset + fewest * sizeof(Key),
-                                     static_cast<std::size_t>(target.data - arena_.rest().data) + size);
+  least_bytes_ = arena_.used_bytes() + least_key_bytes(streamed, count, sizeof(Key), size, arena_.rest());
   keep_compact(target.subspan(0, size));
 }
 
 // Moves the tree to the front of what is free and takes its bytes.
 void StructureBuilder::keep_compact(Bytes tree) {
   const Bytes home = arena_.take(tree.size);
-  std::memmove(home.data, tree.data, tree.size);
+  if (home.data != tree.data) {
+    std::memmove(home.data, tree.data, tree.size);
+  }
   if (CompactTree::open(home, &built_.compact) != Status::kOk) {
     throw InputError("internal error: the compact tree just built is damaged");
   }

@@ -11,6 +11,7 @@
 
 #include "readers/file_bytes.h"
 #include "scene/host_memory.h"
+#include "scene/point_tree.h"
 #include "scene/named_scenes.h"
 #include "scene/workers.h"
 
@@ -130,6 +131,12 @@ void each_task(std::size_t tasks, int /*threads*/,
 }
 
 void use_large_pages(Bytes /*bytes*/) {}  // there are none
+
+// What fits a page is few points.
+PointTree build_point_tree(const SceneSource& /*source*/, Bytes /*room*/, int /*threads*/,
+                           const Progress& /*progress*/, std::uint64_t /*most_list_bytes*/) {
+  return {};
+}
 
 HostMemory::HostMemory(std::size_t size) : size_(size) {
   if (size != 0) {
