@@ -58,6 +58,9 @@ void check_look(const RenderCommand& command) {
                  "--max-depth, --board, --hits and --depth-image" +
                  (command.output.turntable != 0 ? ", and from all sides, without --eye" : ""));
   }
+  if (names_page(command.output.path)) {
+    check_page(command);
+  }
   if (command.look.wishes.background.kind == BackgroundKind::kNone && !command.output.rows &&
       image_kind(command.output.path) != ImageKind::kPng) {
     refuse_usage("--background none wants a .png, the one that holds what is transparent");
@@ -358,6 +361,10 @@ void run(const RenderCommand& given) {
   }
   const auto source = command.scene.open();
   command.scene.build_threads = command.engine.threads;
+  if (names_page(command.output.path)) {
+    render_page(command, *source, outputs);
+    return;
+  }
   if (takes_look(command)) {
     render_look(command, *source, outputs);
     return;
@@ -525,7 +532,8 @@ void add_render(CLI::App& app) {
       *sub, "-o,--output", "FILE", &command->output.path,
       std::string("the picture, ") + kImageEndings +
           " by its ending; - is a PPM on standard output; with --turntable, --camera-path or --frames a " +
-          kFilmEndings)
+          kFilmEndings +
+          "; .html: one file that shows the scene to turn it by hand, or by itself with --turntable")
       ->required();
   add_picture_view(*sub, &command->view);
   add_shade(

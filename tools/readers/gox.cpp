@@ -19,6 +19,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -69,7 +70,10 @@ class GoxGrid final : public VoxelGrid {
   struct Block {
     std::uint32_t picture = 0;
     Corner corner{};
-    auto operator<=>(const Block&) const = default;
+    // libc++ 14 has no <=> for arrays.
+    bool operator<(const Block& other) const {
+      return std::tie(picture, corner) < std::tie(other.picture, other.corner);
+    }
   };
 
   void read_chunks() {
