@@ -5,9 +5,12 @@ install(DIRECTORY gallery/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble
 # Where they were built; and where the command finds them in a folder that one builds in.
 if(NOT PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/build/images ${PROJECT_BINARY_DIR}/images SYMBOLIC)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/build/web ${PROJECT_BINARY_DIR}/web SYMBOLIC)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/images DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble OPTIONAL
   FILES_MATCHING PATTERN "*.elf.gz")
+
+install(FILES ${PROJECT_SOURCE_DIR}/build/web/share.html DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble/web OPTIONAL)
 
 # What desktops open files and draw their pictures by. The types are those of thimble.xml.
 file(STRINGS desktop/thimble.xml types REGEX "mime-type type=")

@@ -9,3 +9,4 @@ if [ ! -f "$work/build.ninja" ]; then
 fi
 .ci/build "WebAssembly" "$work"
 node platform/web/bundle.js "$work" . build/web/thimble.html
+node platform/web/bundle_share.js "$work" build/web/share.html

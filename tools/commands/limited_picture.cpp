@@ -74,7 +74,7 @@ struct LimitedPicture::Shared {
         source = command.scene.open();
       }
       const LookPicture look = draw_look(command, *source);
-      voxels = look.voxels;
+      voxels = look.stats.voxels;
       std::copy(look.image.pixels.begin(), look.image.pixels.end(), pixels());
       is_done = true;
     } catch (const std::bad_alloc&) {

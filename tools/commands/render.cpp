@@ -58,6 +58,9 @@ void check_look(const RenderCommand& command) {
                  "--max-depth, --board, --hits and --depth-image" +
                  (command.output.turntable != 0 ? ", and from all sides, without --eye" : ""));
   }
+  if (names_page(command.output.path)) {
+    check_page(command);
+  }
   if (command.look.wishes.background.kind == BackgroundKind::kNone && !command.output.rows &&
       image_kind(command.output.path) != ImageKind::kPng) {
     refuse_usage("--background none wants a .png, the one that holds what is transparent");
@@ -355,6 +358,10 @@ void draw(RenderCommand& command, const SceneSource& source, OutputSet& outputs)
   const PixelFormat format = command.look.is_ink() ? PixelFormat::kGray8 : display;
 
   command.scene.build_threads = command.engine.threads;
+  if (names_page(command.output.path)) {
+    render_page(command, *source, outputs);
+    return;
+  }
   if (takes_look(command)) {
     render_look(command, source, outputs);
     return;
@@ -552,7 +559,8 @@ void add_render_options(CLI::App& app, const std::shared_ptr<RenderCommand>& com
       app, "-o,--output", "FILE", &command->output.path,
       std::string("the picture, ") + kImageEndings +
           " by its ending; - is a PPM on standard output; with --turntable, --camera-path or --frames a " +
-          kFilmEndings)
+          kFilmEndings +
+          "; .html: one file that shows the scene to turn it by hand, or by itself with --turntable")
       ->required();
   add_picture_view(app, &command->view);
   add_shade(

@@ -67,11 +67,18 @@ bool takes_look(const RenderCommand& command);
 /// The scene's own look in the view of `command`, for what is no file of a picture.
 struct LookPicture {
   Image image;
-  std::uint64_t voxels = 0;
   SceneCamera camera;
+  std::string note;  ///< of the camera
+  Stats stats;
 };
 LookPicture draw_look(const RenderCommand& command, const SceneSource& source);
 /// Draws that: a picture, or a film; or a part of one.
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs);
+
+/// Whether a picture of that name is a page that turns (render_page.cpp); ends the command as wrong usage where other
+/// options forbid it; draws the poster and writes it.
+bool names_page(std::string_view path);
+void check_page(const RenderCommand& command);
+void render_page(const RenderCommand& command, const SceneSource& source, OutputSet& outputs);
 
 }  // namespace thimble::tools

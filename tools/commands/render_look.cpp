@@ -370,7 +370,10 @@ void render_film(const RenderCommand& command, const SceneSource& source, LookSt
 LookPicture draw_look(const RenderCommand& command, const SceneSource& source) {
   LookStudio studio(command, source);
   studio.look_from(frame_scene(command.view, source, studio.shape()));
-  return {studio.paint({}).image, studio.built().voxels(), studio.framing().kept};
+  Painting painting = studio.paint({});
+  Stats stats = stats_of(command, source, studio, painting);
+  stats.frame_crc32 = crc_of(painting.image.pixels);
+  return {std::move(painting.image), studio.framing().kept, studio.framing().note, std::move(stats)};
 }
 
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs) {

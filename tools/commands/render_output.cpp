@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands/arguments.h"
+#include "commands/render_command.h"
 #include "output/output_file.h"
 #include "output/units.h"
 #include "scene/animation.h"
@@ -57,7 +58,7 @@ void check_part(const RenderOutput& output, bool is_transparent) {
     refuse_usage("--hits and --depth-image are of whole pictures, without --rows and --part");
   }
   const std::string& name = output.path;
-  if (name != "-" && (image_kind(name) || is_film(name))) {
+  if (name != "-" && (image_kind(name) || is_film(name) || names_page(name))) {
     refuse_usage("--output", in_quotes(name) +
                                  " is named as a picture or a film, and --rows and --part write a "
                                  "part of one for thimble join: call it F.part");
@@ -72,8 +73,10 @@ void check_part(const RenderOutput& output, bool is_transparent) {
 }  // namespace
 
 void RenderOutput::add_films(CLI::App& app) {
-  add_whole_option(app, "--turntable", "N", 2, 1000, &turntable,
-                   "a film of N frames once around the scene, six seconds long");
+  add_whole_option(
+      app, "--turntable", "N", 2, 1000, &turntable,
+      "a film of N frames once around the scene, six seconds long; in an .html, which turns by itself, N "
+      "tenths of a second");
   add_path_option(
       app, "--camera-path", "FILE.csv", &camera_path,
       std::string("a film of a frame a line, 25 a second; a header line is allowed; ") + kPathColumns);
@@ -130,6 +133,9 @@ ImageKind RenderOutput::kind(ImageKind of_rows) const {
 void RenderOutput::check(bool is_transparent) const {
   if (rows || frames) {
     check_part(*this, is_transparent);
+    return;
+  }
+  if (names_page(path)) {
     return;
   }
   const bool named_film = tools::is_film(path);

@@ -66,10 +66,9 @@ std::vector<unsigned char> png_file(std::int32_t width_px, std::int32_t height_p
 }
 
 std::vector<unsigned char> jpeg_file(std::int32_t width_px, std::int32_t height_px,
-                                     std::span<const std::uint8_t> pixels) {
-  constexpr int kQuality = 90;
+                                     std::span<const std::uint8_t> pixels, int quality) {
   std::vector<unsigned char> file;
-  if (stbi_write_jpg_to_func(append, &file, width_px, height_px, 3, pixels.data(), kQuality) == 0) {
+  if (stbi_write_jpg_to_func(append, &file, width_px, height_px, 3, pixels.data(), quality) == 0) {
     throw std::bad_alloc();
   }
   return file;

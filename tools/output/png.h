@@ -12,8 +12,8 @@ namespace thimble::tools {
 std::vector<unsigned char> png_file(std::int32_t width_px, std::int32_t height_px, int channels,
                                     std::span<const std::uint8_t> pixels);
 
-/// The same for a baseline JPEG of 3 channels with a quality of 90 of 100, colours at half the resolution.
+/// The same for a baseline JPEG of 3 channels with a quality of 1 to 100; up to 90 colours have half the resolution.
 std::vector<unsigned char> jpeg_file(std::int32_t width_px, std::int32_t height_px,
-                                     std::span<const std::uint8_t> pixels);
+                                     std::span<const std::uint8_t> pixels, int quality = 90);
 
 }  // namespace thimble::tools

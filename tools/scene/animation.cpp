@@ -171,8 +171,7 @@ class GifColors {
   std::vector<std::uint8_t> indices(const Image& image) const {
     std::vector<std::uint8_t> result;
     for_pixels(image, [&](Rgb color) {
-      const std::size_t bin =
-          std::size_t{color.r} >> 3 << 10 | std::size_t{color.g} >> 3 << 5 | std::size_t{color.b} >> 3;
+      const auto bin = static_cast<std::size_t>((color.r >> 3) << 10 | (color.g >> 3) << 5 | color.b >> 3);
       result.push_back(entries_[bin]);
     });
     return result;

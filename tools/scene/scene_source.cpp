@@ -290,6 +290,34 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
       });
 }
 
+std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& arguments, SceneOpening* opening,
+                                      const Progress& progress) {
+  if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
+    return point_scene(std::move(*cloud), arguments);
+  }
+  if (arguments.as_voxels) {
+    throw InputError("--as-voxels is for point files");
+  }
+  if (arguments.fit_percent || arguments.clip) {
+    throw InputError("--fit and --clip are for point files");
+  }
+  if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
+    return open_text_scene(**text, arguments, opening, progress);
+  }
+  if (auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
+    return grid_scene(std::move(*grid), arguments.depth);
+  }
+  if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
+    return model_scene(std::move(*model), arguments.depth);
+  }
+  if (auto* baked = std::get_if<BakedFile>(&source)) {
+    return baked_scene(std::move(*baked), arguments.depth);
+  }
+  return mesh_scene(std::move(std::get<TriangleMesh>(source)), arguments);
+}
+
+}  // namespace
+
 std::unique_ptr<SceneSource> baked_scene(BakedFile read, std::optional<int> depth) {
   const auto file = std::make_shared<const BakedFile>(std::move(read));
   const BakedScene& scene = file->scene;
@@ -342,34 +370,6 @@ std::unique_ptr<SceneSource> baked_scene(BakedFile read, std::optional<int> dept
         for_each_block(file->scene.tree(), visit);
       });
 }
-
-std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& arguments, SceneOpening* opening,
-                                      const Progress& progress) {
-  if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
-    return point_scene(std::move(*cloud), arguments);
-  }
-  if (arguments.as_voxels) {
-    throw InputError("--as-voxels is for point files");
-  }
-  if (arguments.fit_percent || arguments.clip) {
-    throw InputError("--fit and --clip are for point files");
-  }
-  if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
-    return open_text_scene(**text, arguments, opening, progress);
-  }
-  if (auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
-    return grid_scene(std::move(*grid), arguments.depth);
-  }
-  if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
-    return model_scene(std::move(*model), arguments.depth);
-  }
-  if (auto* baked = std::get_if<BakedFile>(&source)) {
-    return baked_scene(std::move(*baked), arguments.depth);
-  }
-  return mesh_scene(std::move(std::get<TriangleMesh>(source)), arguments);
-}
-
-}  // namespace
 
 SceneSource::SceneSource(SourceFacts facts, Stream stream, StreamBlocks blocks)
     : facts_(std::move(facts)), stream_(std::move(stream)), blocks_(std::move(blocks)) {}

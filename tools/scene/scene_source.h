@@ -106,6 +106,8 @@ class SceneSource {
 
 /// Opens SCENE: parses a generator or reads a file. Throws InputError.
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const Progress& progress = {});
+/// What a `.oct` holds; `depth` is its own or none.
+std::unique_ptr<SceneSource> baked_scene(BakedFile read, std::optional<int> depth = {});
 struct SceneOpening;
 /// The same for a model inside a .scene file.
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOpening* opening,

@@ -20,6 +20,7 @@ std::optional<SceneShape> known_shape;
 std::optional<SceneFacts> known_facts;
 Framing framing;
 Look look;
+LookWishes look_wishes;
 std::vector<std::uint8_t> block_bytes;
 std::vector<std::uint8_t> star_pixels;
 WebCamera web_camera;
@@ -114,6 +115,10 @@ void look_at_scene(std::unique_ptr<SceneSource> source_of_it, const BakedScene& 
   known_facts.reset();
 }
 
+void wish_of_looks(const LookWishes& wishes) {
+  look_wishes = wishes;
+}
+
 }  // namespace thimble::tools
 
 extern "C" {
@@ -137,7 +142,7 @@ extern "C" {
   if (web_camera.is_own == 0) {
     framing = frame_scene(placed_wishes(framing.kept, width_px, height_px), *source, scene_shape());
   }
-  look = default_look(scene_facts(), {}, framing);
+  look = default_look(scene_facts(), look_wishes, framing);
   LookBlock block = block_of(exposure_q8);
   const std::vector<std::uint8_t> lighting =
       lighting_section(look.lighting, look.used, block.effects, scene.tree().level());
