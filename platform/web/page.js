@@ -709,12 +709,12 @@ function showChoices(board) {
   $('board').value = state.board;
   $('board').disabled = document.querySelector('[data-hold="select"]').disabled = state.look;
   $('pause').textContent = state.look ? 'Stop' : 'Pause';
-  $('get').hidden = true;
+  $('get').hidden = $('none').hidden = true;
   const glass = state.look ? undefined : SHELF[board.name]?.glass;
   $('true').hidden = !glass;
   if (glass) {
     Object.assign($('glass'), {width: board.width, height: board.height}).style.width = `${glass[0]}mm`;
-    $('size').textContent = `as large as it is: ${glass.map((mm) => number(mm)).join(' x ')} mm`;
+    $('size').textContent = `its true size, ${glass.map((mm) => number(mm)).join(' x ')} mm`;
   }
   showPause();
   fit();
@@ -723,6 +723,7 @@ function showChoices(board) {
 function showGet() {
   const board = shownBoard();
   $('get').hidden = baked?.image === undefined || machine.app !== 'demo';
+  $('none').hidden = !$('get').hidden;
   $('steps').replaceChildren(...(STEPS[board.ending] ?? []).map((step) =>
     Object.assign(document.createElement('li'), {textContent: step.replace('FILE', imageName())})));
 }
