@@ -274,7 +274,7 @@ function fit() {
     parseFloat(style.paddingTop) - parseFloat(style.paddingBottom) - 10));
   let scale = Math.min(room / canvas.width, high / canvas.height);
   const whole = Math.floor(scale * devicePixelRatio);
-  if (scale >= 1 && whole >= 1 && !state.look) scale = whole / devicePixelRatio;
+  if (scale >= 1 && whole >= 1) scale = whole / devicePixelRatio;
   canvas.style.width = `${canvas.width * scale}px`;
   canvas.style.height = `${canvas.height * scale}px`;
   const gaps = $('gaps');
@@ -570,6 +570,13 @@ async function bytesOf(file) {
   if (inflated === null) throw new Error(`inflates to more than ${number(MOST_BYTES)} bytes, which this page does not take`);
   return inflated;
 }
+// A small file as a link holds it: gzip, base 64; null where there is more.
+async function packedForLink(files) {
+  if (files.length > 1 || files[0].bytes.length > 2 ** 20) return null;
+  const stream = new Blob([files[0].bytes]).stream().pipeThrough(new CompressionStream('gzip'));
+  const packed = new Uint8Array(await new Response(stream).arrayBuffer());
+  return packed.length > LINK_BYTES ? null : btoa(String.fromCharCode(...packed)).replace(/\+/g, '-').replace(/\//g, '_').replace(/=/g, '');
+}
 async function take(list) {
   const own = ++takes;
   const files = [];
@@ -590,7 +597,8 @@ async function take(list) {
   const main = files.find((file) => /\.scene(\.gz)?$/i.test(file.name)) ??
     files.find((file) => !BESIDE.test(file.name)) ?? files[0];
   // `./`: a file, whatever generator has that name.
-  Object.assign(state, {dropped: {title: main.name, scene: `./${main.name}`, files}, ...AFRESH});
+  Object.assign(state, {dropped: {title: main.name, scene: `./${main.name}`, files, packed: await packedForLink(files)}, ...AFRESH});
+  if (own !== takes) return;
   if (state.wanted?.file === main.name) grant(state.wanted);
   state.wanted = null;
   await start();
@@ -645,7 +653,7 @@ $('link').onclick = async () => {
   history.replaceState(null, '', `#${fragment()}`);
   try {
     await navigator.clipboard.writeText(location.href);
-    say(state.dropped === null ? 'The link is on the clipboard.' :
+    say(state.dropped === null ? 'The link is on the clipboard.' : state.dropped.packed ? `The link is on the clipboard. It holds ${state.dropped.title} itself.` :
       `The link is on the clipboard. ${state.dropped.title} stays here: whoever opens the link drops it there.`);
   } catch {
     say('The link stands in the address bar.');
@@ -701,12 +709,12 @@ function showChoices(board) {
   $('board').value = state.board;
   $('board').disabled = document.querySelector('[data-hold="select"]').disabled = state.look;
   $('pause').textContent = state.look ? 'Stop' : 'Pause';
-  $('get').hidden = true;
+  $('get').hidden = $('none').hidden = true;
   const glass = state.look ? undefined : SHELF[board.name]?.glass;
   $('true').hidden = !glass;
   if (glass) {
     Object.assign($('glass'), {width: board.width, height: board.height}).style.width = `${glass[0]}mm`;
-    $('size').textContent = `as large as it is: ${glass.map((mm) => number(mm)).join(' x ')} mm`;
+    $('size').textContent = `its true size, ${glass.map((mm) => number(mm)).join(' x ')} mm`;
   }
   showPause();
   fit();
@@ -715,6 +723,7 @@ function showChoices(board) {
 function showGet() {
   const board = shownBoard();
   $('get').hidden = baked?.image === undefined || machine.app !== 'demo';
+  $('none').hidden = !$('get').hidden;
   $('steps').replaceChildren(...(STEPS[board.ending] ?? []).map((step) =>
     Object.assign(document.createElement('li'), {textContent: step.replace('FILE', imageName())})));
 }
@@ -741,13 +750,14 @@ addEventListener('resize', () => {
 // What a link holds: what is shown, and from where.
 function fragment() {
   const view = new URLSearchParams(state.dropped === null ? {scene: state.scene} : {file: state.dropped.title});
+  if (state.dropped?.packed) view.set('model', state.dropped.packed);
   view.set('board', state.board);
   if (state.depth !== 0) view.set('depth', state.depth);
   if (state.coarsen) view.set('merge', '1');
   if (viewer !== null && isFilm()) view.set('frame', state.frame ?? 0);
   if (state.look) view.set('look', orbit === null || orbit.isOwn || state.turns ? '1' : orbit.text());
   if (state.look && state.turns) view.set('turns', '1');
-  if (state.size !== null) view.set('size', state.size.join('x'));
+  if (state.look && state.size !== null) view.set('size', state.size.join('x'));
   return view;
 }
 // The address shows what the page shows, so that it can be kept and loaded again.
@@ -768,7 +778,7 @@ function readFragment() {
   wishes.look = view.get('look');
   const size = /^(\d{2,4})x(\d{2,4})$/.exec(view.get('size') ?? '');
   Object.assign(state, {turns: view.get('turns') === '1' && !calm, size: size && size.slice(1).map(Number)});
-  state.wanted = view.get('file') ? {...wishes, file: view.get('file').slice(0, 255)} : null;
+  state.wanted = view.get('file') ? {...wishes, file: view.get('file').slice(0, 255), model: view.get('model')} : null;
   Object.assign(state, {dropped: null, ...AFRESH, look: false, view: null});
   if (state.wanted === null) grant(wishes);
 }
@@ -776,11 +786,16 @@ function grant({look, depth, coarsen, frame}) {
   const isLook = look !== null && current().scene !== null;
   Object.assign(state, {depth, coarsen, look: isLook, view: look, frame: isLook && state.dropped !== null ? frame : null});
 }
-addEventListener('hashchange', () => {
+// What the address asks for, and the model that it holds.
+async function openAddress() {
   readFragment();
   orbit = null;
-  start();
-});
+  const {model, file} = state.wanted ?? {};
+  const packed = /^[\w-]+$/.test(model ?? '') ? Uint8Array.from(atob(model.replace(/-/g, '+').replace(/_/g, '/')), (c) => c.charCodeAt(0)) : [];
+  const bytes = await inflate(packed, MOST_BYTES).catch(() => null);
+  await (bytes === null ? start() : take([new File([bytes], file)]));
+}
+addEventListener('hashchange', openAddress);
 
 async function main() {
   table = new Table(await moduleOf('plane'));
@@ -793,8 +808,7 @@ async function main() {
       `flash ${number(board.flash / 1024)} KiB`;
     return option;
   }));
-  readFragment();
-  await start();
+  await openAddress();
   requestAnimationFrame(tick);
 }
 say('');  // what the page says where no script runs

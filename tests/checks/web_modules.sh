@@ -3,7 +3,7 @@
 #   web_modules.sh ROOT THIMBLE      77 where a package of the page is missing
 set -eu
 cd "$1"
-for what in node clang++-14 wasm-opt zopfli; do
+for what in node clang++-14 wasm-opt xz; do
   command -v "$what" >/dev/null 2>&1 || {
     echo "skipped: $what is not installed"
     exit 77

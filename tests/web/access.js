@@ -34,6 +34,7 @@ function leastContrast() {
 }
 
 async function judgeAccess(browser) {
+  await browser.eval(`document.getElementById('more').open = true`);
   for (const scheme of ['light', 'dark']) {
     await test(`contrast, ${scheme}: text at least 4.5, the ring of the focus at least 3`, async () => {
       await browser.send('Emulation.setEmulatedMedia', {features: [{name: 'prefers-color-scheme', value: scheme}]});
@@ -77,7 +78,7 @@ async function judgeAccess(browser) {
       (element) => !element.disabled && element.checkVisibility() && element.tabIndex >= 0).map((element) =>
       element.id || element.getAttribute('aria-label') || element.textContent)`);
     const visited = [];
-    await browser.eval(`document.querySelector('nav button').focus({focusVisible: true})`);
+    await browser.eval(`document.getElementById('canvas').focus({focusVisible: true})`);
     for (let i = 0; i < order.length; ++i) {
       if (i !== 0) await browser.tab();
       visited.push(await browser.eval(`(() => { const e = document.activeElement, box = e.getBoundingClientRect();

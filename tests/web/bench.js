@@ -18,7 +18,7 @@ async function main() {
     for (let round = 1; round <= ROUNDS; ++round) {
       const {size, median, slowest} = await browser.eval(`(async () => {
         state.paused = true;
-        await restart({board: '${name}'});
+        await restart({scene: 'valley', look: false, board: '${name}'});
         const times = [];
         for (let i = 0; i < ${FRAMES}; ++i) {
           const began = performance.now();

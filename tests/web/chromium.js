@@ -116,6 +116,7 @@ class Chromium {
   }
   async middle(selector) {
     return this.eval(`(() => { const element = document.querySelector(${JSON.stringify(selector)});
+      element.closest('details:not([open])')?.setAttribute('open', '');  // as a person would
       element.scrollIntoView({block: 'center'}); const box = element.getBoundingClientRect();
       return {x: box.x + box.width / 2, y: box.y + box.height / 2, width: box.width, height: box.height}; })()`);
   }

@@ -11,6 +11,7 @@ const {judgeCases} = require('./cases.js');
 const {judgeAccess} = require('./access.js');
 const {isWhatIsSaid, judgePlays} = require('./play_cases.js');
 const {judgeShown, judgeFiles, judgeWheels, judgeRefused} = require('./shown_cases.js');
+const {judgeOpening} = require('./open_cases.js');
 const made = require('./files.js');
 
 const [, , page, thimble, only] = process.argv;
@@ -64,7 +65,7 @@ async function showsItsFrame(scene, board) {
 }
 
 async function desktop() {
-  browser = await Chromium.open(url);
+  browser = await Chromium.open(`${url}#scene=valley&board=lm3s6965evb&size=640x480`);
   await began();
   await test('it opens from the disk and draws', async () => {
     holds('it says what it shows', (await text('said')).startsWith('Valley: 72,295 voxels in 39,060 bytes, depth 6'));
@@ -143,7 +144,7 @@ async function looks() {
   await test('look around: dragged, turned by the wheel, lit at rest', async () => {
     await browser.click('#scene-castle');
     await began();
-    await browser.click('#look');
+    await browser.click('#act');
     await began();
     await browser.key('0', 'Digit0');  // a view from before is kept
     await browser.until(`viewer.phase === 'fine'`, 60);  // s saves the finished one below
@@ -158,7 +159,7 @@ async function looks() {
     holds(`the link ${link} holds the view`, /look=[-\d.]+(%2C[-\d.]+){5}/.test(link));
     await browser.key('0', 'Digit0');
     is('back at the scene\'s own view', await camera(), own);
-    await browser.click('#look');
+    await browser.click('#act');
     await began();
   });
   await hands();
@@ -334,7 +335,7 @@ async function hands() {
     for (const name of ['Escape', 'q']) {
       await key(name);
       await browser.until('viewer === null && machine !== null');
-      await browser.click('#look');
+      await browser.click('#act');
       await browser.until('viewer !== null');
     }
     shown = await browser.eval('generation');
@@ -381,7 +382,7 @@ async function links() {
     await browser.click('#scene-castle');
     await began();
     await choose('mps2-an500');
-    await browser.click('#look');
+    await browser.click('#act');
     await began();
     await fromAfar();
     await browser.drag('#canvas', 90, -30);
@@ -431,7 +432,7 @@ async function links() {
     is('the picture', await canvasCrc(), wanted);
     await browser.close();
     browser = other;
-    await browser.click('#look');
+    await browser.click('#act');
     await began();
   });
   await test('a broken link shows what of it means something', async () => {
@@ -559,7 +560,7 @@ async function drops() {
     await pause(300);
     holds('the last one wins', (await text('said')).startsWith('fox.vox.gz: '));
     shown = await browser.eval('generation');
-    await browser.click('#look');
+    await browser.click('#act');
     await began();
     await browser.until(`viewer.phase === 'lit' || viewer.phase === 'fine'`);
     await browser.drop([castle]);
@@ -571,7 +572,7 @@ async function drops() {
     await fromAfar();
     await finish();
     is('the picture is that of the demonstration', await canvasCrc(), wanted);
-    await browser.click('#look');
+    await browser.click('#act');
     shown = await browser.eval('generation') - 1;
     await began();
     await browser.click('#scene-valley');
@@ -583,7 +584,7 @@ async function drops() {
 // Every size is turned over while the scene is shown.
 const SCREENS = [[360, 640], [412, 915], [768, 1024]].flatMap((upright) => [upright, [...upright].reverse()]);
 async function telephone() {
-  browser = await Chromium.open(`${url}#scene=castle&board=raspi0&look=1`, {width: 360, height: 640, mobile: true});
+  browser = await Chromium.open(`${url}#scene=castle&board=raspi0&look=1&size=640x480`, {width: 360, height: 640, mobile: true});
   shown = 0;
   await began();
   await fromAfar();
@@ -601,15 +602,15 @@ async function telephone() {
       holds('all of it is on the first screen', await browser.eval(
         `(({top, bottom}) => top >= 0 && bottom <= innerHeight)(canvas.getBoundingClientRect())`));
       if (width < height) holds('it uses the width', box.width >= 0.75 * Math.min(width, 640));
-      const hidden = await browser.eval(`[...document.querySelectorAll('button, select, summary')].filter((element) => {
-        if (element.closest('dialog') || element.hidden || element.disabled) return false;
+      const hidden = await browser.eval(`document.getElementById('more').open = true; [...document.querySelectorAll('button, select, summary')].filter((element) => {
+        if (element.closest('dialog') || element.disabled || !element.checkVisibility()) return false;
         element.scrollIntoView({block: 'center'});
         const box = element.getBoundingClientRect();
         const seen = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
         return box.width < 24 || box.height < 24 || (seen !== element && !element.contains(seen));
       }).map((element) => element.id || element.textContent)`);
       is('what a finger does not reach', hidden.join(), '');
-      await browser.eval('scrollTo(0, 0)');
+      await browser.eval(`document.getElementById('more').open = false; scrollTo(0, 0)`);
       await browser.shot(path.join(work, `screen_${width}x${height}.png`));
     });
   }
@@ -677,6 +678,7 @@ async function telephone() {
     await browser.until('viewer !== null');
   });
   await test('turned over with a finger on it', async () => {
+    await browser.eval(`document.getElementById('more').open = false`);
     await browser.turnTo(360, 640);
     const {x, y} = await browser.middle('#canvas');
     await browser.touch('touchStart', [{x, y, id: 1}]);
@@ -711,7 +713,7 @@ async function turnsByFingers() {
 
 // The core's own cases, and pictures whose CRCs every board has.
 async function cases() {
-  browser = await Chromium.open(url);
+  browser = await Chromium.open(`${url}#scene=valley&board=lm3s6965evb`);
   await browser.until(`document.documentElement.dataset.ready === '1'`, 30);
   const wasm = fs.readFileSync(path.join(path.dirname(page), 'modules/cases.wasm')).toString('base64');
   await browser.eval(`state.paused = true; (async () => {
@@ -737,7 +739,7 @@ async function served() {
         response.end(fs.readFileSync(page));
       });
       await new Promise((done) => server.listen(0, '127.0.0.1', done));
-      browser = await Chromium.open(`http://127.0.0.1:${server.address().port}/#scene=castle&look=-1.2,0.4,500,64,64,30`);
+      browser = await Chromium.open(`http://127.0.0.1:${server.address().port}/#scene=castle&size=640x480&look=-1.2,0.4,500,64,64,30`);
       await browser.until(`document.documentElement.dataset.ready === '1'`, 60);
       is('isolated', await browser.eval('crossOriginIsolated'), isolated);
       await browser.eval('crewSize = 2; restart({})');
@@ -754,7 +756,7 @@ async function served() {
 }
 
 async function calm() {
-  browser = await Chromium.open(url, {media: [{name: 'prefers-reduced-motion', value: 'reduce'}]});
+  browser = await Chromium.open(`${url}#scene=valley&board=lm3s6965evb&size=640x480`, {media: [{name: 'prefers-reduced-motion', value: 'reduce'}]});
   shown = 0;
   await began();
   await test('who wants less motion gets none before asking', async () => {
@@ -778,7 +780,7 @@ async function calm() {
     fs.writeFileSync(film, made.vox(16, 3));
     await browser.click('#scene-castle');
     await began();
-    await browser.click('#look');
+    await browser.click('#act');
     await began();
     await browser.drop([film]);
     await began();
@@ -790,8 +792,8 @@ async function calm() {
   await browser.close();
 }
 
-(only === undefined ? desktop().then(telephone).then(served).then(() => judgeRefused(page, work)).then(calm).then(cases) :
-  {desktop, telephone, served, refused: () => judgeRefused(page, work), calm, cases}[only]()).then(() => Chromium.quit()).then(() => end('the page in Chromium')).catch((error) => {
+(only === undefined ? judgeOpening(url, thimble, work).then(desktop).then(telephone).then(served).then(() => judgeRefused(page, work)).then(calm).then(cases) :
+  {opening: () => judgeOpening(url, thimble, work), desktop, telephone, served, refused: () => judgeRefused(page, work), calm, cases}[only]()).then(() => Chromium.quit()).then(() => end('the page in Chromium')).catch((error) => {
   console.error(`test-web: ${error.message}`);
   Chromium.kill();
   process.exit(1);

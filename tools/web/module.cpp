@@ -136,7 +136,7 @@ extern "C" {
   if (found == nullptr) {
     throw thimble::tools::InputError("is drawn by no image for this board");
   }
-  image = image_file(*found, baked.bytes, thimble::platform::boards()[index], ending);
+  image = image_file(*found, baked.bytes, thimble::platform::boards()[index], std::string(".") + ending);
   return image.data();
 }
 [[clang::export_name("image_bytes")]] std::size_t thimble_image_bytes() {
