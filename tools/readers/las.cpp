@@ -49,14 +49,13 @@ class LasCloud final : public PointCloud {
     ProgressMeter meter(progress, file_.bytes.size());
     std::uint16_t highest = 0;
     std::uint64_t kept = 0;
-    walk([&](const CloudPoint& point, ByteReader& record) {
+    walk([&](const CloudPoint& point, const std::uint8_t* color) {
       ++kept;
       if (!point.is_finite()) {
         throw InputError("the position of point " + std::to_string(point.line) + " is not finite");
       }
-      if (color_offset_ != kNoColor) {
-        record.skip(color_offset_);
-        highest = std::max({highest, record.u16(), record.u16(), record.u16()});
+      for (std::size_t channel = 0; color != nullptr && channel < 3; ++channel) {
+        highest = std::max(highest, component(color, channel));
       }
       meter.at(static_cast<std::size_t>(first_offset_ + (point.line - 1) * record_bytes_));
     });
@@ -77,12 +76,10 @@ class LasCloud final : public PointCloud {
   }
 
   void for_each(const Visit& visit) const override {
-    walk([&](CloudPoint& point, ByteReader& record) {
+    walk([&](CloudPoint& point, const std::uint8_t* color) {
       if (has_color_) {
-        record.skip(color_offset_);
-        point.color.r = byte_of(record.u16());
-        point.color.g = byte_of(record.u16());
-        point.color.b = byte_of(record.u16());
+        point.color = {byte_of(component(color, 0)), byte_of(component(color, 1)),
+                       byte_of(component(color, 2))};
       }
       visit(point);
     });
@@ -150,25 +147,29 @@ class LasCloud final : public PointCloud {
     }
   }
 
-  /// Calls take(point, record) for each point that is not withheld, without its colour.
+  /// Calls take(point, color) for each point that is not withheld, without its colour, whose three components of 16 bits
+  /// stand at `color` (null: the format has none).
   template <class Take>
   void walk(const Take& take) const {
-    for (std::uint64_t i = 0; i < count_; ++i) {
-      const ByteReader record(file_.bytes.subspan(static_cast<std::size_t>(first_offset_ + i * record_bytes_),
-                                                  static_cast<std::size_t>(record_bytes_)));
-      ByteReader place = record;
+    const std::uint8_t* record = file_.bytes.data() + first_offset_;
+    const auto coordinate = [&](std::size_t axis) {
+      const auto bits = static_cast<std::uint32_t>(load_bits(record + 4 * axis, 4, false));
+      return static_cast<std::int32_t>(bits) * scale_[axis] + offset_[axis];
+    };
+    for (std::uint64_t i = 0; i < count_; ++i, record += record_bytes_) {
       CloudPoint point;
-      point.x = place.i32() * scale_[0] + offset_[0];
-      point.y = place.i32() * scale_[1] + offset_[1];
-      point.z = place.i32() * scale_[2] + offset_[2];
+      point.x = coordinate(0);
+      point.y = coordinate(1);
+      point.z = coordinate(2);
       point.line = i + 1;
-      place.skip(3);
-      const bool is_withheld = (place.u8() & (is_new_format_ ? 0x04U : 0x80U)) != 0;
+      const bool is_withheld = (record[15] & (is_new_format_ ? 0x04U : 0x80U)) != 0;
       if (!is_withheld) {
-        ByteReader rest = record;
-        take(point, rest);
+        take(point, color_offset_ == kNoColor ? nullptr : record + color_offset_);
       }
     }
+  }
+  static std::uint16_t component(const std::uint8_t* color, std::size_t channel) {
+    return static_cast<std::uint16_t>(load_bits(color + 2 * channel, 2, false));
   }
   std::uint8_t byte_of(std::uint16_t component) const {
     return static_cast<std::uint8_t>((component * 255U + full_ / 2) / full_);

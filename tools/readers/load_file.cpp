@@ -1,8 +1,10 @@
 // Files and what is packed in them, as bytes: what of file_bytes.h needs a system, zlib, liblzma and libzstd.
 #include "readers/file_bytes.h"
+#include "readers/mapped_file.h"
 
 #include <fcntl.h>
 #include <lzma.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -59,6 +61,16 @@ class Descriptor {
       throw InputError("is a directory, not a file");
     }
     return S_ISREG(status.st_mode) && status.st_size > 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+  }
+
+  /// All `size` bytes of a regular file, to be read where they lie; none where the system does not map it.
+  SharedBytes map(std::size_t size) const {
+    void* const address = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd_, 0);
+    if (address == MAP_FAILED) {
+      return {};
+    }
+    const std::shared_ptr<const void> owner(address, [size](void* first) { ::munmap(first, size); });
+    return {{static_cast<const std::uint8_t*>(address), size}, owner};
   }
 
   /// Reads until `count` bytes are there or the file ends: a pipe may hand out fewer.
@@ -476,6 +488,23 @@ FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const Fi
       return buffer.finish();
     }
   }
+}
+
+SharedBytes load_shared(const std::string& path, const FirstLook& look) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
+      static_cast<std::uint64_t>(status.st_size) >= kMappedBytes) {
+    const Descriptor file(path);
+    const SharedBytes mapped = file.map(static_cast<std::size_t>(file.size_hint_bytes()));
+    const bool is_packed = std::any_of(kPackings.begin(), kPackings.end(), [&](const Packing& packing) {
+      return path.ends_with(packing.ending) || mapped.text().starts_with(packing.signature);
+    });
+    if (mapped.owner != nullptr && !is_packed) {
+      Looker(look).at(mapped.bytes, true);
+      return mapped;
+    }
+  }
+  return share(load_file(path, kFileLimitBytes, look));
 }
 
 }  // namespace thimble::tools

@@ -1,14 +1,17 @@
 // `.oct`: scenes baked by `thimble bake` (src/FORMAT.md). The one reader that hands over a tree, because that is what the
-// file holds; nothing is rebuilt or copied. Every byte is validated, so what comes back is sound.
+// file holds; nothing is rebuilt or copied. Every byte is validated, so what comes back is sound; but of a mapped file only what
+// walks rely on, so that it opens at once.
 #include "readers/oct.h"
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <string>
 #include <string_view>
 
 #include "readers/file_bytes.h"
 #include "readers/formats.h"
+#include "readers/mapped_file.h"
 #include "thimble/light/scene.h"
 
 namespace thimble::tools {
@@ -29,6 +32,43 @@ InputError another_version(const std::string& unknown) {
   const std::size_t colon = text.find(':');
   return InputError(std::string(text.substr(0, colon)) + " (" + unknown + ")" +
                     std::string(text.substr(colon)));
+}
+
+// Whether each level has the nodes that the masks of the level above call for, down to the voxels: what walks along the
+// levels relies on that. It takes a tenth of the time of a whole check, and no memory.
+bool adds_up(const CompactTree& tree) {
+  const std::uint64_t nodes = tree.node_count();
+  std::uint64_t node = 0;
+  std::uint64_t end = nodes == 0 ? 0 : 1;
+  for (int level = tree.level(); level >= 1; --level) {
+    std::uint64_t children = 0;
+    if (end > nodes) {
+      return false;
+    }
+    for (; node + 8 <= end; node += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, tree.masks() + node, sizeof word);
+      children += static_cast<unsigned>(std::popcount(word));
+    }
+    for (; node < end; ++node) {
+      children += static_cast<unsigned>(std::popcount(tree.mask(static_cast<std::uint32_t>(node))));
+    }
+    end += level > 1 ? children : 0;
+  }
+  return end == nodes;
+}
+
+// Whether a whole scene is sound, to its last byte; of a large one what nothing can do without.
+const char* fault_of(ConstBytes bytes, std::uint32_t* place) {
+  if (bytes.size < kMappedBytes) {
+    return BakedScene::validate(bytes, place);
+  }
+  BakedScene scene;
+  if (BakedScene::open(bytes, &scene) != Status::kOk) {
+    return BakedScene::validate(bytes, place);
+  }
+  *place = static_cast<std::uint32_t>(scene.tree().masks() - bytes.data);
+  return adds_up(scene.tree()) ? nullptr : "another number of nodes than the masks call for";
 }
 
 }  // namespace
@@ -54,7 +94,7 @@ Source read_oct(const SharedBytes& file, const ReadOptions&, const Progress&) {
   }
   const ConstBytes view{bytes.data(), bytes.size()};
   std::uint32_t place = 0;
-  if (const char* fault = BakedScene::validate(view, &place)) {
+  if (const char* fault = fault_of(view, &place)) {
     if (fault == std::string_view(kAnotherVersion)) {
       throw another_version("with a section of kind " + std::to_string(load32(bytes, place)) +
                             ", which this one does not know");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "readers/file_bytes.h"
+#include "readers/mapped_file.h"
 #include "readers/text.h"
 #include "readers/zip.h"
 
@@ -190,7 +191,7 @@ Source read_any(const ReadOptions& options, const SharedBytes& file, const Progr
 
 Source read_scene_file(const ReadOptions& options, const Progress& progress) {
   const FirstLook look = [&](std::span<const std::uint8_t> first) { check_beginning(options.path, first); };
-  return read_any(options, share(load_file(options.path, kFileLimitBytes, look)), progress);
+  return read_any(options, load_shared(options.path, look), progress);
 }
 
 }  // namespace thimble::tools

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "output/units.h"
+#include "readers/mapped_file.h"
 #include "readers/oct.h"
 #include "scene/key_sort.h"
 #include "scene/point_tree.h"
@@ -260,7 +261,8 @@ void StructureBuilder::build_dense() {
 }
 
 void StructureBuilder::take_baked(const CompactTree& tree) {
-  if (options_.baked_in_flash) {
+  // A large file is not held, either, unless all is to be within a budget.
+  if (options_.baked_in_flash || (!options_.memory_bytes && tree.size_bytes() >= kMappedBytes)) {
     built_.compact = tree;
     return;
   }

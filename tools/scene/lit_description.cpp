@@ -58,6 +58,10 @@ UsedMaterials used_materials(const SceneSource& source) {
     return used_materials(source.baked()->tree());
   }
   UsedMaterials used;
+  if (source.single_material() && source.points() != 0) {
+    used.is[0] = true;
+    return used;
+  }
   source.stream([&](auto, auto, auto, std::uint8_t material) { used.is[material] = true; }, {});
   return used;
 }

@@ -181,12 +181,6 @@ unsigned full_bytes(std::uint64_t word) {
   return static_cast<unsigned>((high >> 7) * 0x0102040810204080U >> 56);
 }
 
-std::uint64_t bits_in(std::uint64_t word) {
-  word -= word >> 1 & 0x5555555555555555;
-  word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);
-  return ((word + (word >> 4)) & 0x0F0F0F0F0F0F0F0F) * 0x0101010101010101 >> 56;
-}
-
 /// The nodes of one level in Morton order.
 struct LevelNodes {
   std::vector<std::uint8_t> masks;  // room for all that there may be, and for 7 more
@@ -242,7 +236,7 @@ class MaskPyramid {
       const Span<std::uint64_t> words = words_[level];
       for (std::size_t i = 0; i < words.size; ++i) {
         const std::uint64_t word = words[i];
-        bits += level == base_ && word != 0 ? bits_in(word) : 0;
+        bits += level == base_ && word != 0 ? static_cast<unsigned>(std::popcount(word)) : 0;
         if (level == 1 || level > base_) {
           solid_[level][i] = word == 0 ? std::uint8_t{0} : solid_of(level, i, word);
         }
@@ -272,7 +266,7 @@ class MaskPyramid {
           to.masks[to.count] = (solid >> node & 1U) != 0 ? std::uint8_t{0} : mask;
           to.count += mask != 0 ? 1 : 0;
         }
-        to.solid_blocks += bits_in(solid);
+        to.solid_blocks += static_cast<unsigned>(std::popcount(solid));
         if (materials_ != nullptr) {
           emit_materials(level, i, &to.block_materials, &nodes->voxel_materials);
         }
@@ -345,8 +339,8 @@ void complete_tree(const CompactShape& shape, const VoxelBox& bounds, std::uint6
       std::uint64_t word = 0;
       const std::size_t size = std::min<std::size_t>(8, shape.nodes - i);
       std::memcpy(&word, masks + i, size);
-      children += bits_in(word);
-      solid_blocks += size - bits_in(full_bytes(word));
+      children += static_cast<unsigned>(std::popcount(word));
+      solid_blocks += size - static_cast<unsigned>(std::popcount(full_bytes(word)));
     }
   }
   if (shape.many_materials) {

@@ -10,9 +10,10 @@
 #include <utility>
 
 #include "readers/file_bytes.h"
+#include "readers/mapped_file.h"
 #include "scene/host_memory.h"
-#include "scene/point_tree.h"
 #include "scene/named_scenes.h"
+#include "scene/point_tree.h"
 #include "scene/workers.h"
 
 namespace thimble::tools {
@@ -88,6 +89,10 @@ class FileBuffer {
     return result;
   }
 };
+
+SharedBytes load_shared(const std::string& path, const FirstLook& look) {
+  return share(load_file(path, kFileLimitBytes, look));
+}
 
 FileBytes FileBytes::copy_of(std::span<const std::uint8_t> bytes) {
   return FileBuffer::of(bytes);

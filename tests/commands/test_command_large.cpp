@@ -1,0 +1,86 @@
+// Scenes that are larger than the memory that the command may have of its own.
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+
+#include "support/counts.h"
+#include "support/file_bytes.h"
+#include "support/run_command.h"
+
+namespace thimble::tests {
+namespace {
+
+// 163 MB, and 1.3 GB; the limits are what the command may have of its own.
+const int kLevel = many_or_few(11, 10);
+const int kLimitKiB = many_or_few(600, 100) * 1024;
+
+// A baked scene of a voxel in each cube of 2 x 2 x 2: of all its nodes but those of level 1 all children are there. Its
+// checksums, which a file that is mapped is not read for, are 0. `first_mask`: of the world's root.
+void write_scene(const std::string& path, unsigned first_mask) {
+  const std::uint64_t voxels = std::uint64_t{1} << (3 * (kLevel - 1));
+  const std::uint64_t upper = (voxels - 1) / 7;  // nodes above level 1
+  const std::uint64_t nodes = upper + voxels;
+  const std::uint64_t masks_bytes = (nodes + 3) & ~std::uint64_t{3};
+  const std::uint64_t blocks = (nodes + 63) / 64;
+  const std::uint64_t tree_bytes = 56 + masks_bytes + 4 * blocks;
+  const std::uint64_t side = std::uint64_t{1} << kLevel;
+  std::ofstream file(path, std::ios::binary);
+  file << "TMS" << little(1, 1) << little(28 + tree_bytes, 4) << little(0, 4) << little(1, 4);
+  file << little(1, 4) << little(28, 4) << little(tree_bytes, 4);  // one section, a tree
+  file << "TMB" << little(1, 1) << little(static_cast<std::uint64_t>(kLevel), 1) << little(6, 1)
+       << little(0, 2) << little(tree_bytes, 4) << little(0, 4) << little(nodes, 4) << little(0, 4)
+       << little(voxels, 4) << little(0, 6) << little(side - 1, 2) << little(side - 1, 2)
+       << little(side - 1, 2) << little(voxels, 8) << little(0, 8);
+  const auto fill = [&](std::uint64_t count, char byte) {
+    const std::string piece(std::size_t{1} << 20, byte);
+    for (; count > piece.size(); count -= piece.size()) {
+      file << piece;
+    }
+    file << piece.substr(0, static_cast<std::size_t>(count));
+  };
+  file << little(first_mask, 1);
+  fill(upper - 1, '\xff');
+  fill(voxels, '\1');
+  fill(masks_bytes - nodes, '\0');
+  std::string directory;  // of the children before each 64th node
+  for (std::uint64_t node = 0; node < nodes; node += 64) {
+    const std::uint64_t children = node < upper ? 8 * node : 7 * upper + node;
+    for (int shift = 0; shift < 32; shift += 8) {
+      directory.push_back(static_cast<char>(children >> shift));
+    }
+  }
+  file << directory;
+}
+
+}  // namespace
+
+TEST_CASE("command on a scene larger than its memory: drawn from the file, as with all memory") {
+  if (kSanitized) {
+    return;  // it takes memory of its own
+  }
+  const TemporaryFolder folder;
+  const std::string scene = folder.path("large.oct");
+  write_scene(scene, 0xFF);
+  const std::string draw = std::string(THIMBLE_COMMAND_PATH) + " render " + scene +
+                           " --shade depth --size 160x120 --threads 1 --engine ray64 --quiet -o ";
+  CommandLimits shell;
+  shell.program = "/bin/sh";
+  shell.seconds = 300;
+  const std::string limit = "ulimit -d " + std::to_string(kLimitKiB) + " && ";
+  const CommandResult within = run_command({"-c", limit + draw + folder.path("a.pgm")}, shell);
+  CHECK_MESSAGE(within.status == 0, within.describe());
+  const CommandResult free = run_command({"-c", draw + folder.path("b.pgm")}, shell);
+  CHECK_MESSAGE(free.status == 0, free.describe());
+  const std::string picture = read_text(folder.path("a.pgm"));
+  CHECK(picture == read_text(folder.path("b.pgm")));
+  CHECK(picture.find_first_not_of(picture.back(), 20) != std::string::npos);
+
+  write_scene(scene, 0x7F);
+  const CommandResult damaged = run_command({"-c", draw + folder.path("c.pgm")}, shell);
+  CHECK(damaged.status == 1);
+  CHECK(damaged.err.find("another number of nodes than the masks call for") != std::string::npos);
+}
+
+}  // namespace thimble::tests
