@@ -11,6 +11,7 @@ WORK=$(cd "$WORK" && pwd)
 packages=$(cd "$PACKAGES" && pwd)
 here=$PWD
 tried=
+export CMAKE_BUILD_PARALLEL_LEVEL="${CMAKE_BUILD_PARALLEL_LEVEL:-2}"
 for file in "$packages"/thimble_voxels-"$VERSION"-*.whl "$packages/thimble_voxels-$VERSION.tar.gz"; do
   [ -f "$file" ] || fail "$file was not made"
   venv=$WORK/venv

@@ -319,7 +319,11 @@ TEST_CASE("edited world: edits that cannot be -> a status, and nothing done") {
   EditJournal none;
   CHECK(world.edit(one, EditShape::kBox, 1, &none) == Status::kOutOfMemory);
   CHECK(world.undo(&none) == Status::kBadArgument);
-  CHECK(journal.size() == 0);
+  // Room for a voxel and its edit, and one voxel more.
+  EditJournal small(entries.span().subspan(0, 23));
+  CHECK(small.capacity() == 2);
+  CHECK(world.edit({{1, 1, 1}, {2, 2, 3}}, EditShape::kBox, 1, &small) == Status::kOutOfMemory);
+  CHECK(small.size() + journal.size() == 0);
   CHECK(world.empty());
   // A voxel and an edit; nothing outside, and nothing that is so already.
   CHECK(world.edit(one, EditShape::kBall, 7, &journal) == Status::kOk);
