@@ -1,9 +1,7 @@
 #include "gpu/renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <optional>
 
 #include "gpu/device.h"
 #include "gpu/kernel/cpp.h"

@@ -1,7 +1,6 @@
 #include "gpu/scene_words.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "gpu/kernel/cpp.h"
 

@@ -10,8 +10,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <vector>
 
 #include "host/simulation.h"
 #include "thimble/base/memory.h"

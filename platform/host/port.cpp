@@ -3,7 +3,6 @@
 #include "port.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "host/simulation_state.h"
 

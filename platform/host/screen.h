@@ -16,7 +16,6 @@
 /// divided by '\n'; what does not fit is cut off.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>

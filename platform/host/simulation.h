@@ -20,7 +20,6 @@
 ///     }
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>

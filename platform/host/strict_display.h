@@ -5,10 +5,8 @@
 /// frame cannot.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "host/packed_picture.h"
 #include "thimble/picture/render.h"

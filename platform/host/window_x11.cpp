@@ -12,10 +12,7 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
-#include <optional>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "host/canvas.h"
 #include "host/uri_list.h"

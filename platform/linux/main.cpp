@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <string>
-#include <vector>
 
 #include "apps/app_table.h"
 #include "linux/console.h"

@@ -2,9 +2,6 @@
 /// stride.
 #pragma once
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "thimble/base/memory.h"
 #include "thimble/picture/pixel.h"
 #include "thimble/picture/render.h"

@@ -2,12 +2,8 @@
 // or damaged.
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <cstring>
 #include <random>
-#include <string>
-#include <vector>
 
 #include <zlib.h>
 

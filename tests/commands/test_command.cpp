@@ -2,10 +2,6 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "support/check_command.h"
 
 namespace {

@@ -3,12 +3,8 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "boards/board_table.h"
 #include "output/units.h"

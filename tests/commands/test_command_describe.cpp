@@ -2,10 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "support/check_command.h"
 

@@ -3,8 +3,6 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "support/file_bytes.h"
 #include "support/run_command.h"

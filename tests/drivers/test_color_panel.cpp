@@ -3,9 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <random>
-#include <vector>
 
 #include "support/panel_model.h"
 #include "thimble/drivers/panel.h"

@@ -2,8 +2,6 @@
 /// picture that the effects define, and only then.
 #pragma once
 
-#include <stdint.h>
-
 #include "thimble/picture/pixel.h"
 
 namespace thimble::golden {

@@ -2,7 +2,6 @@
 // tests' row has the validation layer, which must say nothing.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -10,8 +9,6 @@
 #include "gpu/renderer.h"
 #include "support/frames.h"
 #include "support/hard_frames.h"
-#include "support/ray_cases.h"
-#include "support/wide_cases.h"
 
 namespace thimble::tests {
 namespace {

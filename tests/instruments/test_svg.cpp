@@ -1,8 +1,6 @@
 // What plots write for words that may be anything: a scene's name is a file's name.
 #include <doctest/doctest.h>
 
-#include <string>
-
 #include "output/plot.h"
 #include "output/units.h"
 

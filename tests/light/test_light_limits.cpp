@@ -3,9 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdint>
 #include <random>
-#include <vector>
 
 #include "support/lit_world.h"
 #include "support/scene_under_test.h"

@@ -2,10 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <vector>
 
 #include "support/lit_world.h"
 

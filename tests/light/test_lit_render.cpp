@@ -1,8 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "support/formats.h"
 #include "support/lit_world.h"

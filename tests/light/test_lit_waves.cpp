@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <set>
-#include <vector>
 
 #include "support/lit_world.h"
 #include "thimble/light/water.h"

@@ -1,10 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <utility>
-#include <vector>
 
 #include "support/counts.h"
 #include "support/lit_world.h"

@@ -2,8 +2,6 @@
 /// all.
 #pragma once
 
-#include <cstdint>
-
 #include <doctest/doctest.h>
 
 #include "misuse/odd_values.h"

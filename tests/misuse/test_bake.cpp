@@ -2,7 +2,6 @@
 // draw.
 #include <doctest/doctest.h>
 
-#include <cstdint>
 #include <optional>
 
 #include "misuse/odd_worlds.h"

@@ -2,8 +2,6 @@
 // bytes.
 #include <doctest/doctest.h>
 
-#include <cstdint>
-
 #include "misuse/odd_worlds.h"
 
 namespace {

@@ -2,7 +2,6 @@
 // bytes.
 #include <doctest/doctest.h>
 
-#include <cstdint>
 #include <vector>
 
 #include "misuse/odd_worlds.h"

@@ -6,9 +6,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "output/held_signals.h"
 #include "output/output_set.h"

@@ -2,11 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <set>
-#include <vector>
 
 #include "support/scene_under_test.h"
 #include "thimble/picture/render.h"

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <iterator>
-#include <limits>
 #include <vector>
 
 #include "thimble/plane/particles.h"

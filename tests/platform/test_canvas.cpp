@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string>
-#include <vector>
 
 #include "host/canvas.h"
 

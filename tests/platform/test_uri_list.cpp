@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <string>
 
 #include "host/uri_list.h"
 

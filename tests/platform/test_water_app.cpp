@@ -3,9 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cstdio>
-#include <map>
-#include <string>
-#include <vector>
 
 #include "apps/apps.h"
 #include "apps/demo_view.h"

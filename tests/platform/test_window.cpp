@@ -6,10 +6,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "host/screen.h"
 #include "support/run_command.h"

@@ -3,11 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include "readers/read_any.h"
 #include "support/reader_inputs.h"

@@ -1,11 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "scene/random.h"
 #include "scene/world_fit.h"

@@ -1,11 +1,7 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
-#include <array>
-#include <cmath>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "scene/generators.h"
 #include "scene/random.h"

@@ -3,11 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <map>
-#include <string>
-#include <vector>
 
 #include "readers/block_colors.h"
 #include "readers/formats.h"

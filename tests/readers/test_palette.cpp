@@ -1,9 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <vector>
 
 #include "scene/palette.h"
 #include "scene/random.h"

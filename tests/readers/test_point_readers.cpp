@@ -2,9 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <string>
 
 #include "readers/formats.h"
 #include "readers/read_any.h"

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <ctime>
 #include <map>
-#include <string>
-#include <vector>
 
 #include "scene/random.h"
 #include "scene/voxelise.h"

@@ -1,7 +1,6 @@
 #include "reference/textbook.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

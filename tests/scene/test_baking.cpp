@@ -1,8 +1,6 @@
 // What a baked scene is called.
 #include <doctest/doctest.h>
 
-#include <string>
-
 #include "scene/baking.h"
 
 namespace {

@@ -2,10 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <utility>
-#include <vector>
 
 #include "apps/demo_view.h"
 #include "readers/source.h"

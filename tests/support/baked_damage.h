@@ -2,10 +2,7 @@
 /// fuzz target.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <memory>
 
 #include "support/compact_damage.h"
 #include "thimble/bake/baked_scene.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "support/random_up.h"
-#include "support/ray_cases.h"
 
 namespace thimble::tests {
 namespace {

@@ -1,6 +1,5 @@
 #include "support/hit_rows.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>

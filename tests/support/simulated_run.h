@@ -3,10 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdint>
 #include <map>
-#include <string>
-#include <vector>
 
 #include "boards/board_table.h"
 #include "host/simulation.h"

@@ -1,7 +1,6 @@
 #include "support/solid_worlds.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <stdexcept>

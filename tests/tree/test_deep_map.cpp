@@ -3,10 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
-#include <random>
-#include <vector>
 
 #include "support/deep_worlds.h"
 #include "support/ray_cases.h"

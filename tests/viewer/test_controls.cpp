@@ -1,8 +1,6 @@
 // The viewer's gestures: what keys and mouse ask for.
 #include <doctest/doctest.h>
 
-#include <string>
-
 #include "viewer/controls.h"
 
 namespace {

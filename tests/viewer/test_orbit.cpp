@@ -1,7 +1,6 @@
 // The viewer's camera: turning, moving, and staying where rays may start.
 #include <doctest/doctest.h>
 
-#include <cmath>
 #include <random>
 
 #include "viewer/camera_state.h"

@@ -1,8 +1,6 @@
 #include "commands/camera_path.h"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "commands/arguments.h"
 #include "output/output_file.h"

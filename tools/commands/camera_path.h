@@ -1,10 +1,6 @@
 /// --camera-path: the cameras of a film, a line each.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "scene/framing.h"
 
 namespace thimble::tools {

@@ -1,7 +1,5 @@
 #include "commands/view_options.h"
 
-#include <cmath>
-#include <cstdio>
 #include <tuple>
 
 #include "boards/board_table.h"

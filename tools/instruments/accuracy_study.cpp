@@ -1,7 +1,5 @@
 #include "instruments/accuracy_study.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 

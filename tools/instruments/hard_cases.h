@@ -3,10 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "output/tables.h"
 #include "readers/progress.h"

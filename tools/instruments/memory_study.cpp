@@ -1,8 +1,5 @@
 #include "instruments/memory_study.h"
 
-#include <algorithm>
-#include <memory>
-
 #include "output/hit_rows.h"
 #include "readers/oct.h"
 #include "readers/source.h"

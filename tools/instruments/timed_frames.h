@@ -8,11 +8,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <ctime>
-#include <string>
-#include <vector>
 
 #include "output/tables.h"
 #include "thimble/picture/camera.h"

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cctype>
 #include <cstring>
-#include <span>
 
 #include "output/output_file.h"
 #include "output/png.h"

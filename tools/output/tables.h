@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "output/units.h"
 

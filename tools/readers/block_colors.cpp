@@ -1,7 +1,6 @@
 #include "readers/block_colors.h"
 
 #include <algorithm>
-#include <array>
 
 namespace thimble::tools {
 namespace {

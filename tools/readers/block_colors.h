@@ -6,9 +6,7 @@
 /// 255) have a table of names.
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <string_view>
 
 #include "readers/source.h"
 

@@ -3,13 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <string>
 
 #include "readers/formats.h"
 #include "readers/mesh.h"
-#include "readers/source.h"
 
 namespace thimble::tools {
 

@@ -1,13 +1,6 @@
 #include "readers/mesh.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace thimble::tools {
 

@@ -1,8 +1,6 @@
 #include "readers/picture.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdlib>
 #include <limits>
 
 #include "readers/file_bytes.h"

@@ -1,7 +1,6 @@
 #include "readers/text_line.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "output/units.h"
 #include "readers/text.h"

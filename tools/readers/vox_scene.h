@@ -6,8 +6,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "readers/file_bytes.h"

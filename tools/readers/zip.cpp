@@ -1,7 +1,6 @@
 #include "readers/zip.h"
 
 #include <algorithm>
-#include <string>
 
 #include "readers/text.h"
 

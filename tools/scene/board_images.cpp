@@ -1,8 +1,6 @@
 #include "scene/board_images.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 

@@ -1,10 +1,7 @@
 #include "scene/generators.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
-#include <cstddef>
 #include <limits>
 
 #include "scene/named_scenes.h"

@@ -1,7 +1,6 @@
 #include "scene/lit_description.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include "output/units.h"

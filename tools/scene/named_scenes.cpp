@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <map>
-#include <string_view>
 #include <system_error>
 
 #include "output/suggestion.h"

@@ -1,9 +1,7 @@
 #include "scene/palette.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <utility>
 
 namespace thimble::tools {
 

@@ -3,7 +3,6 @@
 #include "scene/scene_shape.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
 
 #include "readers/oct.h"

@@ -1,7 +1,6 @@
 #include "scene/voxelise.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "scene/mesh_shade.h"
 #include "scene/world_fit.h"

@@ -1,10 +1,7 @@
 #include "scene/voxelise.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <optional>
-#include <vector>
 
 #include "scene/world_fit.h"
 

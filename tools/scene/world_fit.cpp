@@ -1,8 +1,6 @@
 #include "scene/world_fit.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdio>
 
 namespace thimble::tools {

@@ -1,8 +1,5 @@
 #include "viewer/camera_state.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "viewer/finished_picture.h"
 
 namespace thimble::tools::viewer {

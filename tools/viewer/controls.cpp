@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <string_view>
 
 namespace thimble::tools::viewer {
 namespace {

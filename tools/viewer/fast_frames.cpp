@@ -1,6 +1,5 @@
 #include "viewer/fast_frames.h"
 
-#include <algorithm>
 #include <chrono>
 
 #include "scene/magnify.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <utility>
 
 namespace thimble::tools::viewer {
 namespace {

@@ -2,11 +2,7 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
-#include <memory>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "scene/built_scene.h"
 #include "scene/scene_arguments.h"

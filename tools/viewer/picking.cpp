@@ -1,6 +1,5 @@
 #include "viewer/picking.h"
 
-#include <array>
 #include <cstdio>
 
 #include "thimble/trace/ray.h"

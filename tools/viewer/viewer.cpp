@@ -1,14 +1,7 @@
 #include "viewer/viewer.h"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
-#include <memory>
-#include <optional>
-#include <thread>
-#include <vector>
 
 #include "host/canvas.h"
 #include "output/output_file.h"
@@ -17,8 +10,6 @@
 #include "scene/moving_pool.h"
 #include "viewer/camera_state.h"
 #include "viewer/fast_frames.h"
-#include "viewer/finished_picture.h"
-#include "viewer/open_scene.h"
 #include "viewer/picking.h"
 #include "viewer/saving.h"
 

@@ -5,7 +5,6 @@
 // approach, and what overlap there is, is taken out by pushing them apart.
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "engine.h"
 

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <stdexcept>
 #include <thread>
 
 #include "output/output_file.h"
