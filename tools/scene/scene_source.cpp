@@ -100,7 +100,7 @@ std::unique_ptr<SceneSource> model_scene(std::unique_ptr<VoxelModel> read, std::
 }
 
 // Puts voxels together to cubes of 4 a side of one material, so that a solid grid is built in few steps. Voxels of one
-// cube go on in the order in which they came.
+// cube stay in the order in which they came.
 class CubeGather {
  public:
   explicit CubeGather(const VisitBlock& visit) : visit_(visit), cubes_(std::size_t{1} << kSlotBits) {}

@@ -79,7 +79,7 @@ class FastFrames {
   /// Draws the view of `picture` into `rgb` (its size) and learns from the time it takes.
   void draw(const FinishedPicture& picture, std::vector<std::uint8_t>* rgb);
   /// The same with all of the light, or false, and `rgb` as it was: where the pace wants none, or it was not there
-  /// within `most_seconds` of `clock`, which is asked every few rows.
+  /// within `most_seconds` of `clock`, looked at every few rows.
   bool draw_lit(const FinishedPicture& picture, std::vector<std::uint8_t>* rgb, double most_seconds,
                 const std::function<double()>& clock);
 
