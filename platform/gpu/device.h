@@ -3,6 +3,12 @@
 
 #include <volk.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
 #include "gpu/renderer.h"
 
 namespace thimble::gpu {

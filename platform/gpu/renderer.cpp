@@ -1,7 +1,9 @@
 #include "gpu/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <optional>
 
 #include "gpu/device.h"
 #include "gpu/kernel/cpp.h"

@@ -5,9 +5,12 @@
 /// What it draws: depth, normal, colour and mono of both cameras, one ray a pixel, and lists of rays. Not light.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "gpu/scene_words.h"
 #include "thimble/picture/render.h"

@@ -1,6 +1,7 @@
 #include "gpu/scene_words.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "gpu/kernel/cpp.h"
 

@@ -2,9 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "host/look.h"
 #include "host/screen.h"
 
 namespace thimble::host {

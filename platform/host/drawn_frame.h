@@ -10,6 +10,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <vector>
 
 #include "host/simulation.h"
 #include "thimble/base/memory.h"

@@ -3,6 +3,7 @@
 #include "port.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "host/simulation_state.h"
 

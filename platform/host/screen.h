@@ -16,6 +16,7 @@
 /// divided by '\n'; what does not fit is cut off.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>

@@ -20,6 +20,7 @@
 ///     }
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>

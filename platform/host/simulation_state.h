@@ -3,12 +3,18 @@
 
 #include <pthread.h>
 #include <semaphore.h>
+#include <cstddef>
 
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "host/drawn_frame.h"
 #include "host/guarded_bytes.h"
+#include "host/simulation.h"
 #include "host/strict_display.h"
 #include "port.h"
 

@@ -5,8 +5,10 @@
 /// frame cannot.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/packed_picture.h"
 #include "thimble/picture/render.h"

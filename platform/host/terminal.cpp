@@ -13,7 +13,10 @@
 #include <chrono>
 #include <cstdlib>
 #include <map>
+#include <string>
+#include <vector>
 
+#include "host/canvas.h"
 #include "host/terminal_cells.h"
 #include "host/terminal_input.h"
 #include "host/terminal_mode.h"

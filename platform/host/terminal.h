@@ -6,6 +6,8 @@
 /// not tell when a key is let go: it counts as held for a moment after each press or repeat.
 #pragma once
 
+#include <memory>
+
 #include "host/screen.h"
 
 namespace thimble::host {

@@ -1,6 +1,11 @@
 /// A terminal's cells as they are and as they should be, and the bytes that lead from one to the other.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "host/canvas.h"
 #include "thimble/picture/pixel.h"
 

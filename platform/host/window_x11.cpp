@@ -12,7 +12,10 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "host/canvas.h"
 #include "host/uri_list.h"

@@ -4,6 +4,8 @@
 /// picture it is made smaller. It stays sharp: no pixel is mixed with its neighbour when it is magnified.
 #pragma once
 
+#include <memory>
+
 #include "host/screen.h"
 
 namespace thimble::host {

@@ -5,6 +5,8 @@
 /// pixel (C444), which rounds them by up to about 2 of 255.
 #pragma once
 
+#include <string>
+
 #include "host/packed_picture.h"
 #include "host/screen.h"
 

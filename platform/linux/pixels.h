@@ -2,6 +2,9 @@
 /// stride.
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "thimble/base/memory.h"
 #include "thimble/picture/pixel.h"
 #include "thimble/picture/render.h"

@@ -1,6 +1,8 @@
 /// One run of an application on a Linux framebuffer: what port.h's functions need, set up by main().
 #pragma once
 
+#include <stdint.h>
+
 #include "linux/framebuffer.h"
 #include "linux/keys.h"
 #include "port.h"

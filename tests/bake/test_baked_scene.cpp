@@ -2,8 +2,12 @@
 // or damaged.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <zlib.h>
 

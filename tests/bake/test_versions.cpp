@@ -2,7 +2,12 @@
 // that is read draws as it did; what this version does not know is refused with a sentence.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "support/baked_damage.h"
 #include "support/run_command.h"

@@ -16,6 +16,11 @@
 // into 8-bit grey.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "benchmarks/measure.h"
 #include "benchmarks/textbook_octree.h"
 #include "scene/built_scene.h"

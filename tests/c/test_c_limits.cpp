@@ -1,7 +1,9 @@
 // The C face's defaults, member by member, and each limit from both sides.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "c/c_world.h"
 #include "thimble/bake/baked_scene.h"

@@ -2,7 +2,9 @@
 // Each is a status and nothing has changed; the sanitized build sees the rest.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "c/c_world.h"
 #include "misuse/odd_values.h"

@@ -1,9 +1,11 @@
 // Scenes, octrees, particles and handles through the C face against C++, and what is refused.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <cstring>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "c/c_world.h"
 #include "c/face.h"

@@ -2,6 +2,10 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "support/check_command.h"
 
 namespace {

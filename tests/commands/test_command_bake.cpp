@@ -3,8 +3,12 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "boards/board_table.h"
 #include "output/units.h"

@@ -1,8 +1,13 @@
 // `thimble boards`: the table, and what of a scene fits.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "boards/board_table.h"
 #include "output/units.h"

@@ -2,6 +2,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "support/check_command.h"
 

@@ -1,7 +1,11 @@
 // `thimble effects`: every effect a row, its figures those of two counting runs, its files well formed.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "boards/effect_flash.h"
 #include "scene/built_scene.h"

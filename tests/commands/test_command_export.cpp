@@ -2,10 +2,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "scene/scene_source.h"
 #include "support/check_command.h"
+#include "support/run_command.h"
 
 namespace {
 

@@ -1,7 +1,12 @@
 // `thimble render` of animations, --camera-path with --seconds, and films as a picture a frame.
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "commands/camera_path.h"
 #include "readers/texture.h"

@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
+#include <cstdint>
 #include <cstring>
+#include <string>
 
 #include "images/image_file.h"
 #include "images/scene_mark.h"

@@ -1,9 +1,14 @@
 // `thimble memory`: its figures from first principles, its budgets, its plots, and what it refuses.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cctype>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "boards/board_table.h"
 #include "output/units.h"

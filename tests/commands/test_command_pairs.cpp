@@ -2,6 +2,7 @@
 // anything else; what depends on the scene or on a budget is status 1.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>

@@ -2,6 +2,7 @@
 // height, on any number of threads, within any budget.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>

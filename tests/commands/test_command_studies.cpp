@@ -1,9 +1,13 @@
 // What the studies write beside the table that people read: CSV, JSON and a plot of one run, or one of them alone.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "support/check_command.h"
+#include "support/run_command.h"
 #include "support/xml_elements.h"
 
 namespace {

@@ -9,12 +9,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "support/check_command.h"
 #include "support/pty.h"
+#include "support/run_command.h"
 #include "support/virtual_display.h"
 
 namespace {

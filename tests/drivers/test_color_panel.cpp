@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "support/panel_model.h"
 #include "thimble/drivers/panel.h"

@@ -3,7 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <random>
+#include <vector>
 
 #include "support/panel_model.h"
 #include "thimble/drivers/panel.h"

@@ -5,8 +5,11 @@
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Itests -DTHIMBLE_DEEP_WORLDS
 //       tests/fuzz/fuzz_baked_scene.cpp src/*.cpp -o fuzz_baked_scene
 //   ./fuzz_baked_scene -max_len=4096 -timeout=10 corpus/
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <vector>
 
 #include "support/baked_damage.h"
 #include "support/small_scene.h"

@@ -6,8 +6,11 @@
 //   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Itests -DTHIMBLE_DEEP_WORLDS
 //       tests/fuzz/fuzz_compact_tree.cpp src/*.cpp -o fuzz_compact_tree
 //   ./fuzz_compact_tree -max_len=2048 -timeout=10 corpus/
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <vector>
 
 #include "support/compact_damage.h"
 #include "support/small_scene.h"

@@ -1,7 +1,13 @@
 // libFuzzer targets: THIMBLE_FUZZED, a reader, on any bytes: refused with an InputError, or every promise of source.h
 // kept. CMakeLists.txt names the readers; each is a program of its own.
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
 
 #include "readers/formats.h"
 

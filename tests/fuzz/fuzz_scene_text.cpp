@@ -5,7 +5,12 @@
 //       tests/fuzz/fuzz_scene_text.cpp tools/readers/{scene_text,text}.cpp tools/output/units.cpp
 //       src/*.cpp -o fuzz_scene_text
 //   ./fuzz_scene_text -max_len=4096 -timeout=10 corpus/
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <memory>
+#include <string>
+#include <variant>
 
 #include "readers/formats.h"
 #include "readers/scene_text.h"

@@ -6,7 +6,9 @@
 //       tools/readers/vox*.cpp tools/readers/file_bytes.cpp -lz -o fuzz_vox
 //   ./fuzz_vox -max_len=8192 -timeout=10 -rss_limit_mb=512 corpus/
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <memory>
 
 #include "readers/formats.h"
 

@@ -2,6 +2,8 @@
 /// picture that the effects define, and only then.
 #pragma once
 
+#include <stdint.h>
+
 #include "thimble/picture/pixel.h"
 
 namespace thimble::golden {

@@ -9,10 +9,12 @@
 //   thimble_golden_tests --sizes    bytes of every scene in every structure, as CSV
 //   thimble_golden_tests --frame NAME   that frame's pixels, as stored, to stdout: to look at a difference
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "apps/apps.h"
 #include "golden/golden_table.h"
+#include "golden/scenes.h"
 #include "port.h"
 #include "portable/golden_trees.h"
 #include "portable/runner.h"

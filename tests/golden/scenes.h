@@ -6,6 +6,9 @@
 /// height. All variants of a frame give the same bytes.
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "thimble/base/memory.h"
 #include "thimble/base/status.h"
 #include "thimble/picture/camera.h"

@@ -2,6 +2,7 @@
 // tests' row has the validation layer, which must say nothing.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "gpu/renderer.h"
 #include "support/frames.h"
 #include "support/hard_frames.h"
+#include "support/ray_cases.h"
+#include "support/wide_cases.h"
 
 namespace thimble::tests {
 namespace {

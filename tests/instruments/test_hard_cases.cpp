@@ -2,8 +2,11 @@
 // men.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "instruments/hard_cases.h"
 #include "reference/textbook.h"

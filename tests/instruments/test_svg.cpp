@@ -1,6 +1,8 @@
 // What plots write for words that may be anything: a scene's name is a file's name.
 #include <doctest/doctest.h>
 
+#include <string>
+
 #include "output/plot.h"
 #include "output/units.h"
 

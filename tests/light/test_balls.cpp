@@ -1,7 +1,9 @@
 // Balls beside the tree: what a ray meets is judged by a tree with the balls' voxels in it, and by hand.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scene/random.h"
 #include "support/lit_world.h"

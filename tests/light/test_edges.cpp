@@ -1,7 +1,10 @@
 // Dark edges between faces of one grey (Effect::kEdges).
 #include <doctest/doctest.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 #include "support/lit_world.h"
 #include "thimble/trace/ray.h"

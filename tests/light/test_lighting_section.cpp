@@ -1,7 +1,11 @@
 // The section of a baked scene that says what light does: its bytes, what comes back, what is refused.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
+#include <string>
+#include <vector>
 
 #include "support/baked_damage.h"
 #include "support/scene_under_test.h"

@@ -2,8 +2,13 @@
 // picture for which it traced its rays itself.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <random>
+
+#include "support/counts.h"
 #include "support/lit_cases.h"
 #include "support/lit_world.h"
+#include "support/wide_cases.h"
 #include "thimble/light/host/asked.h"
 
 namespace thimble::tests {

@@ -1,7 +1,12 @@
 // What light does in scenes of every kind, as the core takes it, and which effects follow.
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "readers/oct.h"
 #include "scene/baking.h"

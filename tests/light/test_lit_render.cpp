@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "support/formats.h"
 #include "support/lit_world.h"

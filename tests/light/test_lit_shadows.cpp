@@ -1,6 +1,10 @@
 // Shadows and occlusion, held to the exact reference and to what is known of simple places.
 #include <doctest/doctest.h>
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include "reference/reference.h"
 #include "scene/random.h"
 #include "support/counts.h"

@@ -2,7 +2,13 @@
 // pixel, or what is counted, is seen here first. Whether they are right others say.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <vector>
+
 #include "support/lit_cases.h"
+#include "support/wide_cases.h"
 #include "thimble/base/memory.h"
 
 namespace thimble::tests {

@@ -2,7 +2,9 @@
 // that the tree alone gives, or a status.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "support/map_world.h"
 #include "support/scene_under_test.h"

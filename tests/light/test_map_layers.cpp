@@ -2,8 +2,12 @@
 // and to the pixel.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <iterator>
+#include <random>
 
+#include "support/counts.h"
 #include "support/map_world.h"
 #include "support/ray_cases.h"
 

@@ -1,6 +1,11 @@
 // What metals mirror, by the brick map: the tree's bytes and rays, wherever a ray comes through an edge.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <random>
+
+#include "support/counts.h"
 #include "support/map_world.h"
 #include "support/ray_cases.h"
 

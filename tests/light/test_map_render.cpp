@@ -3,8 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
 #include <iterator>
+#include <random>
 #include <utility>
+#include <vector>
 
 #include "support/chip_worlds.h"
 #include "support/ray_cases.h"

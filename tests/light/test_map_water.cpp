@@ -2,9 +2,16 @@
 // from as far away as `draws_fast`. THIMBLE_FEW draws a tenth.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
 #include "support/chip_worlds.h"
 #include "support/map_world.h"
 #include "support/random_up.h"
+#include "support/ray_cases.h"
 #include "thimble/light/water.h"
 
 namespace thimble::testing::map_water {

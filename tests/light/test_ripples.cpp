@@ -1,8 +1,13 @@
 // Ripples on water (Effect::kRipples), and what depth takes from light there.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
 
 #include "support/lit_world.h"
 #include "thimble/base/memory.h"

@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "support/counts.h"
 #include "support/lit_world.h"

@@ -1,10 +1,13 @@
-/// Arguments that nobody means: ends of what a number can say, powers of two and their neighbours, bytes that
-/// are too few, damaged views. The tests of this folder call every public function of the core with them,
-/// under AddressSanitizer and UndefinedBehaviorSanitizer (the `sanitize` build), and check what a header
-/// promises of a call that is refused.
+/// Arguments that nobody means: ends of what a number can say, powers of two and their neighbours, bytes
+/// that are
+/// too few, damaged views. The tests of this folder call every public function of the core with them, under
+/// AddressSanitizer and UndefinedBehaviorSanitizer (the `sanitize` build), and check what a header promises
+/// of a
+/// call that is refused.
 ///
-/// Deterministic: the seed of a test is in it. A run takes seconds; THIMBLE_MISUSE_SECONDS=3600 runs with
-/// other seeds for that long in each test.
+/// Deterministic: the seed of a test is in it. A run takes seconds; THIMBLE_MISUSE_SECONDS=3600 runs
+/// with other
+/// seeds for that long in each test.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +18,7 @@
 #include <memory>
 #include <random>
 #include <type_traits>
+#include <vector>
 
 #include "thimble/base/memory.h"
 #include "thimble/base/vec.h"

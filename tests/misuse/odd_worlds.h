@@ -2,6 +2,8 @@
 /// all.
 #pragma once
 
+#include <cstdint>
+
 #include <doctest/doctest.h>
 
 #include "misuse/odd_values.h"

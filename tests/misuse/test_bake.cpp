@@ -2,6 +2,7 @@
 // draw.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <optional>
 
 #include "misuse/odd_worlds.h"

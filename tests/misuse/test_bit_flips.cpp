@@ -5,6 +5,13 @@
 // each third of those, `make test` each eleventh; with THIMBLE_FLIPS=all each takes every one.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
 #include "misuse/odd_values.h"
 #include "support/baked_damage.h"
 #include "support/counts.h"

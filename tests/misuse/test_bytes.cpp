@@ -1,6 +1,7 @@
 // Each function that says how many bytes a thing takes, against what makes the thing.
 #include <doctest/doctest.h>
 
+#include "misuse/odd_values.h"
 #include "misuse/odd_worlds.h"
 #include "thimble/picture/render.h"
 #include "thimble/plane/bitfield.h"

@@ -1,6 +1,8 @@
 // Every public function of light: numbers within the ranges that the headers name, and any bytes and bands.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+
 #include "misuse/odd_worlds.h"
 #include "thimble/light/host/optics.h"
 #include "thimble/light/map_render.h"

@@ -1,6 +1,11 @@
 // Every public function of picture with any camera, shading, band and tree: refused with nothing drawn, or
-// drawn within the band.
+// drawn
+// within the band.
 #include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "misuse/odd_worlds.h"
 #include "thimble/picture/anytime.h"

@@ -2,6 +2,9 @@
 // bytes.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+
+#include "misuse/odd_values.h"
 #include "misuse/odd_worlds.h"
 #include "thimble/plane/bitfield.h"
 #include "thimble/plane/particles.h"

@@ -2,6 +2,8 @@
 // bytes.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+
 #include "misuse/odd_worlds.h"
 
 namespace {

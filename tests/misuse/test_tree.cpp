@@ -2,6 +2,7 @@
 // bytes.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "misuse/odd_worlds.h"

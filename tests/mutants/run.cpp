@@ -10,6 +10,7 @@
 // computes has another CRC-32. Without --serve the program is the one that it was linked as.
 #include <fcntl.h>
 #include <signal.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>

@@ -2,7 +2,11 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
+#include <cstdint>
 #include <cstdlib>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "output/png.h"
 #include "support/ray_cases.h"

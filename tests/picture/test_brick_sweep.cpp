@@ -2,6 +2,13 @@
 // of render_band; arguments that contradict the picture, small buffers.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "support/chip_worlds.h"
 #include "support/deep_worlds.h"
 #include "support/frames.h"
 #include "support/ray_cases.h"

@@ -2,8 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "support/scene_under_test.h"
 #include "thimble/picture/render.h"

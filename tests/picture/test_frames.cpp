@@ -2,6 +2,8 @@
 // and the bands. THIMBLE_LONG draws a hundred times as much; THIMBLE_SEED begins elsewhere.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+
 #include "support/frames.h"
 
 namespace thimble::tests {

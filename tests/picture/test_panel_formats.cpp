@@ -2,7 +2,13 @@
 // picture in kRgb888. Any band height, stride, odd width and last page. Other engines: test_frames.cpp, test_wide.cpp.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include "support/lit_world.h"
+#include "support/scene_under_test.h"
 #include "support/wide_cases.h"
 #include "thimble/picture/anytime.h"
 #include "thimble/picture/cutoff.h"

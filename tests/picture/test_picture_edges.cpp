@@ -2,7 +2,9 @@
 // in damaged trees, frames that show one colour only. Each answer is worked out by hand.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 #include "support/compact_damage.h"
 #include "support/scene_under_test.h"

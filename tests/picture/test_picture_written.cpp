@@ -1,7 +1,9 @@
 // Cameras of many kinds, and the CRC-32 of their rays that was written down: whatever changes a ray is seen here first. Whether they are right others say. The portable cases do the same for any-time frames and cut-offs.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "support/scene_under_test.h"
 #include "thimble/base/memory.h"

@@ -1,7 +1,9 @@
 // Several samples a pixel: a mean of a finer picture.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "support/formats.h"
 #include "support/scene_under_test.h"

@@ -3,7 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <random>
+#include <vector>
 
 #include "support/counts.h"
 #include "support/particle_shadow.h"

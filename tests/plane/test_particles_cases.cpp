@@ -1,6 +1,9 @@
 // The particle world's hard cases by name, what the pointer does, and what the calls refuse.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "support/particle_shadow.h"
 #include "thimble/plane/particles.h"
 

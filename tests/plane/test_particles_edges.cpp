@@ -2,6 +2,8 @@
 // that the generator cannot begin with, as many balls as a word of words has bits.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+
 #include "support/particle_shadow.h"
 #include "thimble/plane/particles.h"
 

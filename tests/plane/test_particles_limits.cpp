@@ -2,8 +2,10 @@
 // balls, gravity of half a cell, pointers far outside, and which ball covers a cell.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "support/particle_shadow.h"
 #include "thimble/plane/particles.h"

@@ -1,5 +1,9 @@
 #include <doctest/doctest.h>
 
+#include <map>
+#include <string>
+#include <vector>
+
 #include "apps/apps.h"
 #include "apps/demo_view.h"
 #include "boards/board_table.h"

@@ -1,8 +1,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
+#include <map>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "apps/apps.h"
 #include "apps/demo_view.h"

@@ -3,11 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "apps/apps.h"
 #include "apps/demo_view.h"
 #include "boards/board_table.h"
 #include "port.h"
+#include "scene/random.h"
 #include "support/baked_demo.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"

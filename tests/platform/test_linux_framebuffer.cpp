@@ -3,8 +3,12 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include "linux/framebuffer.h"
 #include "linux/pixels.h"

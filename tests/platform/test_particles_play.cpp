@@ -1,10 +1,13 @@
 // thimble particles, watched: in an X11 window by real pointer and key events, and in a terminal.
 #include <doctest/doctest.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 

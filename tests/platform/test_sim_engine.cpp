@@ -2,6 +2,10 @@
 // are the same, whoever draws.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "apps/apps.h"

@@ -7,6 +7,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <numeric>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "boards/board_table.h"
 #include "host/guarded_bytes.h"

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <random>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "host/screen.h"
 #include "host/terminal.h"

@@ -6,6 +6,10 @@
 #include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "host/screen.h"
 #include "support/run_command.h"

@@ -12,6 +12,9 @@
 /// takes most of that. So no structure of the core is a local variable of a function that traces or draws.
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "golden/scenes.h"
 #include "thimble/base/memory.h"
 #include "thimble/base/status.h"

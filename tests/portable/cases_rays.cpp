@@ -1,5 +1,6 @@
 // The table of rays: each row is a case, traced in every structure and width.
 #include "portable/groups.h"
+#include "portable/rays.h"
 #include "portable/scene.h"
 
 namespace thimble::portable {

@@ -3,6 +3,8 @@
 /// a desktop the exact reference is (test_trace_cases.cpp).
 #pragma once
 
+#include <stdint.h>
+
 #include "thimble/base/memory.h"
 #include "thimble/base/vec.h"
 #include "thimble/trace/ray.h"

@@ -6,6 +6,10 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "readers/file_bytes.h"
 #include "readers/read_any.h"
 #include "support/counts.h"

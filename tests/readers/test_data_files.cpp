@@ -3,7 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "readers/read_any.h"
 #include "support/reader_inputs.h"

@@ -1,7 +1,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "scene/random.h"
 #include "scene/world_fit.h"

@@ -1,7 +1,11 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
+#include <array>
+#include <cmath>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "scene/generators.h"
 #include "scene/random.h"

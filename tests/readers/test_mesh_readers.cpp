@@ -1,6 +1,9 @@
 // Readers of meshes: .obj, .off, and .ply with faces.
 #include <doctest/doctest.h>
 
+#include <array>
+#include <string>
+
 #include "readers/formats.h"
 #include "readers/read_any.h"
 #include "support/reader_inputs.h"

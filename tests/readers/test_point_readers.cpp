@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <string>
 
 #include "readers/formats.h"
 #include "readers/read_any.h"

@@ -4,7 +4,12 @@
 #include <draco/compression/encode.h>
 #include <sys/stat.h>
 
+#include <array>
+#include <bit>
+#include <cmath>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include "readers/formats.h"
 #include "readers/gltf_file.h"

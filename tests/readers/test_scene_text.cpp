@@ -1,7 +1,13 @@
 // `.scene` text: what it says, where its errors are, and the world that comes of it.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include <zlib.h>
 

@@ -3,7 +3,15 @@
 #include <webp/encode.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "output/png.h"
 #include "readers/formats.h"

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <ctime>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "scene/random.h"
 #include "scene/voxelise.h"

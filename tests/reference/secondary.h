@@ -11,6 +11,8 @@
 ///    voxels are disjoint in t, so one comes first.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 
 #include "reference/reference.h"

@@ -1,6 +1,7 @@
 #include "reference/textbook.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

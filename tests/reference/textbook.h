@@ -5,6 +5,8 @@
 /// do. `Real` is float or double; each function's `epsilon` is in voxels, 0 for none.
 #pragma once
 
+#include <vector>
+
 #include "reference/reference.h"
 
 namespace thimble::reference {

@@ -1,6 +1,8 @@
 // What a baked scene is called.
 #include <doctest/doctest.h>
 
+#include <string>
+
 #include "scene/baking.h"
 
 namespace {

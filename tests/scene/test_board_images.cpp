@@ -2,7 +2,10 @@
 // is opened or refused, and files of it hold program and scene.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <cstring>
+#include <string>
+#include <vector>
 
 #include "boards/board_table.h"
 #include "readers/input_error.h"

@@ -1,5 +1,10 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "scene/baking.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"

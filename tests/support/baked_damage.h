@@ -2,7 +2,10 @@
 /// fuzz target.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 
 #include "support/compact_damage.h"
 #include "thimble/bake/baked_scene.h"

@@ -1,6 +1,8 @@
 /// The demonstration's scene, baked as the boards get it.
 #pragma once
 
+#include <optional>
+
 #include "scene/baking.h"
 
 namespace thimble::tests {

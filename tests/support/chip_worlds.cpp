@@ -3,8 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
+#include "support/counts.h"
 #include "support/random_up.h"
+#include "support/ray_cases.h"
 
 namespace thimble::tests {
 namespace {

@@ -2,8 +2,10 @@
 /// those of the tree with.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <random>
+#include <vector>
 
 #include "support/counts.h"
 #include "support/scene_under_test.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "support/random_up.h"
+#include "support/ray_cases.h"
 
 namespace thimble::tests {
 namespace {

@@ -1,6 +1,8 @@
 /// Worlds of level 9 and 10 with their brick maps, of every kind that a directory of two levels tells apart.
 #pragma once
 
+#include <random>
+
 #include "support/chip_worlds.h"
 
 namespace thimble::tests {

@@ -2,6 +2,12 @@
 /// and a test says which of them meet.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
 #include "gpu/scene_words.h"
 #include "support/wide_cases.h"
 #include "thimble/tree/brick_map.h"

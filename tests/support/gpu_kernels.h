@@ -1,6 +1,9 @@
 /// The GPU's kernels, compiled as C++: the same text, run pixel by pixel without a GPU.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "gpu/scene_words.h"
 #include "thimble/picture/render.h"
 

@@ -2,6 +2,8 @@
 /// what is solid: what paths through a scene never show.
 #pragma once
 
+#include <random>
+
 #include "support/wide_cases.h"
 
 namespace thimble::tests {

@@ -1,5 +1,6 @@
 #include "support/hit_rows.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>

@@ -2,7 +2,9 @@
 /// judged by the exact reference.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "reference/reference.h"
 

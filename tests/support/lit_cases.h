@@ -1,6 +1,11 @@
 /// Scenes of any light, and the same lit picture by the core and by streams of rays.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
 #include "support/wide_cases.h"
 #include "wide/lit/lit_renderer.h"
 

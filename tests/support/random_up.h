@@ -1,6 +1,8 @@
 /// What is up in the pictures of random cameras.
 #pragma once
 
+#include <random>
+
 #include "support/ray_cases.h"
 #include "thimble/base/vec.h"
 

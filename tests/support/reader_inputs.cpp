@@ -3,10 +3,13 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <variant>
 
 namespace thimble::tools::test {
 

@@ -1,7 +1,12 @@
 /// What the tests of the readers share: files of THIMBLE_DATA, literals as files, and readable outcomes.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "readers/formats.h"
 

@@ -3,7 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "boards/board_table.h"
 #include "host/simulation.h"

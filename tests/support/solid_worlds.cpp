@@ -1,6 +1,7 @@
 #include "support/solid_worlds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <stdexcept>

@@ -1,7 +1,10 @@
 /// The nodes of an octree counted by hand, without the core: every block is written as a text.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <map>
+#include <string>
 
 #include "reference/reference.h"
 #include "thimble/trace/ray.h"

@@ -1,7 +1,13 @@
 #include "support/trial_worlds.h"
 
+#include <array>
+#include <cmath>
 #include <ctime>
+#include <functional>
+#include <optional>
 #include <random>
+#include <stdexcept>
+#include <utility>
 
 #include "readers/oct.h"
 #include "scene/framing.h"

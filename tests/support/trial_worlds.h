@@ -2,6 +2,11 @@
 /// the generators' scenes, files, and worlds made to mislead a choice that goes by means.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "scene/built_scene.h"
 #include "thimble/picture/camera.h"
 #include "wide/raster/voxel_lists.h"

@@ -1,8 +1,16 @@
 // Scenes and frames for the tests of the wide renderer, and the same picture by it and by the core.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
 
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/octree.h"

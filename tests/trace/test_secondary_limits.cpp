@@ -1,7 +1,9 @@
 // Rays from a point on: each limit of the narrow path from both sides, and points out of the world.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "support/scene_under_test.h"
 #include "thimble/trace/secondary_ray.h"

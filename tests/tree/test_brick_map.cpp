@@ -2,6 +2,10 @@
 // down.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <random>
+#include <vector>
+
 #include "support/scene_under_test.h"
 #include "thimble/base/memory.h"
 #include "thimble/tree/brick_map.h"

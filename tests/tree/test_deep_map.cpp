@@ -3,6 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <vector>
 
 #include "support/deep_worlds.h"
 #include "support/ray_cases.h"

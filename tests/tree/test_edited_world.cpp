@@ -2,7 +2,13 @@
 // its map, the same pictures; and without room it stays as it was.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <vector>
+
 #include "support/compact_damage.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/render.h"

@@ -3,6 +3,11 @@
 // src/FORMAT.md.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "support/compact_damage.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/brick_map.h"

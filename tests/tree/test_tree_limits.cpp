@@ -2,7 +2,12 @@
 // ranges, prices of nodes by their definition.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "support/compact_damage.h"
 #include "support/ray_cases.h"

@@ -1,6 +1,8 @@
 // The viewer's gestures: what keys and mouse ask for.
 #include <doctest/doctest.h>
 
+#include <string>
+
 #include "viewer/controls.h"
 
 namespace {

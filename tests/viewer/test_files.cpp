@@ -2,6 +2,9 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <string>
+
 #include "support/run_command.h"
 #include "viewer/open_scene.h"
 #include "viewer/saving.h"

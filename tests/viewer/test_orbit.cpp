@@ -1,6 +1,7 @@
 // The viewer's camera: turning, moving, and staying where rays may start.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <random>
 
 #include "viewer/camera_state.h"

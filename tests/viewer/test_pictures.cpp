@@ -3,8 +3,12 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <memory>
 #include <numeric>
 #include <random>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "scene/host_memory.h"
 #include "scene/magnify.h"

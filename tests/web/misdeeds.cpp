@@ -1,4 +1,5 @@
 // What the page must catch: an application that does, as the next byte of its UART says, what no image may.
+#include <stddef.h>
 #include <stdint.h>
 
 #include "port.h"

@@ -1,6 +1,7 @@
 // The wide renderer draws the core's picture: every pixel of every frame of its tests is compared with render_band's.
 #include <doctest/doctest.h>
 
+#include <string>
 #include <vector>
 
 #include "support/frames.h"

@@ -2,8 +2,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
+#include "scene/host_memory.h"
 #include "support/hard_frames.h"
 #include "support/wide_cases.h"
 #include "thimble/tree/compact_tree.h"

@@ -1,6 +1,15 @@
 // thimble accuracy: what each knob that trades a picture's error for time gives, and what a given time or
 // error calls for.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"

@@ -1,6 +1,13 @@
 // thimble bake: a scene as bytes for flash.
+#include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
 
+#include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
 #include "output/output_set.h"

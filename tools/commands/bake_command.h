@@ -1,6 +1,11 @@
 /// What `thimble bake` and `thimble image` share: the options of a baked scene, and its baking within a flash.
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"

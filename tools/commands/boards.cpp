@@ -1,5 +1,10 @@
 // thimble boards: what the boards are, and what of a scene fits on each.
+#include <algorithm>
+#include <array>
+#include <map>
+#include <memory>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"

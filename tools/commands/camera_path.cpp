@@ -1,6 +1,8 @@
 #include "commands/camera_path.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "commands/arguments.h"
 #include "output/output_file.h"

@@ -1,6 +1,10 @@
 /// --camera-path: the cameras of a film, a line each.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "scene/framing.h"
 
 namespace thimble::tools {

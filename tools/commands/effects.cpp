@@ -4,9 +4,20 @@
 // An effect's figures are those of the scene's whole set of effects less those of the set without it. Since shadows need
 // direct light, direct light is judged between two frames without shadows. What a scene does not call for is not drawn
 // with, and costs 0.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
 #include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "boards/effect_flash.h"
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"

@@ -1,5 +1,9 @@
 // thimble export: the voxels of a scene for other programs.
+#include <cstdio>
+#include <memory>
+#include <string>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "output/output_set.h"

@@ -1,5 +1,8 @@
 // thimble image: a scene behind a program that is built already.
+#include <cstdio>
+#include <memory>
 
+#include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
 #include "output/output_set.h"

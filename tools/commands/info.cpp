@@ -1,5 +1,9 @@
 // thimble info: what a scene is, and what it takes.
+#include <algorithm>
+#include <array>
+#include <memory>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"

@@ -1,6 +1,10 @@
 // thimble join: parts of a picture or of a film, drawn apart, as the file that one process would have written.
 #include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/image.h"
 #include "output/output_set.h"

@@ -1,7 +1,11 @@
 // thimble manual: the man page, from the same description as --help. The build writes it to share/man.
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <string>
+#include <utility>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/units.h"
 #include "output/version.h"

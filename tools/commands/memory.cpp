@@ -1,6 +1,11 @@
 // thimble memory: what a scene takes at every depth in every structure, which boards hold it, and what a
 // smaller depth or budget does to its picture.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"

@@ -1,8 +1,17 @@
 // thimble particles: the paper's particle world in a window, in a terminal, or unseen.
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
 #include <tuple>
+#include <vector>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "host/screen.h"
 #include "host/y4m.h"

@@ -1,7 +1,11 @@
 #include "commands/scene_options.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
 #include <sstream>
 #include <thread>
+#include <vector>
 
 #include "commands/arguments.h"
 #include "output/progress.h"

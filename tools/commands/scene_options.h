@@ -1,6 +1,11 @@
 /// SCENE and what is built of it, as most subcommands take it.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
 #include "scene/built_scene.h"
 #include "scene/lit_description.h"
 #include "scene/scene_arguments.h"
@@ -9,7 +14,7 @@
 namespace CLI {
 class App;
 class Option;
-}  // namespace CLI
+}
 namespace thimble::platform {
 struct BoardFacts;
 }

@@ -1,8 +1,16 @@
 // thimble sim: the firmware's own application in the host simulator.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "apps/app_table.h"
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/render_output.h"
 #include "commands/scene_options.h"

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdio>
+#include <memory>
 
 #include "host/y4m.h"
 #include "output/units.h"

@@ -1,6 +1,10 @@
 /// One run of an application on a simulated board, with somebody watching or nobody.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+
 #include "apps/app_table.h"
 #include "boards/board_table.h"
 #include "host/key_script.h"

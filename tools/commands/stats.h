@@ -3,6 +3,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
+#include <optional>
+#include <string>
+
 #include "output/output_set.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"

@@ -2,8 +2,12 @@
 //
 // Frames are seen and timed as instruments/timed_frames.h says. Every frame is judged: pixels are drawn at random and their rays handed to the exact reference, which holds
 // the scene's voxels in a grid of its own, filled from the generator and not from the tree.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
 #include <random>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"

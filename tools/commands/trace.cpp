@@ -1,9 +1,19 @@
 // thimble trace: rays from a file, hits to a file.
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "boards/board_table.h"
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"

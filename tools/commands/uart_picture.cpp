@@ -1,7 +1,12 @@
 // thimble uart-picture: the picture in what a board sent over its UART, among its other lines. `make emulate SHOT=...`
 // asks for it, and it does for the log of a terminal that a real board hangs on.
 #include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/image.h"
 #include "output/output_set.h"

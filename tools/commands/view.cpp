@@ -1,5 +1,8 @@
 // thimble view: a scene to look around in.
+#include <cstdio>
+#include <memory>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/view_options.h"

@@ -1,5 +1,8 @@
 // In place of view.cpp and the viewer in a build without the wide renderer.
+#include <memory>
+#include <string>
 
+#include "commands/arguments.h"
 #include "commands/commands.h"
 
 namespace thimble::tools {

@@ -1,5 +1,7 @@
 #include "commands/view_options.h"
 
+#include <cmath>
+#include <cstdio>
 #include <tuple>
 
 #include "boards/board_table.h"

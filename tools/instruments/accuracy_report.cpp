@@ -1,5 +1,9 @@
 #include "instruments/accuracy_study.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "output/plot.h"
 #include "output/units.h"
 #include "readers/source.h"

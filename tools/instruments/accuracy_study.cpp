@@ -1,5 +1,7 @@
 #include "instruments/accuracy_study.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 

@@ -2,6 +2,11 @@
 /// from the one with every knob at its best.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "instruments/timed_frames.h"
 #include "output/tables.h"
 #include "readers/progress.h"

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "output/tables.h"
 #include "readers/progress.h"

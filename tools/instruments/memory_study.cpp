@@ -1,5 +1,8 @@
 #include "instruments/memory_study.h"
 
+#include <algorithm>
+#include <memory>
+
 #include "output/hit_rows.h"
 #include "readers/oct.h"
 #include "readers/source.h"

@@ -1,6 +1,12 @@
 /// What a scene takes at every depth in every structure, and what a smaller depth does to its picture.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "instruments/timed_frames.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"

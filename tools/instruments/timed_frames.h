@@ -8,7 +8,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <ctime>
+#include <string>
+#include <vector>
 
 #include "output/tables.h"
 #include "thimble/picture/camera.h"

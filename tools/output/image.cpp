@@ -5,6 +5,7 @@
 #include <bit>
 #include <cctype>
 #include <cstring>
+#include <span>
 
 #include "output/output_file.h"
 #include "output/png.h"

@@ -1,10 +1,13 @@
 #include "output/voxel_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstddef>
 #include <initializer_list>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "output/npy_header.h"
 #include "output/units.h"

@@ -1,7 +1,9 @@
 /// Voxels with their colours as files of other programs.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "output/output_file.h"
 #include "readers/progress.h"

@@ -1,6 +1,10 @@
 /// A line of words and numbers whose errors say where in it they are.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <string_view>
+
 #include "readers/text.h"
 
 namespace thimble::tools {

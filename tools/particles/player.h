@@ -5,6 +5,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "host/screen.h"
 #include "particles/populated_world.h"

@@ -1,6 +1,7 @@
 #include "particles/populated_world.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/ball_color.h"
 #include "output/units.h"

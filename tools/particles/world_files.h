@@ -1,8 +1,14 @@
 /// A particle world as text that machines read.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "output/image.h"
 #include "particles/player.h"
+#include "particles/populated_world.h"
 
 namespace thimble::tools {
 

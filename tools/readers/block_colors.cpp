@@ -1,6 +1,7 @@
 #include "readers/block_colors.h"
 
 #include <algorithm>
+#include <array>
 
 namespace thimble::tools {
 namespace {

@@ -6,7 +6,9 @@
 /// 255) have a table of names.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "readers/source.h"
 

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
 
 #include "readers/formats.h"
 #include "readers/mesh.h"
+#include "readers/source.h"
 
 namespace thimble::tools {
 

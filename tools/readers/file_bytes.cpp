@@ -1,5 +1,6 @@
 #include "readers/file_bytes.h"
 
+#include <bit>
 #include <cmath>
 
 namespace thimble::tools {

@@ -20,10 +20,19 @@
 #include "readers/formats.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "readers/gltf_draco.h"
+#include "readers/gltf_file.h"
 #include "readers/mesh.h"
+#include "readers/text.h"
 #include "readers/texture.h"
 
 namespace thimble::tools {

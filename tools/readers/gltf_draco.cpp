@@ -5,6 +5,8 @@
 #include <draco/metadata/metadata_decoder.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "readers/text.h"
 

@@ -1,6 +1,8 @@
 /// Meshes of a glTF file that Draco compressed (KHR_draco_mesh_compression). Internal to the glTF reader.
 #pragma once
 
+#include <string>
+
 #include "readers/gltf_file.h"
 
 namespace thimble::tools {

@@ -1,10 +1,14 @@
 /// The JSON of a glTF file and the bytes that it talks of. Internal to the glTF reader.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "readers/file_bytes.h"

@@ -8,6 +8,8 @@
 /// shell: its surface, and walls down to the lowest height around it.
 #pragma once
 
+#include <functional>
+
 #include "readers/source.h"
 
 namespace thimble::tools {

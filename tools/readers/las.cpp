@@ -12,6 +12,12 @@
 #include "readers/formats.h"
 
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+
+#include "readers/file_bytes.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {

@@ -1,6 +1,13 @@
 #include "readers/mesh.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace thimble::tools {
 

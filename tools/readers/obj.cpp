@@ -15,12 +15,21 @@
 
 #include <tiny_obj_loader.h>
 
+#include <array>
+#include <charconv>
+#include <cstddef>
 #include <istream>
 #include <streambuf>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "readers/mesh.h"
 #include "readers/obj_materials.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 

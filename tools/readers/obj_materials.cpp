@@ -1,7 +1,9 @@
 #include "readers/obj_materials.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <utility>
 
 #include "readers/file_bytes.h"
 #include "readers/mesh.h"

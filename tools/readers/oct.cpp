@@ -3,7 +3,11 @@
 #include "readers/oct.h"
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
 
+#include "readers/file_bytes.h"
 #include "readers/formats.h"
 #include "thimble/light/scene.h"
 

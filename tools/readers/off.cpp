@@ -18,8 +18,19 @@
 // Not read: `OFF BINARY` and the forms of other dimensions (`4OFF`, `nOFF`); both are refused by name.
 //
 // Source of the format: Geomview manual, chapter "OFF Files".
+#include "readers/formats.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "readers/color_scale.h"
+#include "readers/mesh.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 

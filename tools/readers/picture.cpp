@@ -1,6 +1,8 @@
 #include "readers/picture.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdlib>
 #include <limits>
 
 #include "readers/file_bytes.h"

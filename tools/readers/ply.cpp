@@ -14,11 +14,23 @@
 // must be exactly as many as the header declares. Bytes after the last binary element are ignored.
 //
 // Source of the format: Greg Turk, "The PLY Polygon File Format", 1994.
+#include "readers/formats.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "readers/color_scale.h"
+#include "readers/mesh.h"
 #include "readers/ply_header.h"
+#include "readers/text.h"
 #include "readers/texture.h"
 
 namespace thimble::tools {

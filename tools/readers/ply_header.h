@@ -1,6 +1,11 @@
 /// The header of a `.ply` file: which elements it holds, and what their properties are to us. Internal to its reader.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "readers/file_bytes.h"

@@ -1,7 +1,11 @@
 #include "readers/read_any.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
 
+#include "readers/file_bytes.h"
 #include "readers/text.h"
 #include "readers/zip.h"
 

@@ -2,6 +2,7 @@
 /// `place`; each reads what belongs to it and throws as `read_scene_text` does.
 #pragma once
 
+#include "readers/scene_text.h"
 #include "readers/text_line.h"
 
 namespace thimble::tools::statements {

@@ -1,8 +1,11 @@
 #include "readers/scene_text.h"
 
+#include <memory>
+
 #include "output/units.h"
 #include "readers/formats.h"
 #include "readers/scene_statements.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {

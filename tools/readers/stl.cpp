@@ -10,6 +10,12 @@
 // Source of the format: 3D Systems, "StereoLithography Interface Specification", 1989.
 #include "readers/formats.h"
 
+#include <cmath>
+#include <string>
+
+#include "readers/file_bytes.h"
+#include "readers/text.h"
+
 namespace thimble::tools {
 namespace {
 

@@ -1,6 +1,7 @@
 #include "readers/text_line.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "output/units.h"
 #include "readers/text.h"

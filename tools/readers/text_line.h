@@ -2,6 +2,13 @@
 /// the place where it stands. What the statements mean is in scene_things.cpp and scene_lighting.cpp.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "readers/scene_text.h"
 
 namespace thimble::tools {

@@ -3,6 +3,9 @@
 #include <webp/decode.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 #include "readers/file_bytes.h"
 #include "readers/mesh.h"

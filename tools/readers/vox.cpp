@@ -18,11 +18,20 @@
 #include "readers/formats.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <deque>
 #include <limits>
+#include <optional>
 #include <set>
+#include <span>
+#include <string>
+#include <string_view>
 #include <tuple>
+#include <utility>
+#include <vector>
 
+#include "readers/text.h"
 #include "readers/vox_chunk.h"
 #include "readers/vox_palette.h"
 #include "readers/vox_scene.h"

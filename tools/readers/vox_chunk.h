@@ -2,7 +2,10 @@
 #pragma once
 
 #include <charconv>
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "readers/file_bytes.h"
 

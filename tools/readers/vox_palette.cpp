@@ -1,7 +1,11 @@
 #include "readers/vox_palette.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "readers/vox_chunk.h"
 

@@ -1,6 +1,11 @@
 #include "readers/vox_scene.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "readers/vox_chunk.h"
 

@@ -28,8 +28,19 @@
 //
 // A count, a comment and lines that begin with an element's symbol are a molecule: its atoms are points.
 // Points that are not finite are left out.
+#include "readers/formats.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "readers/color_scale.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 

@@ -1,6 +1,7 @@
 #include "readers/zip.h"
 
 #include <algorithm>
+#include <string>
 
 #include "readers/text.h"
 

@@ -4,6 +4,9 @@
 /// Source of the format: PKWARE, "APPNOTE.TXT - .ZIP File Format Specification".
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "readers/file_bytes.h"

@@ -1,6 +1,11 @@
 #include "scene/animation.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "host/packed_picture.h"
 #include "host/y4m.h"

@@ -1,8 +1,10 @@
 /// Films as files: pictures one after the other as a GIF of one palette, as YUV4MPEG2, or as a picture each.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "output/image.h"

@@ -2,6 +2,9 @@
 /// is seen. Integers, and nothing of a system: the page draws by it, too.
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "thimble/picture/pixel.h"
 #include "thimble/trace/secondary_ray.h"
 #include "thimble/tree/compact_tree.h"

@@ -1,6 +1,9 @@
 #include "scene/baking.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstring>
 
 #include "output/units.h"
 #include "readers/oct.h"
@@ -8,6 +11,7 @@
 #include "scene/built_scene.h"
 #include "scene/default_look.h"
 #include "scene/generators.h"
+#include "scene/host_memory.h"
 #include "scene/named_scenes.h"
 #include "thimble/light/render.h"
 #include "thimble/trace/ray.h"

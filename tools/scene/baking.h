@@ -1,7 +1,14 @@
 /// From a scene to the bytes of a baked one, within a limit.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "boards/board_table.h"
+#include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/picture/pixel.h"

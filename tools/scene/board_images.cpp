@@ -1,6 +1,8 @@
 #include "scene/board_images.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 

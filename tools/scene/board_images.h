@@ -1,7 +1,11 @@
 /// Programs that are there before their scene (platform/images/README.md): found, opened, joined with a scene.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "boards/board_table.h"
 #include "images/image_file.h"

@@ -1,6 +1,8 @@
 #include "scene/generators.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 #include "scene/palette.h"
 #include "scene/random.h"

@@ -1,6 +1,10 @@
 #include "scene/lit_description.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
 
 #include "readers/oct.h"
 #include "thimble/trace/secondary_ray.h"

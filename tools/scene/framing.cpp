@@ -1,6 +1,12 @@
 #include "scene/framing.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "output/units.h"
 #include "readers/source.h"

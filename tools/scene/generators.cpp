@@ -1,7 +1,10 @@
 #include "scene/generators.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "scene/named_scenes.h"

@@ -16,6 +16,11 @@
 /// shows the same scene finer or coarser. World axes are right-handed, z up.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "readers/source.h"
 #include "scene/lit_description.h"
 #include "thimble/bake/baked_scene.h"

@@ -1,6 +1,7 @@
 #include "scene/lit_description.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "output/units.h"

@@ -1,8 +1,15 @@
 #include "scene/mesh_shade.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "readers/real3.h"
 #include "readers/texture.h"

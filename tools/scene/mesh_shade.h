@@ -6,6 +6,9 @@
 /// white, and more than it has of a colour, is of that light alone.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+
 #include "readers/source.h"
 #include "scene/voxelise.h"
 

@@ -2,6 +2,9 @@
 /// by it, too.
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "apps/moving_water.h"
 #include "scene/random.h"
 

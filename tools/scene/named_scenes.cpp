@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <string_view>
 #include <system_error>
 
 #include "output/suggestion.h"

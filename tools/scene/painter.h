@@ -10,8 +10,14 @@
 /// The first three give the same picture where their options are the same.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <string>
+
 #include "output/image.h"
 #include "readers/source.h"
+#include "scene/built_scene.h"
+#include "scene/edge_rows.h"
 #include "scene/lit_streams.h"
 #include "scene/sampling.h"
 #include "scene/wide_renderer.h"

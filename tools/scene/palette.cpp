@@ -1,7 +1,9 @@
 #include "scene/palette.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace thimble::tools {
 

@@ -12,7 +12,10 @@
 /// Memory: bounded. A histogram is at most 3 MiB, a palette map 0.4 MiB, however many colours there are.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "readers/source.h"
 

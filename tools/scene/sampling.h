@@ -1,6 +1,8 @@
 /// What trades a picture's error for time, beside the camera: samples a pixel, a cut-off, a depth.
 #pragma once
 
+#include <cstdint>
+
 #include "scene/built_scene.h"
 #include "scene/edge_rows.h"
 #include "thimble/picture/camera.h"

@@ -3,6 +3,7 @@
 #include "scene/scene_shape.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 
 #include "readers/oct.h"

@@ -1,6 +1,9 @@
 #include "scene/scene_source.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
 
 #include "output/units.h"
 #include "scene/generators.h"

@@ -2,6 +2,9 @@
 /// by it, too. lit_description.h says how it belongs together.
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "thimble/picture/pixel.h"
 
 namespace thimble::tools {

@@ -1,6 +1,7 @@
 #include "scene/voxelise.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "scene/mesh_shade.h"
 #include "scene/world_fit.h"

@@ -19,8 +19,14 @@
 /// the hand; `z_up` leaves them as they are. Only vertices that a triangle uses count for the fit.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "readers/source.h"
 #include "scene/palette.h"

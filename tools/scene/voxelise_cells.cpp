@@ -1,7 +1,10 @@
 #include "scene/voxelise.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <optional>
+#include <vector>
 
 #include "scene/world_fit.h"
 

@@ -1,5 +1,6 @@
 // Threads of the C++ library, made for each call: what builds without oneTBB have.
 #include <algorithm>
+#include <atomic>
 #include <system_error>
 #include <thread>
 #include <vector>

@@ -1,6 +1,8 @@
 #include "scene/world_fit.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdio>
 
 namespace thimble::tools {

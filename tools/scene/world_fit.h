@@ -10,7 +10,10 @@
 /// (nothing a compiler could fuse), so the units are the same on every machine.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "readers/source.h"
 #include "scene/palette.h"

@@ -1,5 +1,8 @@
 #include "viewer/camera_state.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "viewer/finished_picture.h"
 
 namespace thimble::tools::viewer {

@@ -1,6 +1,9 @@
 /// Which view the viewer shows: the one of the command line until somebody moves, then one of its own.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "readers/real3.h"
 #include "scene/framing.h"
 #include "viewer/controls.h"

@@ -5,8 +5,10 @@
 /// flies backwards. A terminal does not tell when a key is let go; there `s` always saves.
 #pragma once
 
+#include <cstdint>
 #include <set>
 #include <span>
+#include <string>
 
 #include "host/screen.h"
 

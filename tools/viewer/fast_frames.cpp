@@ -1,5 +1,6 @@
 #include "viewer/fast_frames.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "scene/magnify.h"

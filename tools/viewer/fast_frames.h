@@ -2,6 +2,12 @@
 /// animation, with all of their light.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
 #include "scene/host_memory.h"
 #include "thimble/base/memory.h"
 #include "viewer/finished_picture.h"

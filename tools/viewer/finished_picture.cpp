@@ -1,7 +1,10 @@
 #include "viewer/finished_picture.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
+#include <exception>
 #include <new>
 
 #include "scene/magnify.h"

@@ -5,6 +5,18 @@
 /// bytes. Without --shade and --effects it is the scene's own look (scene/default_look.h).
 #pragma once
 
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
 #include "scene/default_look.h"
 #include "scene/framing.h"
 #include "scene/host_memory.h"

@@ -1,5 +1,6 @@
 #include "viewer/picking.h"
 
+#include <array>
 #include <cstdio>
 
 #include "thimble/trace/ray.h"

@@ -1,8 +1,13 @@
 /// What is under the pointer.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+
 #include "readers/real3.h"
 #include "viewer/finished_picture.h"
+#include "viewer/open_scene.h"
 
 namespace thimble::tools::viewer {
 

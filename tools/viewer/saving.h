@@ -1,7 +1,10 @@
 /// A picture on disk, and the command that makes the same one.
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/framing.h"
 #include "scene/scene_arguments.h"

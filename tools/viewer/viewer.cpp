@@ -1,7 +1,14 @@
 #include "viewer/viewer.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
 
 #include "host/canvas.h"
 #include "output/output_file.h"
@@ -10,6 +17,8 @@
 #include "scene/moving_pool.h"
 #include "viewer/camera_state.h"
 #include "viewer/fast_frames.h"
+#include "viewer/finished_picture.h"
+#include "viewer/open_scene.h"
 #include "viewer/picking.h"
 #include "viewer/saving.h"
 

@@ -5,6 +5,8 @@
 /// else, screen included, happens on the thread that calls.
 #pragma once
 
+#include <string>
+
 #include "host/screen.h"
 #include "scene/framing.h"
 #include "scene/scene_arguments.h"

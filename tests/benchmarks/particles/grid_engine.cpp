@@ -5,6 +5,7 @@
 // approach, and what overlap there is, is taken out by pushing them apart.
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "engine.h"
 

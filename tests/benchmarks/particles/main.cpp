@@ -6,13 +6,17 @@
 //
 // Times are processor time of the stepping alone. Engines that stand in one table are run by turns, a few
 // steps each, so that the load of the machine falls on all.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "benchmarks/measure.h"
 #include "benchmarks/particles/engine.h"

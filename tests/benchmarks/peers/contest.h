@@ -2,6 +2,12 @@
 /// machine falls on all of them.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "benchmarks/measure.h"
 #include "benchmarks/peers/peer.h"
 #include "instruments/timed_frames.h"

@@ -12,7 +12,10 @@
 // core's. `choice`: the time as chosen over the better order's; `core`: the same over the core's; `boxes`: over
 // the time with lists of boxes alone. Files take part where THIMBLE_DATA names their folder.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <stdexcept>
 
 #include "benchmarks/peers/contest.h"
 #include "support/trial_worlds.h"

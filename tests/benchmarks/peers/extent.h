@@ -1,7 +1,9 @@
 /// Where a voxel may be seen: what the loops over voxels share.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "benchmarks/peers/peer.h"
 

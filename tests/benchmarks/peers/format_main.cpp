@@ -7,6 +7,9 @@
 // Frames are those of `thimble table` (instruments/timed_frames.h), drawn by turns. A row gives the median of
 // the grey frames in milliseconds, and what the medians of the others are beside it.
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+#include <vector>
 
 #include "benchmarks/peers/contest.h"
 #include "scene/scene_source.h"

@@ -6,6 +6,8 @@
 // shadows, a sky and four rays of occlusion. 800 x 600 on one thread, by turns, processor time, the median of
 // --frames; two threads by the clock. `different`: bytes that are not the core's.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
 
 #include "benchmarks/peers/contest.h"
 #include "scene/built_scene.h"

@@ -2,6 +2,7 @@
 // a depth buffer of fractions. What somebody would write who has some thousand voxels and wants the core's
 // picture: it is exact. Nothing but the greys is cleared, since a grey of 0 says that a pixel holds nothing.
 #include "benchmarks/peers/extent.h"
+#include "benchmarks/peers/peer.h"
 
 #include <cstring>
 

@@ -7,7 +7,10 @@
 //
 // Frames are those of `thimble table` (instruments/timed_frames.h). `faster` is the time of the fastest peer that counts over this renderer's.
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "benchmarks/peers/contest.h"
 #include "output/plot.h"

@@ -1,5 +1,6 @@
 // The strongest simple rival below some millions of points: no tree, no order, a depth buffer.
 #include "benchmarks/peers/extent.h"
+#include "benchmarks/peers/peer.h"
 
 namespace thimble::benchmarks {
 namespace {

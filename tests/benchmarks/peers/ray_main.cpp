@@ -10,6 +10,8 @@
 // core's (in kind, voxel, axis, t and material where the ray wants the voxel; a peer's in t, to 1e-4, or in
 // whether anything is hit). NanoVDB traces ray by ray, Embree in packets of 16: boxes, and a mesh's own triangles.
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
 #include <random>
 
 #include "benchmarks/peers/contest.h"
