@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <optional>
 
 namespace thimble::host {
 namespace {
@@ -20,45 +19,18 @@ Event typed(char32_t character) {
 }
 
 Key key_of_final(char final) {
-  switch (final) {
-    case 'A':
-      return Key::kUp;
-    case 'B':
-      return Key::kDown;
-    case 'C':
-      return Key::kRight;
-    case 'D':
-      return Key::kLeft;
-    case 'H':
-      return Key::kHome;
-    case 'F':
-      return Key::kEnd;
-    case 'M':
-      return Key::kEnter;  // of the keypad, in SS3 form
-    default:
-      return Key::kNone;
-  }
+  constexpr std::string_view kFinals = "ABCDHFM";
+  constexpr std::array kKeys{Key::kUp,   Key::kDown, Key::kRight, Key::kLeft,
+                             Key::kHome, Key::kEnd,  Key::kEnter};  // the last is of the keypad, in SS3 form
+  const std::size_t at = kFinals.find(final);
+  return at < kKeys.size() ? kKeys[at] : Key::kNone;
 }
 
 Key key_of_number(std::int32_t number) {
-  switch (number) {
-    case 1:
-    case 7:
-      return Key::kHome;
-    case 2:
-      return Key::kInsert;
-    case 3:
-      return Key::kDelete;
-    case 4:
-    case 8:
-      return Key::kEnd;
-    case 5:
-      return Key::kPageUp;
-    case 6:
-      return Key::kPageDown;
-    default:
-      return Key::kNone;
-  }
+  constexpr std::array kKeys{Key::kHome,   Key::kInsert,   Key::kDelete, Key::kEnd,
+                             Key::kPageUp, Key::kPageDown, Key::kHome,   Key::kEnd};  // from 1 on
+  const auto at = static_cast<std::size_t>(number) - 1;
+  return at < kKeys.size() ? kKeys[at] : Key::kNone;
 }
 
 // The numbers between semicolons; one that is missing or none at all is -1.

@@ -2,16 +2,10 @@
 // its own rows, and what it refuses.
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "instruments/accuracy_study.h"
 #include "instruments/hard_cases.h"
@@ -543,42 +537,6 @@ TEST_CASE("hard cases: a ray, a face or an operation of ours that is wrong -> a 
   CHECK(tools::hard_case_fault(study).find("kSumError") != std::string::npos);
   study.operations[0].error = std::nan("");
   CHECK(!tools::hard_case_fault(study).empty());
-}
-
-TEST_CASE("accuracy: rows made by hand -> front, best within a time, fastest within an error") {
-  std::vector<tools::AccuracyRow> rows(5);
-  const double costs[] = {1, 2, 2, 3, 3};
-  const double decibel[] = {10, 9, 20, 25, 30};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i].ms_median = costs[i];
-    rows[i].psnr_db = decibel[i];
-    rows[i].counts.node_visits = 10 - i;
-  }
-  tools::mark_front(&rows, tools::CostAxis::kTime);
-  CHECK(rows[0].front);
-  CHECK(!rows[1].front);
-  CHECK(rows[2].front);
-  CHECK(!rows[3].front);
-  CHECK(rows[4].front);
-  CHECK(tools::best_within(rows, 0.5) == nullptr);
-  CHECK(tools::best_within(rows, 2) == &rows[2]);
-  CHECK(tools::best_within(rows, 99) == &rows[4]);
-  CHECK(tools::fastest_with(rows, 10) == &rows[0]);
-  CHECK(tools::fastest_with(rows, 20) == &rows[2]);
-  CHECK(tools::fastest_with(rows, 31) == nullptr);
-  rows[2].ms_median = 2.92;  // 3 takes 2.7 per cent more, and is nearer
-  tools::mark_front(&rows, tools::CostAxis::kTime);
-  CHECK(!rows[2].front);
-  rows[2].ms_median = 2.9;  // 3.4 per cent
-  tools::mark_front(&rows, tools::CostAxis::kTime);
-  CHECK(rows[2].front);
-  tools::mark_front(&rows, tools::CostAxis::kVisits);
-  CHECK(rows[4].front);
-  CHECK(std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.front; }) == 1);
-  CHECK(tools::psnr_db({0, 0, 0, 10}, {0, 0, 0, 0}) == doctest::Approx(20 * std::log10(255.0 / 5)));
-  CHECK(std::isinf(tools::psnr_db({1, 2}, {1, 2})));
-  CHECK(tools::rms_of(tools::psnr_of(3.5)) == doctest::Approx(3.5));
-  CHECK(tools::rms_of(tools::psnr_of(0)) == 0);
 }
 
 TEST_CASE("scatter: points on one spot -> numbers side by side, each point and number once") {

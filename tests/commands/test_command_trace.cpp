@@ -4,17 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <limits>
-#include <random>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "support/counts.h"
 #include "support/file_bytes.h"
 #include "support/hit_rows.h"
 #include "support/ray_cases.h"
@@ -273,7 +266,7 @@ TEST_CASE(
         ray[axis] = static_cast<double>(pick(random, -65535, 65535));
       } else if (kind == 1) {
         ray[axis] = std::ldexp(static_cast<double>(pick(random, -(1LL << 52), 1LL << 52)),
-                               static_cast<int>(pick(random, -1000, 900)) * (axis == 3 ? 0 : 1) - 52);
+                               pick_int(random, -1000, 900) * (axis == 3 ? 0 : 1) - 52);
       } else if (kind == 2) {
         ray[axis] = std::ldexp(static_cast<double>(pick(random, -(1LL << 52), 1LL << 52)), -52);
       } else {

@@ -1,11 +1,8 @@
 // The GPU's kernels as C++: every picture and every hit is the core's, and no read leaves the buffers.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "gpu/kernel/cpp.h"
@@ -13,8 +10,6 @@
 #include "support/frames.h"
 #include "support/gpu_kernels.h"
 #include "support/hard_frames.h"
-#include "support/ray_cases.h"
-#include "support/wide_cases.h"
 
 namespace thimble::tests {
 namespace {
@@ -86,8 +81,7 @@ TEST_CASE("gpu kernels: hard rays, whatever words they need -> every hit is the 
     const std::uint64_t seed = 77000 + static_cast<std::uint64_t>(i);
     std::mt19937_64 random(seed);
     CAPTURE(seed);
-    const WideScene scene =
-        i % 2 == 0 ? random_scene(random) : solid_scene(random, static_cast<int>(pick(random, 1, 12)));
+    const WideScene scene = i % 2 == 0 ? random_scene(random) : solid_scene(random, pick_int(random, 1, 12));
     trace_everyhow(scene.tree, random_rays(seed, scene.level, 400), &wrong, &outside);
   }
   CHECK(wrong == 0);
@@ -131,7 +125,7 @@ TEST_CASE("gpu kernels: damaged trees -> every ray ends within its bound, the by
     const std::uint64_t seed = 5000 + static_cast<std::uint64_t>(i);
     std::mt19937_64 random(seed);
     CAPTURE(seed);
-    const WideScene sound = solid_scene(random, static_cast<int>(pick(random, 3, 7)));
+    const WideScene sound = solid_scene(random, pick_int(random, 3, 7));
     std::vector<std::uint8_t> bytes(sound.tree.bytes(), sound.tree.bytes() + sound.tree.size_bytes());
     for (std::int64_t flips = pick(random, 1, 6); flips > 0; --flips) {
       bytes[static_cast<std::size_t>(pick(random, 16, static_cast<std::int64_t>(bytes.size()) - 1))] ^=

@@ -1,19 +1,12 @@
-// The integer optics against long double: every bound that optics.h names, swept.
+// The integer optics: what holds exactly, case by case. That every operation keeps to the bound of its header is swept by
+// tools/instruments/operation_errors.cpp, which test_hard_cases runs.
 //
 // THIMBLE_SEED sets the seed of the random sweeps.
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <iostream>
-#include <random>
-#include <string>
-#include <vector>
 
-#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "thimble/light/host/optics.h"
 #include "thimble/trace/ray.h"
@@ -23,6 +16,7 @@ namespace {
 
 using namespace thimble;
 using thimble::tests::pick;
+using thimble::tests::pick_int;
 
 using Real = long double;
 using Reals = std::array<Real, 3>;
@@ -58,11 +52,11 @@ std::string text_of(const Vec3i& v) {
 Vec3i random_direction(std::mt19937_64& random, int bits) {
   Vec3i direction;
   do {
-    const int most = static_cast<int>(pick(random, 1, bits));
+    const int most = pick_int(random, 1, bits);
     for (int axis = 0; axis < 3; ++axis) {
-      const int own = pick(random, 0, 2) == 0 ? static_cast<int>(pick(random, 0, most)) : most;
+      const int own = pick(random, 0, 2) == 0 ? pick_int(random, 0, most) : most;
       const std::int64_t limit = (std::int64_t{1} << own) - 1;
-      direction[axis] = static_cast<std::int32_t>(pick(random, -limit, limit));
+      direction[axis] = pick_int(random, -limit, limit);
     }
   } while (direction == Vec3i{});
   return direction;
@@ -90,9 +84,8 @@ struct Worst {
 
 }  // namespace
 
-TEST_CASE("shorten: any direction -> 15 bits, within the bound, zeros and short ones as they are") {
+TEST_CASE("shorten: any direction -> 15 bits, zeros, signs and short ones as they are") {
   std::mt19937_64 random(seed());
-  Worst turned;
   int wrong = 0;
   for (int i = 0; i < kSweep; ++i) {
     const Vec3i direction = random_direction(random, 20);
@@ -107,10 +100,8 @@ TEST_CASE("shorten: any direction -> 15 bits, within the bound, zeros and short 
     }
     wrong += after > kMaxShort ? 1 : 0;
     wrong += before <= kMaxShort ? (result == direction ? 0 : 1) : (after < (1 << 14) ? 1 : 0);
-    turned.see(angle_urad(reals(direction), reals(result)), text_of(direction));
   }
   CHECK(wrong == 0);
-  CHECK_WORST(turned, kShortenErrorUrad);
   CHECK(shorten({kMaxDirection, -kMaxDirection, 0}) == Vec3i{1 << 14, -(1 << 14), 0});
   CHECK(shorten({65535, 0, 3}) == Vec3i{1 << 14, 0, 1});
 }
@@ -128,18 +119,7 @@ TEST_CASE("length_of: every vector of 15 bits -> the nearest integer") {
   CHECK(length_of({0, -kMaxShort, 0}) == kMaxShort);
 }
 
-TEST_CASE("unit_q14: any direction -> a length of 16384 and an angle within the bounds") {
-  std::mt19937_64 random(seed());
-  Worst turned;
-  Worst longer;
-  for (int i = 0; i < kSweep; ++i) {
-    const Vec3i direction = random_direction(random, 20);
-    const Vec3i unit = unit_q14(direction);
-    turned.see(angle_urad(reals(direction), reals(unit)), text_of(direction));
-    longer.see(std::fabs(length(reals(unit)) - 16384), text_of(direction));
-  }
-  CHECK_WORST(turned, kUnitErrorUrad);
-  CHECK_WORST(longer, kUnitLengthError);
+TEST_CASE("unit_q14: along an axis, a diagonal, none -> the unit worked out by hand") {
   for (int axis = 0; axis < 3; ++axis) {
     for (const std::int32_t size : {1, 3, 16384, 32767, 65535, kMaxDirection}) {
       Vec3i direction;
@@ -164,25 +144,10 @@ TEST_CASE("dot_q14: two units -> their cosine to the nearest") {
   CHECK_WORST(off, 0.5L);
 }
 
-TEST_CASE("reflect: at a face -> a change of one sign, at a bent normal -> within the bound") {
+TEST_CASE("reflect: at a face, and at a normal along an axis -> a change of one sign") {
   CHECK(reflect(Vec3i{7, -9, kMaxDirection}, 2) == Vec3i{7, -9, -kMaxDirection});
   CHECK(reflect(Vec3i{7, -9, 1}, 0) == Vec3i{-7, -9, 1});
-  std::mt19937_64 random(seed());
-  Worst turned;
-  Worst longer;
-  for (int i = 0; i < kSweep; ++i) {
-    const Vec3i direction = unit_q14(random_direction(random, 20));
-    const Vec3i normal = unit_q14(random_direction(random, 20));
-    const Reals d = reals(direction);
-    const Reals n = reals(normal);
-    const Reals exact = combine(1, d, -2 * dot(d, n) / dot(n, n), n);
-    const Vec3i mirrored = reflect(direction, normal);
-    turned.see(angle_urad(exact, reals(mirrored)), text_of(direction) + text_of(normal));
-    longer.see(std::fabs(length(reals(mirrored)) - length(d)), text_of(direction));
-  }
-  CHECK_WORST(turned, kReflectErrorUrad);
-  CHECK_WORST(longer, 2);
-  // The longest directions that are allowed, and normals along an axis: as the change of sign.
+  // The longest directions that are allowed.
   CHECK(reflect(Vec3i{kMaxShort, -kMaxShort, kMaxShort}, Vec3i{0, 0, kUnitQ14}) ==
         Vec3i{kMaxShort, -kMaxShort, -kMaxShort});
   CHECK(reflect(Vec3i{kMaxShort, -kMaxShort, kMaxShort}, Vec3i{0, -kUnitQ14, 0}) ==
@@ -193,25 +158,14 @@ namespace {
 
 __extension__ typedef __int128 Int128;
 
-// Snell's law for the very integers given. `outcome`: the exact direction; false for total reflection by the
-// exact inequality.
-bool exact_refraction(const Vec3i& unit, const Vec3i& normal, std::uint32_t eta, Reals* outcome) {
-  const Reals d = reals(unit);
-  const Reals n = reals(normal);
+// Whether light goes through, by the exact inequality for the very integers given.
+bool goes_through(const Vec3i& unit, const Vec3i& normal, std::uint32_t eta) {
   const Int128 big_d = Int128{unit.x} * normal.x + Int128{unit.y} * normal.y + Int128{unit.z} * normal.z;
   const Int128 big_n =
       Int128{normal.x} * normal.x + Int128{normal.y} * normal.y + Int128{normal.z} * normal.z;
   const Int128 big_l = Int128{unit.x} * unit.x + Int128{unit.y} * unit.y + Int128{unit.z} * unit.z;
-  const Int128 left = big_l * big_n * (Int128{1} << 24) - Int128{eta} * eta * (big_l * big_n - big_d * big_d);
-  if (big_d == 0 || left <= 0) {
-    return false;
-  }
-  const Real ratio = static_cast<Real>(eta) / 4096;
-  // Along the normal afterwards, as a multiple of it.
-  const Real after = std::sqrt(static_cast<Real>(left)) / 4096 / static_cast<Real>(big_n);
-  const Real before = static_cast<Real>(big_d) / static_cast<Real>(big_n);
-  *outcome = combine(ratio, d, (big_d < 0 ? -after : after) - ratio * before, n);
-  return true;
+  return big_d != 0 &&
+         big_l * big_n * (Int128{1} << 24) - Int128{eta} * eta * (big_l * big_n - big_d * big_d) > 0;
 }
 
 // Ratios from 1/4 to 4: the ends, usual ones and any.
@@ -224,107 +178,54 @@ std::uint32_t random_eta(std::mt19937_64& random) {
 
 }  // namespace
 
-TEST_CASE(
-    "refract at a face: all angles, ratios 1/4 to 4 -> Snell within the bound, total reflection exactly") {
+TEST_CASE("refract: all angles, ratios 1/4 to 4 -> total reflection exactly at faces, and lengths are kept") {
   std::mt19937_64 random(seed());
-  Worst turned;
   Worst longer;
   int total = 0;
   int wrong = 0;
-  for (int i = 0; i < kSweep; ++i) {
-    const int axis = static_cast<int>(pick(random, 0, 2));
-    Vec3i unit = unit_q14(random_direction(random, 20));
-    const std::uint32_t eta = random_eta(random);
-    if (pick(random, 0, 3) == 0) {
-      // Near the critical angle, on both sides, or grazing.
-      const Real sine =
-          std::min(1.0L, 4096.0L / static_cast<Real>(eta)) + 1e-4L * static_cast<Real>(pick(random, -9, 9));
-      const Real turn = 1e-3L * static_cast<Real>(pick(random, 0, 6283));
-      const Real s = std::min(sine, 1.0L);
-      unit = {};
-      unit[axis] = static_cast<std::int32_t>(std::lround(16384 * std::sqrt(1 - s * s)));
-      unit[(axis + 1) % 3] = static_cast<std::int32_t>(std::lround(16384 * s * std::cos(turn)));
-      unit[(axis + 2) % 3] = static_cast<std::int32_t>(std::lround(16384 * s * std::sin(turn)));
-      unit[axis] = pick(random, 0, 1) == 0 ? unit[axis] : -unit[axis];
-    }
+  for (int i = 0; i < 2 * kSweep; ++i) {
+    const bool is_bent = i % 2 != 0;
+    const int axis = pick_int(random, 0, 2);
     Vec3i normal;
     normal[axis] = kUnitQ14;
-    Reals exact{};
-    const bool through = exact_refraction(unit, normal, eta, &exact);
+    normal = is_bent ? unit_q14(random_direction(random, 20)) : normal;
+    Vec3i unit = unit_q14(random_direction(random, 20));
+    const std::uint32_t eta = random_eta(random);
+    const Reals n = reals(normal);
+    const Reals side = combine(1, reals(unit), -dot(reals(unit), n) / dot(n, n), n);
+    if (pick(random, 0, 3) == 0 && length(side) > 100) {
+      // Near the critical angle, on both sides, or grazing.
+      const Real s = std::min(1.0L, std::min(1.0L, 4096.0L / static_cast<Real>(eta)) +
+                                        1e-4L * static_cast<Real>(pick(random, -9, 9)));
+      const Reals aimed =
+          combine(16384 * s / length(side), side, 16384 * std::sqrt(1 - s * s) / length(n), n);
+      for (int k = 0; k < 3; ++k) {
+        unit[k] = static_cast<std::int32_t>(std::lround(aimed[static_cast<std::size_t>(k)]));
+      }
+    }
+    const bool through = goes_through(unit, normal, eta);
     Vec3i out{1, 2, 3};
-    const bool result = refract(unit, axis, eta, &out);
-    const std::string place = text_of(unit) + " eta " + std::to_string(eta);
+    const bool result = is_bent ? refract(unit, normal, eta, &out) : refract(unit, axis, eta, &out);
     if (eta == 4096) {
       wrong += result && out == unit ? 0 : 1;
     } else if (result != through) {
-      ++wrong;
+      // At a bent normal the inequality of the header leaves less than 1/64 of a unit of the square for this.
+      const Real along = dot(reals(unit), n);
+      const Real sine_square = dot(reals(unit), reals(unit)) - along * along / dot(n, n);
+      const Real ratio = static_cast<Real>(eta) / 4096;
+      const Real excess = ratio * ratio * sine_square - dot(reals(unit), reals(unit));
+      wrong += is_bent && std::fabs(excess) <= ratio * ratio / 64 ? 0 : 1;
     } else if (!result) {
       ++total;
       wrong += out == Vec3i{1, 2, 3} ? 0 : 1;
     } else {
-      wrong += (out[axis] > 0) == (unit[axis] > 0) && out[axis] != 0 ? 0 : 1;
-      turned.see(angle_urad(exact, reals(out)), place);
-      longer.see(std::fabs(length(reals(out)) - length(reals(unit))), place);
+      wrong += is_bent || ((out[axis] > 0) == (unit[axis] > 0) && out[axis] != 0) ? 0 : 1;
+      longer.see(std::fabs(length(reals(out)) - length(reals(unit))),
+                 text_of(unit) + text_of(normal) + " eta " + std::to_string(eta));
     }
   }
   CHECK(wrong == 0);
-  CHECK(total > kSweep / 10);
-  CHECK_WORST(turned, kRefractErrorUrad);
-  CHECK_WORST(longer, 2);
-}
-
-TEST_CASE("refract at a bent normal: all angles, ratios 1/4 to 4 -> Snell within the bound") {
-  std::mt19937_64 random(seed());
-  Worst turned;
-  Worst longer;
-  int total = 0;
-  int wrong = 0;
-  for (int i = 0; i < kSweep; ++i) {
-    const Vec3i normal = unit_q14(random_direction(random, 20));
-    Vec3i unit = unit_q14(random_direction(random, 20));
-    const std::uint32_t eta = random_eta(random);
-    if (pick(random, 0, 3) == 0) {
-      // Near the critical angle: a sideways vector made from another one.
-      const Reals n = reals(normal);
-      const Reals other = reals(unit);
-      const Reals side = combine(1, other, -dot(other, n) / dot(n, n), n);
-      const Real s = std::min(1.0L, std::min(1.0L, 4096.0L / static_cast<Real>(eta)) +
-                                        1e-4L * static_cast<Real>(pick(random, -9, 9)));
-      if (length(side) > 100) {
-        const Reals aimed =
-            combine(16384 * s / length(side), side, 16384 * std::sqrt(1 - s * s) / length(n), n);
-        unit = {static_cast<std::int32_t>(std::lround(aimed[0])),
-                static_cast<std::int32_t>(std::lround(aimed[1])),
-                static_cast<std::int32_t>(std::lround(aimed[2]))};
-      }
-    }
-    Reals exact{};
-    const bool through = exact_refraction(unit, normal, eta, &exact);
-    Vec3i out{1, 2, 3};
-    const bool result = refract(unit, normal, eta, &out);
-    const std::string place = text_of(unit) + text_of(normal) + " eta " + std::to_string(eta);
-    if (eta == 4096) {
-      wrong += result && out == unit ? 0 : 1;
-      continue;
-    }
-    if (result != through) {
-      // The inequality of the header leaves less than 1/64 of a unit of the square for this.
-      const Reals n = reals(normal);
-      const Real sine_square =
-          dot(reals(unit), reals(unit)) - dot(reals(unit), n) * dot(reals(unit), n) / dot(n, n);
-      const Real ratio = static_cast<Real>(eta) / 4096;
-      const Real excess = ratio * ratio * sine_square - dot(reals(unit), reals(unit));
-      wrong += std::fabs(excess) <= ratio * ratio / 64 ? 0 : 1;
-    } else if (result) {
-      turned.see(angle_urad(exact, reals(out)), place);
-      longer.see(std::fabs(length(reals(out)) - length(reals(unit))), place);
-    } else {
-      ++total;
-    }
-  }
-  CHECK(wrong == 0);
-  CHECK(total > kSweep / 10);
-  CHECK_WORST(turned, kRefractErrorUrad);
+  CHECK(total > kSweep / 5);
   CHECK_WORST(longer, 3);
 }
 
@@ -403,68 +304,49 @@ TEST_CASE("eta_q12: two indices -> their ratio to the nearest, clamped") {
   CHECK(eta_q12(1, 0) == kMaxEtaQ12);
 }
 
-TEST_CASE("r0_q16: pairs of indices -> the formula within the bound, 0 for equal ones only") {
+TEST_CASE("r0_q16: pairs of indices -> the same in either order, 0 for equal ones only") {
   std::mt19937_64 random(seed());
-  Worst off;
   int wrong = 0;
   for (int i = 0; i < kSweep / 4; ++i) {
     const std::uint32_t a = static_cast<std::uint32_t>(pick(random, 1, 65535));
     const std::uint32_t b = static_cast<std::uint32_t>(
         pick(random, 0, 3) == 0 ? a - pick(random, 0, std::min(a - 1, 9U)) : pick(random, 1, 65535));
     const std::uint32_t value = r0_q16(a, b);
-    const Real ratio =
-        (static_cast<Real>(a) - static_cast<Real>(b)) / (static_cast<Real>(a) + static_cast<Real>(b));
-    off.see(std::fabs(static_cast<Real>(value) - 65536 * ratio * ratio),
-            std::to_string(a) + " " + std::to_string(b));
     wrong += (value == 0) == (a == b) && value <= kOneQ16 && value == r0_q16(b, a) ? 0 : 1;
   }
   CHECK(wrong == 0);
-  CHECK_WORST(off, kNormalErrorQ16);
   CHECK(r0_q16(4096, 6144) == 2621);  // glass of 1.5: 4 per cent
   CHECK(r0_q16(4096, 0) == kOneQ16);
   CHECK(r0_q16(0, 0) == 0);
 }
 
-TEST_CASE("fresnel_q16: every cosine -> Schlick within the bound, falling with it, never above 1") {
-  Worst off;
+TEST_CASE("fresnel_q16: every cosine -> a share that falls with it, never above 1") {
   int wrong = 0;
   for (const std::uint32_t r0 : {1U, 2U, 655U, 1337U, 2621U, 23593U, 65535U, 65536U}) {
     std::uint32_t last = kOneQ16;
     for (std::int32_t cosine = 0; cosine <= kUnitQ14 + 3; ++cosine) {
       const std::uint32_t value = fresnel_q16(cosine, r0);
-      const Real normal = static_cast<Real>(r0) / 65536;
-      const Real lack = 1 - std::min(1.0L, static_cast<Real>(cosine) / 16384);
-      const Real exact = 65536 * (normal + (1 - normal) * lack * lack * lack * lack * lack);
-      off.see(std::fabs(static_cast<Real>(value) - exact),
-              std::to_string(cosine) + " r0 " + std::to_string(r0));
       wrong += value <= last && value >= r0 && value <= kOneQ16 && value == fresnel_q16(-cosine, r0) ? 0 : 1;
       last = value;
     }
     CHECK(fresnel_q16(kUnitQ14, r0) == r0);
     CHECK(fresnel_q16(0, r0) == kOneQ16);
   }
-  CHECK(wrong == 0);
-  CHECK_WORST(off, kSchlickErrorQ16);
   for (std::int32_t cosine = 0; cosine <= kUnitQ14; ++cosine) {
     wrong += fresnel_q16(cosine, r0_q16(5325, 5325)) == 0 ? 0 : 1;
   }
   CHECK(wrong == 0);
 }
 
-TEST_CASE(
-    "transmittance_q16: every number of halvings -> within the bound, never rising, 1 at 0 and 0 beyond 17") {
-  Worst off;
+TEST_CASE("transmittance_q16: every number of halvings -> never rising, 1 at 0 and 0 beyond 17") {
   int wrong = 0;
   std::uint32_t last = kOneQ16;
   for (std::uint32_t x = 0; x <= 18U << 16; ++x) {
     const std::uint32_t value = transmittance_q16(x);
     wrong += value <= last ? 0 : 1;
     last = value;
-    off.see(std::fabs(static_cast<Real>(value) - 65536 * std::exp2(-static_cast<Real>(x) / 65536)),
-            std::to_string(x));
   }
   CHECK(wrong == 0);
-  CHECK_WORST(off, kTransmittanceErrorQ16);
   for (std::uint32_t n = 0; n <= 16; ++n) {
     CHECK(transmittance_q16(n << 16) == kOneQ16 >> n);
   }
@@ -484,38 +366,12 @@ TEST_CASE("absorption: slabs of known thickness -> products of what parts of the
   }
 }
 
-TEST_CASE("distance_q8: any direction and t -> within the bound, clamped at the top") {
-  std::mt19937_64 random(seed());
-  Worst off;
-  int clamped = 0;
-  int wrong = 0;
-  for (int i = 0; i < kSweep; ++i) {
-    const Vec3i direction = random_direction(random, 20);
-    const int axis = static_cast<int>(pick(random, 0, 2));
-    if (direction[axis] == 0) {
-      continue;
-    }
-    const std::int32_t numerator =
-        static_cast<std::int32_t>(pick(random, 0, std::int64_t{1} << pick(random, 0, 24)));
-    const std::int32_t denominator = 256 * std::abs(direction[axis]);
-    const Real exact =
-        length(reals(direction)) * static_cast<Real>(numerator) * 256 / static_cast<Real>(denominator);
-    const std::int32_t result = distance_q8(direction, numerator, denominator);
-    if (exact > 2147e6L) {
-      ++clamped;
-      wrong += result >= 2146000000 ? 0 : 1;
-      continue;
-    }
-    off.see((std::fabs(static_cast<Real>(result) - exact) - 0.501L) / std::max(exact, 1.0L) * 1e6L,
-            text_of(direction) + " " + std::to_string(numerator));
-  }
-  CHECK(wrong == 0);
-  CHECK(clamped > 100);
-  CHECK_WORST(off, kDistanceErrorPpm);
+TEST_CASE("distance_q8: worked out by hand; farther than a number says -> the greatest") {
   CHECK(distance_q8({0, -7, 0}, 1234, 7 * 256) == 1234);
   CHECK(distance_q8({300, 400, 0}, 300, 300 * 256) == 500);
   CHECK(distance_q8({1, 1, 1}, 0, 1) == 0);
   CHECK(distance_q8({kMaxDirection, kMaxDirection, 1}, 1 << 24, 256) == INT32_MAX);
+  CHECK(distance_q8({kMaxDirection, 0, 255}, 1 << 24, 256 * 255) == INT32_MAX);
 }
 
 TEST_CASE("distance_q8 with a cosine: rays to a point, any others -> both as apart, and the definition's") {
@@ -523,12 +379,11 @@ TEST_CASE("distance_q8 with a cosine: rays to a point, any others -> both as apa
   int wrong = 0;
   int to_points = 0;
   for (int i = 0; i < kSweep; ++i) {
-    const Vec3i direction = random_direction(random, static_cast<int>(pick(random, 1, 20)));
-    const int axis = static_cast<int>(pick(random, 0, 2));
+    const Vec3i direction = random_direction(random, pick_int(random, 1, 20));
+    const int axis = pick_int(random, 0, 2);
     const bool to_point = pick(random, 0, 1) != 0;
-    const auto numerator =
-        static_cast<std::int32_t>(pick(random, -1, std::int64_t{1} << pick(random, 0, 24)));
-    const int other = static_cast<int>(pick(random, 0, 2));
+    const auto numerator = pick_int(random, -1, std::int64_t{1} << pick(random, 0, 24));
+    const int other = pick_int(random, 0, 2);
     const std::int32_t denominator = to_point ? 256 : 256 * std::abs(direction[other]);
     std::uint32_t cosine = 99999;
     const std::int32_t distance = distance_q8(direction, numerator, denominator, axis, &cosine);
@@ -627,9 +482,8 @@ TEST_CASE("energy: reflected and transmitted shares -> 1 together, at most 1 aft
     std::uint32_t through = kOneQ16;
     std::uint64_t reflected = 0;
     for (int surface = 0; surface < 8; ++surface) {
-      const std::uint32_t share =
-          fresnel_q16(static_cast<std::int32_t>(pick(random, 0, kUnitQ14)),
-                      r0_q16(4096, static_cast<std::uint32_t>(pick(random, 4096, 16384))));
+      const std::uint32_t share = fresnel_q16(
+          pick_int(random, 0, kUnitQ14), r0_q16(4096, static_cast<std::uint32_t>(pick(random, 4096, 16384))));
       REQUIRE(share <= kOneQ16);
       reflected += (std::uint64_t{through} * share) >> 16;
       through = static_cast<std::uint32_t>((std::uint64_t{through} * (kOneQ16 - share)) >> 16);

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <vector>
 
 #include "scene/random.h"
 #include "support/counts.h"
@@ -217,23 +214,4 @@ TEST_CASE("depth_range: random cameras and boxes -> the nearest and farthest cor
   }
   CHECK(compared[0] > kCameras / 10);
   CHECK(compared[1] > kCameras / 10);
-}
-
-TEST_CASE("light_from: random lights -> half-Lambert by doubles, within 1.5/256") {
-  constexpr std::uint64_t kSeed = 0x11647;
-  SplitMix64 random(kSeed);
-  for (int turn = 0; turn < kCameras; ++turn) {
-    const Vec3i light = random_vector(random, 1 << between(random, 0, 14));
-    const double length =
-        std::sqrt(double(light.x) * light.x + double(light.y) * light.y + double(light.z) * light.z);
-    std::uint16_t faces[6];
-    light_from(light, faces);
-    CAPTURE(kSeed);
-    CAPTURE(turn);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double cosine = light[axis] / length;
-      CHECK(std::fabs(faces[2 * axis] - (141 - 115 * cosine)) <= 1.5);
-      CHECK(std::fabs(faces[2 * axis + 1] - (141 + 115 * cosine)) <= 1.5);
-    }
-  }
 }

@@ -2,15 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <string>
-#include <vector>
 
-#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "thimble/plane/bitfield.h"
 
@@ -197,7 +190,7 @@ TEST_CASE(
        {std::pair{1, 1}, {31, 7}, {32, 8}, {33, 9}, {64, 3}, {65, 20}, {100, 40}, {3, 70}}) {
     Both both(width, height);
     for (int turn = 0; turn < 60 * kScale; ++turn) {
-      const auto edge = [&random](int side) { return static_cast<int>(pick(random, -5, side + 5)); };
+      const auto edge = [&random](int side) { return pick_int(random, -5, side + 5); };
       CellBox box{{edge(width), edge(height)}, {edge(width), edge(height)}};
       if (turn % 3 == 0) {
         box.high.y = box.low.y + 1;  // a span
@@ -227,7 +220,7 @@ TEST_CASE(
       CHECK(both.field.any(asked) == (count != 0));
 
       std::uint32_t window = 0;
-      const Vec2i corner{static_cast<int>(pick(random, -70, width + 40)), edge(height)};
+      const Vec2i corner{pick_int(random, -70, width + 40), edge(height)};
       for (int bit = 0; bit < 32; ++bit) {
         window |= (both.picture.test(corner.x + bit, corner.y) ? 1U : 0U) << bit;
       }
@@ -261,7 +254,7 @@ TEST_CASE("discs: set, cleared and asked at random places, clipped at the edges 
     Both both(width, height);
     for (int turn = 0; turn < 50 * kScale; ++turn) {
       const auto place = [&random](int side, int diameter) {
-        return static_cast<int>(pick(random, -diameter - 1, side + 1));
+        return pick_int(random, -diameter - 1, side + 1);
       };
       const int diameter =
           static_cast<int>(pick(random, 0, 3) == 0 ? pick(random, 17, 90) : pick(random, 0, 16));
@@ -313,10 +306,9 @@ TEST_CASE("small discs inside: every diameter, place and own place -> as a pictu
           REQUIRE(both.field.any_inside(disc, corner) == (both.count(cells) != 0));
 
           const int reach = pick(random, 0, 1) == 0 ? 2 : diameter + 1;
-          const Vec2i own = pick(random, 0, 20) == 0
-                                ? BitField::kNowhere
-                                : Vec2i{x + static_cast<int>(pick(random, -reach, reach)),
-                                        y + static_cast<int>(pick(random, -reach, reach))};
+          const Vec2i own = pick(random, 0, 20) == 0 ? BitField::kNowhere
+                                                     : Vec2i{x + pick_int(random, -reach, reach),
+                                                             y + pick_int(random, -reach, reach)};
           CAPTURE(at(own));
           std::array<std::uint32_t, 16> expected{};
           bool any = false;
@@ -337,8 +329,7 @@ TEST_CASE("small discs inside: every diameter, place and own place -> as a pictu
         }
       }
       for (int turn = 0; turn < 20 * kScale; ++turn) {
-        const Vec2i corner{static_cast<int>(pick(random, 0, width - diameter)),
-                           static_cast<int>(pick(random, 0, height - diameter))};
+        const Vec2i corner{pick_int(random, 0, width - diameter), pick_int(random, 0, height - diameter)};
         const bool value = pick(random, 0, 1) == 0;
         both.put(cells_of_disc(diameter, corner), value);
         if (value) {

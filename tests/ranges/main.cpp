@@ -5,13 +5,9 @@
 //   thimble_ranges [RAYS [SEED]]      about so many rays, 1,000,000 by default
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "base/ranges.h"
 #include "support/ray_cases.h"
@@ -47,7 +43,7 @@ std::uint64_t rays_traced = 0;
 std::uint64_t cameras_set = 0;
 
 std::int32_t number(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
-  return static_cast<std::int32_t>(pick(random, low, high));
+  return pick_int(random, low, high);
 }
 
 // A tree of some level, its voxels in a corner, all over, or solid; with the brick map where it has one.
@@ -66,7 +62,7 @@ struct MeasuredWorld {
   bool has_grid = false;
 
   explicit MeasuredWorld(std::mt19937_64& random)
-      : level(static_cast<int>(pick(random, kMinLevel, kMaxLevel))), pool(Octree::octree_bytes(60000)) {
+      : level(pick_int(random, kMinLevel, kMaxLevel)), pool(Octree::octree_bytes(60000)) {
     const std::int32_t side = std::int32_t{1} << level;
     if (Octree::make(level, {pool.data(), pool.size()}, &octree) != Status::kOk) {
       std::abort();
@@ -190,7 +186,7 @@ bool hard_camera(std::mt19937_64& random, int level, Camera* camera) {
   const bool inside = pick(random, 0, 2) == 0;
   // As far away as frames by bricks take directions of so many bits.
   const bool is_far = pick(random, 0, 5) == 0;
-  const int far_bits = static_cast<int>(pick(random, 13, 15));
+  const int far_bits = pick_int(random, 13, 15);
   const std::int32_t reach = (1 << (31 - far_bits)) - 32 * Q8::kOne;
   const std::int32_t low = std::max(world - reach, kMinOriginWorlds * world);
   const std::int32_t high = std::min(reach, kMaxOriginWorlds * world);
@@ -217,7 +213,7 @@ bool hard_camera(std::mt19937_64& random, int level, Camera* camera) {
   const bool large = pick(random, 0, 3) == 0;
   const std::int32_t width = large ? extreme(random, 1, kMaxPicturePx) : number(random, 1, 200);
   const std::int32_t height = large ? extreme(random, 1, kMaxPicturePx) : number(random, 1, 120);
-  const int bits = is_far ? far_bits : pick(random, 0, 2) == 0 ? static_cast<int>(pick(random, 8, 20)) : 0;
+  const int bits = is_far ? far_bits : pick(random, 0, 2) == 0 ? pick_int(random, 8, 20) : 0;
   ++cameras_set;
   if (pick(random, 0, 2) == 0) {
     const Q14 span =
@@ -253,7 +249,7 @@ bool near_camera(std::mt19937_64& random, const MeasuredWorld& world, Camera* ca
                                      fov,
                                      number(random, 1, 200),
                                      number(random, 1, 120),
-                                     static_cast<int>(pick(random, 13, 15))},
+                                     pick_int(random, 13, 15)},
                      world.level) == Status::kOk;
 }
 

@@ -6,17 +6,9 @@
 // soak MINUTES=60 SEED=2`); with THIMBLE_DATA the scene files of that folder are among its worlds.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <optional>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "readers/source.h"
 #include "reference/reference.h"
@@ -103,7 +95,7 @@ void draw_lit(std::mt19937_64& random, std::uint64_t seed, const WideScene& scen
   wide::RayMap map;
   REQUIRE(wide::RayMap::make(scene.tree, &arena, &map) == Status::kOk);
   use_random_instruction_set(random);
-  const int threads = static_cast<int>(pick(random, 1, 3));
+  const int threads = pick_int(random, 1, 3);
   const std::size_t workspace =
       wide::lit_workspace_bytes(lit.effects, lit.scene) * static_cast<std::size_t>(threads);
   const LitDrawn ours = draw_lit_streams(scene, map, frame, lit, workspace, threads);
@@ -131,8 +123,8 @@ void judge(std::mt19937_64& random, std::uint64_t seed, const WideScene& scene, 
   constexpr int kJudged = 64;
   bool is_right = true;
   for (int i = 0; i < kJudged; ++i) {
-    const auto x = static_cast<std::int32_t>(pick(random, 0, frame.camera.width_px() - 1));
-    const auto y = static_cast<std::int32_t>(pick(random, 0, frame.camera.height_px() - 1));
+    const auto x = pick_int(random, 0, frame.camera.width_px() - 1);
+    const auto y = pick_int(random, 0, frame.camera.height_px() - 1);
     const Ray ray = frame.camera.ray(x, y);
     Hit hit;
     REQUIRE(closest_hit(scene.tree, ray, &hit) == Status::kOk);

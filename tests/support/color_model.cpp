@@ -19,44 +19,26 @@ ColorModel::ColorModel(Kind kind, const Glass& glass)
       written_(static_cast<std::size_t>(glass.memory_width * glass.memory_height), false) {}
 
 std::size_t ColorModel::parameters_of(std::uint8_t byte) {
-  switch (byte) {
-    case 0x01:
-    case 0x10:
-    case 0x11:
-    case 0x13:
-    case 0x20:
-    case 0x21:
-    case 0x28:
-    case 0x29:
-      return 0;
-    case 0x36:
-    case 0x3A:
-      return 1;
-    case 0x2A:
-    case 0x2B:
-      return 4;
-    case 0x2C:
-      return kAny;
-    default:
-      break;
+  struct Commands {
+    Kind kind;
+    std::string_view codes;
+    std::size_t parameters;
+  };
+  constexpr Commands kCommands[] = {{Kind::kSt7735, "\x01\x10\x11\x13\x20\x21\x28\x29", 0},
+                                    {Kind::kSt7735, "\x36\x3A", 1},
+                                    {Kind::kSt7735, "\x2A\x2B", 4},
+                                    {Kind::kSt7735, "\x2C", kAny},
+                                    {Kind::kIli9341, "\xC0\xC1\xC7", 1},
+                                    {Kind::kIli9341, "\xC5\xB1", 2},
+                                    {Kind::kIli9341, "\xB6", 3}};
+  for (const Commands& some : kCommands) {  // the first four rows are those that all have
+    if ((some.kind != Kind::kIli9341 || kind_ == Kind::kIli9341) &&
+        some.codes.find(static_cast<char>(byte)) != std::string_view::npos) {
+      return some.parameters;
+    }
   }
   if (kind_ == Kind::kSt7735 && byte == 0xB1) {
     return 3;
-  }
-  if (kind_ == Kind::kIli9341) {
-    switch (byte) {
-      case 0xC0:
-      case 0xC1:
-      case 0xC7:
-        return 1;
-      case 0xC5:
-      case 0xB1:
-        return 2;
-      case 0xB6:
-        return 3;
-      default:
-        break;
-    }
   }
   complain("unknown command " + std::to_string(byte));
   return 0;

@@ -2,14 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <cstring>
 #include <iterator>
 #include <utility>
 
 #include "golden/scenes.h"
-#include "support/chip_worlds.h"
 #include "support/deep_worlds.h"
 #include "support/gpu_kernels.h"
 #include "support/hard_frames.h"
@@ -323,7 +319,7 @@ bool make_frame(std::mt19937_64& random, const WideScene& scene, const CameraRow
   const std::int64_t range = shading.far_q8 - std::int64_t{shading.near_q8};
   if (pick(random, 0, 3) == 0 && shading.near_q8 >= 0 && range > 7) {  // greys of some part of what is there
     const std::int64_t part = range >> pick(random, 0, 3);
-    shading.near_q8 += static_cast<std::int32_t>(pick(random, 0, range - part));
+    shading.near_q8 += pick_int(random, 0, range - part);
     shading.far_q8 = shading.near_q8 + static_cast<std::int32_t>(part);
   }
   const std::size_t gap = frame->band.stride_bytes == 0 || has_pages(frame->band.format)

@@ -1,6 +1,5 @@
 #include "support/hard_frames.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "support/random_up.h"
@@ -9,7 +8,7 @@ namespace thimble::tests {
 namespace {
 
 std::int32_t number(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
-  return static_cast<std::int32_t>(pick(random, low, high));
+  return pick_int(random, low, high);
 }
 
 // Something solid within some forty voxels, around where cubes of entries meet if the world has several: boxes,

@@ -1,8 +1,5 @@
 #include "support/lit_cases.h"
 
-#include <algorithm>
-#include <cstring>
-
 #include "support/lit_world.h"
 
 namespace thimble::tests {
@@ -39,7 +36,7 @@ void make_lights(std::mt19937_64& random, int level, LitCase* lit) {
     const bool is_point = pick(random, 0, 1) == 0;
     Vec3i place = is_point ? random_voxel(random, -world, 2 * world) : random_voxel(random, -16384, 16384);
     if (pick(random, 0, 3) == 0) {
-      place[static_cast<int>(pick(random, 0, 2))] = is_point ? 256 : 0;
+      place[pick_int(random, 0, 2)] = is_point ? 256 : 0;
     }
     if (!is_point && place == Vec3i{}) {
       place.z = 1;
@@ -56,9 +53,9 @@ void make_lights(std::mt19937_64& random, int level, LitCase* lit) {
 void make_water(std::mt19937_64& random, int level, LitCase* lit) {
   const std::int64_t side = std::int64_t{1} << level;
   const Vec3i corner = random_voxel(random, 0, side - 1);
-  const auto width = static_cast<std::int32_t>(pick(random, 1, std::min<std::int64_t>(side - corner.x, 40)));
-  const auto depth = static_cast<std::int32_t>(pick(random, 1, std::min<std::int64_t>(side - corner.y, 40)));
-  const auto height = static_cast<std::int32_t>(pick(random, 0, (side - corner.z) * 256));
+  const auto width = pick_int(random, 1, std::min<std::int64_t>(side - corner.x, 40));
+  const auto depth = pick_int(random, 1, std::min<std::int64_t>(side - corner.y, 40));
+  const auto height = pick_int(random, 0, (side - corner.z) * 256);
   lit->scene.has_water = true;
   lit->scene.water = still_water(corner, width, depth, height);
   if (pick(random, 0, 1) == 0) {
@@ -66,7 +63,7 @@ void make_water(std::mt19937_64& random, int level, LitCase* lit) {
     std::int32_t lowest = INT32_MAX;
     std::int32_t highest = 0;
     for (std::int32_t& one : lit->heights) {
-      one = height * 256 + static_cast<std::int32_t>(pick(random, 0, 65536));
+      one = height * 256 + pick_int(random, 0, 65536);
       lowest = std::min(lowest, (one + 128) >> 8);
       highest = std::max(highest, (one + 128) >> 8);
     }
@@ -105,7 +102,7 @@ LitCase random_light(std::mt19937_64& random, int level) {
 }
 
 WideScene cabinet(std::mt19937_64& random) {
-  const int level = static_cast<int>(pick(random, 3, 7));
+  const int level = pick_int(random, 3, 7);
   const std::int32_t side = std::int32_t{1} << level;
   WideScene scene = make_scene(level, [&](Octree* octree) {
     for (std::int64_t i = pick(random, 5, 40); i > 0; --i) {

@@ -166,7 +166,7 @@ Voxel RayCases::random_voxel() {
   }
   Voxel voxel{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    voxel[axis] = static_cast<int>(pick(random_, 0, size_[axis] - 1));
+    voxel[axis] = pick_int(random_, 0, size_[axis] - 1);
   }
   return voxel;
 }
@@ -343,7 +343,7 @@ World make_world(WorldKind kind, const Voxel& size, std::mt19937_64& random) {
   const auto random_voxel = [&] {
     Voxel voxel{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      voxel[axis] = static_cast<int>(pick(random, 0, size[axis] - 1));
+      voxel[axis] = pick_int(random, 0, size[axis] - 1);
     }
     return voxel;
   };

@@ -4,20 +4,16 @@
 /// printed by one compiler's build means the same rays in another's.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "reference/reference.h"
+#include "support/counts.h"
 
 namespace thimble::tests {
 
 /// A uniformly random integer of low .. high, both included.
 std::int64_t pick(std::mt19937_64& random, std::int64_t low, std::int64_t high);
-inline int pick_int(std::mt19937_64& random, int low, int high) {
+inline int pick_int(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
   return static_cast<int>(pick(random, low, high));
 }
 

@@ -2,12 +2,8 @@
 /// of an engine's answer with the reference's.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "reference/reference.h"
 #include "thimble/trace/ray.h"
@@ -38,12 +34,6 @@ struct OwnedPool {
   explicit OwnedPool(int level, std::size_t nodes = 40000);
   OwnedPool(const OwnedPool&) = delete;
   OwnedPool& operator=(const OwnedPool&) = delete;
-  /// As if something else had written into it: node `index` is followed by `next`.
-  void cut_chain(std::uint32_t index, std::uint32_t next) {
-    std::uint32_t& word = words[2 * std::size_t{index} + 1];
-    word = (word & 31U) | next << 5;
-  }
-
   std::vector<std::uint32_t> words;
   Octree octree;
 };

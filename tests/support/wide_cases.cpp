@@ -2,9 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 
 #include "support/random_up.h"
@@ -19,9 +17,7 @@ std::string fill_randomly(std::mt19937_64& random, int level, Octree* octree) {
   const auto materials = pick(random, 0, 3) == 0 ? 200 : 1;
   const auto material = [&] { return static_cast<std::uint8_t>(pick(random, 1, materials)); };
   const auto anywhere = [&](std::int32_t low, std::int32_t high) {
-    return Vec3i{static_cast<std::int32_t>(pick(random, low, high)),
-                 static_cast<std::int32_t>(pick(random, low, high)),
-                 static_cast<std::int32_t>(pick(random, low, high))};
+    return Vec3i{pick_int(random, low, high), pick_int(random, low, high), pick_int(random, low, high)};
   };
   const std::int64_t kind = pick(random, 0, 9);
   switch (kind) {
@@ -40,7 +36,7 @@ std::string fill_randomly(std::mt19937_64& random, int level, Octree* octree) {
     case 4:
       what = "blocks";
       for (std::int64_t i = pick(random, 1, 60); i > 0; --i) {
-        const int block = static_cast<int>(pick(random, 0, std::max(0, level - 1)));
+        const int block = pick_int(random, 0, std::max(0, level - 1));
         const Vec3i at = anywhere(0, (side >> block) - 1);
         (void)octree->insert_block({at.x << block, at.y << block, at.z << block}, block, material());
       }
@@ -48,7 +44,7 @@ std::string fill_randomly(std::mt19937_64& random, int level, Octree* octree) {
     case 5: {
       what = "crowd";  // dense, around a point
       const Vec3i middle = anywhere(0, side - 1);
-      const auto radius = static_cast<std::int32_t>(pick(random, 1, 12));
+      const auto radius = pick_int(random, 1, 12);
       for (std::int64_t i = pick(random, 100, 4000); i > 0; --i) {
         const Vec3i step = anywhere(-radius, radius);
         (void)octree->insert(
@@ -60,7 +56,7 @@ std::string fill_randomly(std::mt19937_64& random, int level, Octree* octree) {
     }
     case 6: {
       what = "floor";
-      const std::int32_t height = static_cast<std::int32_t>(pick(random, 0, side - 1));
+      const std::int32_t height = pick_int(random, 0, side - 1);
       const std::int32_t most = std::min(side, 60);
       for (std::int32_t y = 0; y < most; ++y) {
         for (std::int32_t x = 0; x < most; ++x) {
@@ -101,8 +97,8 @@ Vec3Q8 random_point(std::mt19937_64& random, int level, std::int64_t low_worlds,
 // Sets up some camera; false where the core refuses what was drawn.
 bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* camera) {
   const int level = scene.level;
-  const auto width = static_cast<std::int32_t>(pick(random, 1, 90));
-  const auto height = static_cast<std::int32_t>(pick(random, 1, 40));
+  const auto width = pick_int(random, 1, 90);
+  const auto height = pick_int(random, 1, 40);
   const bool inside = pick(random, 0, 2) == 0;
   const Vec3Q8 eye = inside ? random_point(random, level, 0, 1) : random_point(random, level, -4, 5);
   // At something solid, or anywhere.
@@ -110,26 +106,26 @@ bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* came
   if (!scene.tree.empty() && pick(random, 0, 1) == 0) {
     const VoxelBox& bounds = scene.tree.bounds();
     for (int axis = 0; axis < 3; ++axis) {
-      target[axis] = Q8::from_raw(static_cast<std::int32_t>(
-          pick(random, std::int64_t{256} * bounds.low[axis], std::int64_t{256} * bounds.high[axis])));
+      target[axis] = Q8::from_raw(
+          pick_int(random, std::int64_t{256} * bounds.low[axis], std::int64_t{256} * bounds.high[axis]));
     }
   }
   Vec3i forward = look_at(eye, target);
   switch (pick(random, 0, 5)) {
     case 0: {  // along an axis
-      const int axis = static_cast<int>(pick(random, 0, 2));
+      const int axis = pick_int(random, 0, 2);
       const std::int32_t sign = pick(random, 0, 1) == 0 ? -1 : 1;
       forward = {};
       forward[axis] = sign;
       break;
     }
     case 1:  // in a plane
-      forward[static_cast<int>(pick(random, 0, 2))] = 0;
+      forward[pick_int(random, 0, 2)] = 0;
       break;
     default:
       break;
   }
-  const int bits = pick(random, 0, 3) == 0 ? static_cast<int>(pick(random, 8, 20)) : 0;
+  const int bits = pick(random, 0, 3) == 0 ? pick_int(random, 8, 20) : 0;
   if (pick(random, 0, 2) == 0) {
     OrthographicView view;
     view.eye = eye;
@@ -194,13 +190,11 @@ WideScene scene_of(ConstBytes tree, const std::string& what) {
 }
 
 Vec3i random_voxel(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
-  return {static_cast<std::int32_t>(pick(random, low, high)),
-          static_cast<std::int32_t>(pick(random, low, high)),
-          static_cast<std::int32_t>(pick(random, low, high))};
+  return {pick_int(random, low, high), pick_int(random, low, high), pick_int(random, low, high)};
 }
 
 WideScene random_scene(std::mt19937_64& random) {
-  const int level = static_cast<int>(pick(random, 1, 12));
+  const int level = pick_int(random, 1, 12);
   std::string what;
   // Lists of boxes alone are made where a budget holds no others.
   const wide::ListKind kind = pick(random, 0, 2) == 0 ? wide::ListKind::kBoxes : wide::ListKind::kFastest;
@@ -234,16 +228,16 @@ bool random_frame(std::mt19937_64& random, const WideScene& scene, FrameCase* fr
   }
   set_depth_range(scene, frame);
   if (pick(random, 0, 9) == 0) {
-    shading.near_q8 = static_cast<std::int32_t>(pick(random, INT32_MIN, INT32_MAX));
-    shading.far_q8 = static_cast<std::int32_t>(pick(random, INT32_MIN, INT32_MAX));
+    shading.near_q8 = pick_int(random, INT32_MIN, INT32_MAX);
+    shading.far_q8 = pick_int(random, INT32_MIN, INT32_MAX);
   }
   Band& band = frame->band;
   band.format = static_cast<PixelFormat>(pick(random, 0, kPixelFormats - 1));
   const std::int32_t height = frame->camera.height_px();
-  band.first_row = pick(random, 0, 1) == 0 ? 0 : static_cast<std::int32_t>(pick(random, 0, height - 1));
+  band.first_row = pick(random, 0, 1) == 0 ? 0 : pick_int(random, 0, height - 1);
   band.first_row -= band.first_row % band_row_multiple(band.format);
-  band.rows = pick(random, 0, 1) == 0 ? height - band.first_row
-                                      : static_cast<std::int32_t>(pick(random, 0, height - band.first_row));
+  band.rows =
+      pick(random, 0, 1) == 0 ? height - band.first_row : pick_int(random, 0, height - band.first_row);
   if (band.first_row + band.rows < height) {
     band.rows -= band.rows % band_row_multiple(band.format);
   }
@@ -328,7 +322,7 @@ wide::Options random_options(std::mt19937_64& random) {
 }
 
 void use_random_instruction_set(std::mt19937_64& random) {
-  wide::use_instruction_set(static_cast<int>(pick(random, 0, wide::instruction_set_count() - 1)));
+  wide::use_instruction_set(pick_int(random, 0, wide::instruction_set_count() - 1));
 }
 
 }  // namespace thimble::tests

@@ -3,16 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <map>
-#include <random>
 #include <stdexcept>
-#include <vector>
 
 #include "reference/reference.h"
-#include "support/counts.h"
 #include "support/ray_cases.h"
 
 using namespace thimble::reference;
@@ -100,7 +94,7 @@ Hit by_midpoints(const BitGrid& grid, const Ray& ray) {
 Voxel random_size(std::mt19937_64& random, int largest) {
   Voxel size{};
   for (int& side : size) {
-    side = static_cast<int>(pick(random, 1, largest));
+    side = pick_int(random, 1, largest);
   }
   return size;
 }

@@ -5,17 +5,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdlib>
 #include <iostream>
-#include <random>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "reference/reference.h"
 #include "reference/secondary.h"
-#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/light/host/optics.h"
@@ -99,9 +93,9 @@ class Cells {
 // Boxes of few materials, so that solid blocks of many sizes meet; sometimes every voxel by chance, or one
 // material through and through.
 Cells random_cells(std::mt19937_64& random) {
-  Cells cells(static_cast<int>(pick(random, 1, 6)));
-  const int materials = static_cast<int>(pick(random, 1, 3));
-  const auto any = [&] { return static_cast<int>(pick(random, kAir, materials - 1)); };
+  Cells cells(pick_int(random, 1, 6));
+  const int materials = pick_int(random, 1, 3);
+  const auto any = [&] { return pick_int(random, kAir, materials - 1); };
   const std::int64_t kind = pick(random, 0, 5);
   if (kind == 0) {
     for (int z = 0; z < cells.side(); ++z) {
@@ -121,8 +115,8 @@ Cells random_cells(std::mt19937_64& random) {
     reference::Voxel high{};
     const std::int64_t size = pick(random, 1, cells.side());
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = static_cast<int>(pick(random, 0, cells.side() - 1));
-      high[axis] = low[axis] + static_cast<int>(pick(random, 1, size));
+      low[axis] = pick_int(random, 0, cells.side() - 1);
+      high[axis] = low[axis] + pick_int(random, 1, size);
     }
     cells.fill(low, high, any());
   }
@@ -295,8 +289,8 @@ class Judge {
   // Not before its own t, but before the least more; and before any fraction as cross products say.
   void check_before(const Ray& ray, const Hit& hit) {
     ++tally_.rays;
-    const RayPoint any{static_cast<std::int32_t>(pick(random_, 0, INT32_MAX >> pick(random_, 0, 30))),
-                       static_cast<std::int32_t>(pick(random_, 1, INT32_MAX >> pick(random_, 0, 30)))};
+    const RayPoint any{pick_int(random_, 0, INT32_MAX >> pick(random_, 0, 30)),
+                       pick_int(random_, 1, INT32_MAX >> pick(random_, 0, 30))};
     __extension__ typedef __int128 Int128;
     const bool expected = hit.kind == HitKind::kHit && Int128{hit.t_numerator} * any.t_denominator <
                                                            Int128{any.t_numerator} * hit.t_denominator;
@@ -325,8 +319,7 @@ class Judge {
     const bool smaller = looks_to_smaller(ray, hit);
     Ray away{start_on_face(ray, hit), reflect(ray.direction, hit.axis)};
     if (pick(random_, 0, 1) == 0) {
-      away.direction = occlusion_direction(static_cast<int>(pick(random_, 0, kOcclusionDirections - 1)),
-                                           hit.axis, smaller);
+      away.direction = occlusion_direction(pick_int(random_, 0, kOcclusionDirections - 1), hit.axis, smaller);
     }
     REQUIRE(leaves_face(away.direction, hit.axis, smaller));
     Hit next;
@@ -342,7 +335,7 @@ class Judge {
     Ray into{start_on_face(ray, hit), shorten(ray.direction)};
     for (int axis = 0; axis < 3; ++axis) {
       if (axis != hit.axis && pick(random_, 0, 1) == 0) {
-        into.direction[axis] = static_cast<std::int32_t>(pick(random_, -kMaxShort, kMaxShort));
+        into.direction[axis] = pick_int(random_, -kMaxShort, kMaxShort);
       }
     }
     if (!enters_face(into.direction, hit.axis, looks_to_smaller(ray, hit))) {
@@ -434,13 +427,13 @@ TEST_CASE(
   int wrong = 0;
   int starts = 0;
   for (int i = 0; i < 4000; ++i) {
-    const int level = static_cast<int>(pick(random, 1, kMaxLevel));
+    const int level = pick_int(random, 1, kMaxLevel);
     const int block_level = static_cast<int>(pick(random, 0, 3) == 0 ? pick(random, 0, level) : 0);
     const int side = 1 << block_level;
     reference::Block block;
     block.log2_side = block_level;
     for (int& corner : block.lowest) {
-      corner = side * static_cast<int>(pick(random, 0, (1 << (level - block_level)) - 1));
+      corner = side * pick_int(random, 0, (1 << (level - block_level)) - 1);
     }
     RayCases cases(random(), {1 << level, 1 << level, 1 << level}, {block.lowest});
     for (int j = 0; j < 40; ++j) {
@@ -471,8 +464,8 @@ TEST_CASE(
         Vec3i low;
         Vec3i high;
         for (int a = 0; a < 3; ++a) {
-          low[a] = static_cast<std::int32_t>(pick(random, -(1 << 21), 1 << 20));
-          high[a] = low[a] + static_cast<std::int32_t>(pick(random, 1, 1 << pick(random, 0, 20)));
+          low[a] = pick_int(random, -(1 << 21), 1 << 20);
+          high[a] = low[a] + pick_int(random, 1, 1 << pick(random, 0, 20));
         }
         const Vec3Q8 on =
             start_on_plane(tests::to_core(ray), judged.axis, static_cast<std::int32_t>(plane), low, high);
@@ -506,7 +499,7 @@ TEST_CASE("leave_medium: merged blocks -> crossed whole as media, entered as blo
     Octree pool;
     REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &pool) == Status::kOk);
     for (int i = 0; i < 700; ++i) {
-      const auto at = [&] { return static_cast<std::int32_t>(pick(random, 0, 15)); };
+      const auto at = [&] { return pick_int(random, 0, 15); };
       const std::int32_t x = at();
       const std::int32_t y = at();
       REQUIRE(pool.insert({x, y, at()}, static_cast<std::uint8_t>(1 + x / 2 % 2)) == Status::kOk);
@@ -561,12 +554,12 @@ TEST_CASE("ray_towards: two points -> a ray that is at the second at the t given
     std::int64_t largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const std::int64_t reach = std::int64_t{1} << pick(random, 0, 22);
-      from[axis] = Q8::from_raw(static_cast<std::int32_t>(pick(random, -reach, reach)));
+      from[axis] = Q8::from_raw(pick_int(random, -reach, reach));
       to[axis] = Q8::from_raw(
           static_cast<std::int32_t>(pick(random, 0, 4) == 0 ? from[axis].raw : pick(random, -reach, reach)));
       largest = std::max(largest, std::abs(std::int64_t{to[axis].raw} - from[axis].raw));
     }
-    const int bits = static_cast<int>(pick(random, 2, 20));
+    const int bits = pick_int(random, 2, 20);
     Ray ray;
     RayPoint place;
     if (!ray_towards(from, to, bits, &ray, &place)) {

@@ -4,14 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <iostream>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "reference/reference.h"
-#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/trace/ray.h"
@@ -30,11 +25,11 @@ std::vector<reference::Voxel> block_world(int level, std::mt19937_64& random) {
   std::vector<reference::Voxel> voxels;
   const std::int64_t blocks = pick(random, 1, 40);
   for (std::int64_t i = 0; i < blocks && voxels.size() < 60000; ++i) {
-    const int block_level = static_cast<int>(pick(random, 0, std::min(level - 1, 4)));
+    const int block_level = pick_int(random, 0, std::min(level - 1, 4));
     const int side = 1 << block_level;
     reference::Voxel corner{};
     for (int& component : corner) {
-      component = side * static_cast<int>(pick(random, 0, (1 << (level - block_level)) - 1));
+      component = side * pick_int(random, 0, (1 << (level - block_level)) - 1);
     }
     for (int z = 0; z < side; ++z) {
       for (int y = 0; y < side; ++y) {
@@ -88,7 +83,7 @@ void run_world(std::uint64_t seed, std::int64_t rays, RunTotals& totals) {
   World world;
   int level = 0;
   if (family < 2) {
-    level = static_cast<int>(pick(random, 1, 6));
+    level = pick_int(random, 1, 6);
     const auto kind = static_cast<WorldKind>(pick(random, 0, std::int64_t{kWorldKinds} - 1));
     world = make_world(kind, {1 << level, 1 << level, 1 << level}, random);
   } else if (family < 4) {
@@ -96,21 +91,21 @@ void run_world(std::uint64_t seed, std::int64_t rays, RunTotals& totals) {
     const std::int64_t longest = pick(random, 0, 1) == 0 ? 8 : 50;
     reference::Voxel size{};
     for (int& side : size) {
-      side = static_cast<int>(pick(random, 1, longest));
+      side = pick_int(random, 1, longest);
     }
     world = make_world(kind, size, random);
   } else if (family < 5) {
-    level = static_cast<int>(pick(random, 7, 12));
+    level = pick_int(random, 7, 12);
     const WorldKind kinds[3] = {WorldKind::kSingle, WorldKind::kSparse, WorldKind::kCorners};
     world = make_world(kinds[pick(random, 0, 2)], {1 << level, 1 << level, 1 << level}, random);
   } else {
-    level = static_cast<int>(pick(random, 2, 9));
+    level = pick_int(random, 2, 9);
     world.name = "blocks";
     world.size = {1 << level, 1 << level, 1 << level};
     world.voxels = block_world(level, random);
   }
   const unsigned materials = pick(random, 0, 2) == 0 ? static_cast<unsigned>(pick(random, 2, 5)) : 1;
-  const int rank_shift = static_cast<int>(pick(random, kMinRankShift, kMaxRankShift));
+  const int rank_shift = pick_int(random, kMinRankShift, kMaxRankShift);
   const SceneUnderTest scene(world.size, world.voxels, materials, seed, rank_shift);
   totals.different_bytes += scene.same_bytes() ? 0 : 1;
 

@@ -3,13 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <random>
-#include <vector>
 
 #include "portable/rays.h"
 #include "reference/reference.h"
-#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/trace/ray.h"
@@ -66,7 +62,7 @@ Voxels random_voxels(std::mt19937_64& random, int level, int count) {
   for (int i = 0; i < count; ++i) {
     reference::Voxel voxel{};
     for (int& component : voxel) {
-      component = static_cast<int>(pick(random, 0, (1 << level) - 1));
+      component = pick_int(random, 0, (1 << level) - 1);
     }
     voxels.push_back(voxel);
   }
@@ -173,14 +169,14 @@ TEST_CASE("trace: merged blocks of a coarsened tree -> lowest corner, exact t, t
   std::mt19937_64 random(61);
   int merged_hits = 0;
   for (int world = 0; world < 30; ++world) {
-    const int level = static_cast<int>(pick(random, 2, 5));
+    const int level = pick_int(random, 2, 5);
     const int side = 1 << level;
     const unsigned materials = world % 2 == 0 ? 1 : 3;
     std::vector<std::uint8_t> bytes(Octree::octree_bytes(40000));
     Octree pool;
     REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &pool) == Status::kOk);
     for (const reference::Voxel& voxel :
-         random_voxels(random, level, static_cast<int>(pick(random, 4, side * side * side / 4)))) {
+         random_voxels(random, level, pick_int(random, 4, side * side * side / 4))) {
       REQUIRE(pool.insert({voxel[0], voxel[1], voxel[2]}, material_at(voxel, materials, 61)) == Status::kOk);
     }
     // One block that is truly full among the merged ones.

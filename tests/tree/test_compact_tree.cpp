@@ -1,11 +1,6 @@
 // The compact tree's bytes: how many, and which; and the Morton keys that they are made from.
 #include <doctest/doctest.h>
 
-#include <cstdint>
-#include <random>
-#include <vector>
-
-#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/compact_tree.h"
@@ -49,11 +44,11 @@ TEST_CASE(
     "compact tree: any voxels, materials and rank shift -> pool and keys give the same bytes, sound ones") {
   std::mt19937_64 random(1);
   for (int world = 0; world < 40 * kScale; ++world) {
-    const int level = static_cast<int>(pick(random, 1, 6));
+    const int level = pick_int(random, 1, 6);
     const auto kind = static_cast<WorldKind>(pick(random, 0, std::int64_t{kWorldKinds} - 1));
     const World voxels = make_world(kind, {1 << level, 1 << level, 1 << level}, random);
     const unsigned materials = world % 2 == 0 ? 1 : 3;
-    const int rank_shift = static_cast<int>(pick(random, kMinRankShift, kMaxRankShift));
+    const int rank_shift = pick_int(random, kMinRankShift, kMaxRankShift);
     const SceneUnderTest scene(voxels.size, voxels.voxels, materials, 5, rank_shift);
     CHECK(scene.same_bytes());
     const CompactTree& tree = scene.compact();

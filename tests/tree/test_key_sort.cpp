@@ -3,17 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstring>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "scene/built_scene.h"
 #include "scene/host_memory.h"
 #include "scene/key_sort.h"
 #include "scene/point_tree.h"
 #include "scene/scene_source.h"
-#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/compact_tree.h"
@@ -36,7 +31,7 @@ std::vector<Key> random_keys(std::mt19937_64& random, int bits, std::int64_t cou
   std::vector<Key> keys;
   const std::int64_t kind = pick(random, 0, 4);
   const std::uint64_t place = random() & all;
-  const int spread = static_cast<int>(pick(random, 0, bits));
+  const int spread = pick_int(random, 0, bits);
   for (std::int64_t i = 0; i < count; ++i) {
     std::uint64_t key = random() & all;
     switch (kind) {
@@ -64,7 +59,7 @@ void check_sorted(std::mt19937_64& random, int bits) {
   const std::vector<Key> keys = random_keys<Key>(random, bits, count);
   std::vector<Key> expected = keys;
   std::sort(expected.begin(), expected.end());
-  const int threads = static_cast<int>(pick(random, 1, 4));
+  const int threads = pick_int(random, 1, 4);
   const std::size_t most = key_sort_scratch_bytes(keys.size(), threads);
   CHECK(most <= keys.size());
   // All the scratch there may be, some of it, or none.
@@ -110,7 +105,7 @@ class Voxels : public tools::SceneSource {
 
 // Points, crowds and solid boxes; every third time voxels repeat, with other materials.
 Voxels random_world(std::mt19937_64& random, int least_level = 1) {
-  const int level = static_cast<int>(pick(random, least_level, 12));
+  const int level = pick_int(random, least_level, 12);
   const std::int32_t side = std::int32_t{1} << level;
   const bool single = pick(random, 0, 1) == 0;
   const std::int64_t materials = pick(random, 1, 4);
@@ -173,8 +168,8 @@ TEST_CASE("key sort: any keys, scratch and number of threads -> what std::sort g
   CAPTURE(seed);
   std::mt19937_64 random(seed);
   for (int list = 0; list < kLists; ++list) {
-    check_sorted<std::uint32_t>(random, static_cast<int>(pick(random, 3, 30)));
-    check_sorted<std::uint64_t>(random, static_cast<int>(pick(random, 3, 44)));
+    check_sorted<std::uint32_t>(random, pick_int(random, 3, 30));
+    check_sorted<std::uint64_t>(random, pick_int(random, 3, 44));
   }
 }
 
@@ -186,7 +181,7 @@ TEST_CASE("key sort: any voxels, repeats, materials and threads -> the tree that
     CAPTURE(world);
     const Voxels source = random_world(random);
     tools::BuildOptions options;
-    options.threads = static_cast<int>(pick(random, 1, 3));
+    options.threads = pick_int(random, 1, 3);
     options.memory_bytes = std::uint64_t{8} << 20;
     const tools::BuiltScene built(source, options);
     const HeapBytes expected = tree_by_octree(source);

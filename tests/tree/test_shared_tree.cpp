@@ -3,14 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
-#include <map>
-#include <random>
-#include <string>
-#include <vector>
 
-#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "support/subtree_count.h"
@@ -98,10 +91,10 @@ struct Pool {
     REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
     const std::int64_t pieces = pick(random, 0, 120);
     for (std::int64_t i = 0; i < pieces; ++i) {
-      const int block = static_cast<int>(pick(random, 0, std::min(level, 3)));
+      const int block = pick_int(random, 0, std::min(level, 3));
       Vec3i corner;
       for (int axis = 0; axis < 3; ++axis) {
-        corner[axis] = static_cast<std::int32_t>(pick(random, 0, (1 << (level - block)) - 1)) << block;
+        corner[axis] = pick_int(random, 0, (1 << (level - block)) - 1) << block;
       }
       REQUIRE(octree.insert_block(corner, block, static_cast<std::uint8_t>(pick(random, 0, materials - 1))) ==
               Status::kOk);
@@ -120,7 +113,7 @@ TEST_CASE(
     "shared tree: random worlds, rays and widths -> the hits of the compact tree and of the reference") {
   std::mt19937_64 random(601);
   for (int world = 0; world < 40 * kWorldScale; ++world) {
-    const int level = static_cast<int>(pick(random, 1, world % 8 == 0 ? 12 : 6));
+    const int level = pick_int(random, 1, world % 8 == 0 ? 12 : 6);
     const WorldKind kind = level > 6 ? WorldKind::kSparse
                                      : static_cast<WorldKind>(pick(random, 0, std::int64_t{kWorldKinds} - 1));
     const World voxels = make_world(kind, {1 << level, 1 << level, 1 << level}, random);
@@ -164,7 +157,7 @@ TEST_CASE("shared tree: solid blocks of several materials, coarsened ones -> the
   std::mt19937_64 random(77);
   int merged = 0;
   for (int world = 0; world < 40 * kWorldScale; ++world) {
-    const int level = static_cast<int>(pick(random, 1, 7));
+    const int level = pick_int(random, 1, 7);
     CAPTURE(world);
     Pool pool(level, random, world % 3 == 0 ? 1U : 200U, world % 2 == 0);
     const HeapBytes bytes = compact_of(pool.octree);
@@ -182,7 +175,7 @@ TEST_CASE("shared tree: solid blocks of several materials, coarsened ones -> the
 TEST_CASE("shared tree: small worlds of one material -> as many nodes and bytes as counting by hand gives") {
   std::mt19937_64 random(3);
   for (int world = 0; world < 60; ++world) {
-    const int level = static_cast<int>(pick(random, 1, 5));
+    const int level = pick_int(random, 1, 5);
     const auto kind = static_cast<WorldKind>(world % static_cast<int>(kWorldKinds));
     const World voxels = make_world(kind, {1 << level, 1 << level, 1 << level}, random);
     CAPTURE(voxels.name);

@@ -42,7 +42,7 @@ constexpr ColorOfFaces kSets[] = {
 lit::Spot random_spot(std::mt19937_64& random, int level) {
   const std::int64_t side = std::int64_t{1} << level;
   lit::Spot spot;
-  spot.face = {static_cast<int>(pick(random, 0, 2)), pick(random, 0, 1) == 0};
+  spot.face = {pick_int(random, 0, 2), pick(random, 0, 1) == 0};
   const Vec3i voxel = random_voxel(random, 0, side);
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t part = axis == spot.face.axis || pick(random, 0, 1) == 0 ? 0 : pick(random, 1, 255);

@@ -77,8 +77,8 @@ void check_places(std::mt19937_64& random, const WideScene& scene, const wide::R
   std::vector<wide::PixelPlace> places;
   std::vector<std::uint8_t> expected;
   for (std::int64_t i = pick(random, 0, 100); i > 0; --i) {
-    const auto x = static_cast<std::int32_t>(pick(random, 0, frame.camera.width_px() - 1));
-    const auto y = static_cast<std::int32_t>(pick(random, 0, frame.camera.height_px() - 1));
+    const auto x = pick_int(random, 0, frame.camera.width_px() - 1);
+    const auto y = pick_int(random, 0, frame.camera.height_px() - 1);
     std::uint8_t pixel[3];
     CHECK(render_lit_band(lit.effects, scene.tree, frame.camera.window(x, y, 1, 1), frame.shading, lit.scene,
                           {Bytes(pixel, 3), PixelFormat::kRgb888, 0, 0, 1}, nullptr,
@@ -130,7 +130,7 @@ void check_lit_frames(std::uint64_t seed, int frames,
     Arena arena(map_bytes.span());
     wide::RayMap map;
     REQUIRE(wide::RayMap::make(scene.tree, &arena, &map, media.span()) == Status::kOk);
-    const int threads = static_cast<int>(pick(random, 1, 3));
+    const int threads = pick_int(random, 1, 3);
     const std::size_t workspace = pick(random, 0, 1) == 0
                                       ? wide::least_lit_workspace_bytes(lit.effects, lit.scene)
                                       : wide::lit_workspace_bytes(lit.effects, lit.scene) *
@@ -192,7 +192,7 @@ TEST_CASE("wide: rays to lamps in lanes -> the core's direction, place and brigh
     }
     light.reach =
         static_cast<std::uint16_t>(pick(random, 0, 1) == 0 ? pick(random, 1, 10) : pick(random, 1, 65535));
-    const int axis = static_cast<int>(pick(random, 0, 2));
+    const int axis = pick_int(random, 0, 2);
     const bool is_negative = pick(random, 0, 1) == 0;
     std::vector<std::int32_t> of[10];
     for (auto& column : of) {

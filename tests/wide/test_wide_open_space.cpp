@@ -60,7 +60,7 @@ TEST_CASE("wide: rays of occlusion that are not sent -> none would meet anything
   OpenCounts counts;
   for (int trial = 0; trial < 300; ++trial) {
     CAPTURE(trial);
-    const int level = static_cast<int>(pick(random, 2, 8));
+    const int level = pick_int(random, 2, 8);
     const std::int64_t side = std::int64_t{1} << level;
     const WideScene scene = make_scene(level, [&](Octree* octree) {
       for (std::int64_t left = pick(random, 1, 2 * side); left > 0; --left) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <string>
 #include <vector>
 
 #include "support/wide_cases.h"
@@ -55,17 +54,15 @@ bool is_before(const Hit& hit, const RayPoint& point) {
 RayPoint random_bound(std::mt19937_64& random, const Hit& hit) {
   switch (pick(random, 0, 5)) {
     case 0:
-      return {static_cast<std::int32_t>(pick(random, 0, 1)), 1};
+      return {pick_int(random, 0, 1), 1};
     case 1:
-      return {INT32_MAX, static_cast<std::int32_t>(pick(random, 1, INT32_MAX))};
+      return {INT32_MAX, pick_int(random, 1, INT32_MAX)};
     case 2:  // a reach of some voxels, about
-      return {static_cast<std::int32_t>(pick(random, 1, 1 << 12)),
-              static_cast<std::int32_t>(pick(random, 1, 1 << 22))};
+      return {pick_int(random, 1, 1 << 12), pick_int(random, 1, 1 << 22)};
     default: {  // the hit itself, or just beside it
-      const std::int32_t scale = static_cast<std::int32_t>(
-          pick(random, 1, INT32_MAX / std::max(hit.t_numerator, hit.t_denominator)));
-      return {std::max(hit.t_numerator * scale + static_cast<std::int32_t>(pick(random, -1, 1)), 0),
-              hit.t_denominator * scale};
+      const std::int32_t scale =
+          pick_int(random, 1, INT32_MAX / std::max(hit.t_numerator, hit.t_denominator));
+      return {std::max(hit.t_numerator * scale + pick_int(random, -1, 1), 0), hit.t_denominator * scale};
     }
   }
 }
@@ -75,7 +72,7 @@ RayPoint random_place(std::mt19937_64& random, const Ray& ray, const Hit& hit) {
   if (pick(random, 0, 2) == 0) {
     return point_of(hit);
   }
-  const int axis = static_cast<int>(pick(random, 0, 2));
+  const int axis = pick_int(random, 0, 2);
   const std::int32_t direction = ray.direction[axis];
   if (direction == 0 || pick(random, 0, 7) == 0) {
     return {};
@@ -119,7 +116,7 @@ void add_ray(std::mt19937_64& random, const CompactTree& tree, const Ray& ray, R
 // Hard rays, and secondary ones.
 RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_t count) {
   const int side = 1 << tree.level();
-  const auto within = [&](int low, int high) { return static_cast<int>(pick(random, low, high - 1)); };
+  const auto within = [&](int low, int high) { return pick_int(random, low, high - 1); };
   std::vector<reference::Voxel> targets;
   const VoxelBox& bounds = tree.bounds();
   for (int i = 0; i < 8 && !tree.empty(); ++i) {
@@ -289,8 +286,7 @@ TEST_CASE("rays: the material of every voxel -> the tree's") {
       const std::int64_t materials = pick(random, 1, 4);
       const WideScene scene = make_scene(level, [&](Octree* octree) {
         for (std::int64_t left = side * side; left > 0; --left) {
-          const int block =
-              static_cast<int>(pick(random, 0, std::min(level - 1, pick(random, 0, 40) == 0 ? 5 : 2)));
+          const int block = pick_int(random, 0, std::min(level - 1, pick(random, 0, 40) == 0 ? 5 : 2));
           const Vec3i at = random_voxel(random, 0, (side >> block) - 1);
           const auto material = static_cast<std::uint8_t>(pick(random, 1, materials));
           REQUIRE(octree->insert_block({at.x << block, at.y << block, at.z << block}, block, material) ==
@@ -344,8 +340,8 @@ TEST_CASE("rays: boxes -> empty where nothing solid is in them") {
       for (int turn = 0; turn < 400; ++turn) {
         VoxelBox box;
         for (int axis = 0; axis < 3; ++axis) {
-          box.low[axis] = static_cast<int>(pick(random, -3 - side, side + 3));
-          box.high[axis] = box.low[axis] + static_cast<int>(pick(random, 1, turn % 2 == 0 ? 20 : 2 * side));
+          box.low[axis] = pick_int(random, -3 - side, side + 3);
+          box.high[axis] = box.low[axis] + pick_int(random, 1, turn % 2 == 0 ? 20 : 2 * side);
         }
         const bool is_empty = made.map.is_empty(box);
         CHECK(is_empty != holds(box));

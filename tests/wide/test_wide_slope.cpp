@@ -44,10 +44,10 @@ struct Part {
 void fill(std::mt19937_64& random, int level, LitWorld* world) {
   const std::int32_t side = std::int32_t{1} << level;
   for (std::int64_t i = pick(random, 1, 4); i > 0; --i) {
-    Part part{random_voxel(random, 0, side), random_voxel(random, -12, 12),
-              static_cast<std::int32_t>(pick(random, 2, 14)), 0, static_cast<int>(pick(random, 0, 2))};
+    Part part{random_voxel(random, 0, side), random_voxel(random, -12, 12), pick_int(random, 2, 14), 0,
+              pick_int(random, 0, 2)};
     part.shell = static_cast<std::int32_t>(pick(random, 0, 1) == 0 ? pick(random, 1, 4) : 2 * side);
-    const int material = static_cast<int>(pick(random, 0, 4));
+    const int material = pick_int(random, 0, 4);
     const std::int64_t gaps = pick(random, 0, 3) == 0 ? pick(random, 2, 9) : 1000000;
     Vec3i at;
     for (at.z = 0; at.z < side; ++at.z) {
@@ -78,7 +78,7 @@ TEST_CASE("wide: slopes that are kept -> the core's normals and visits, any tabl
   int bent = 0;
   int asked = 0;
   for (int trial = 0; trial < many_or_few(40, 8); ++trial) {
-    const auto level = static_cast<int>(pick(random, 3, 5));
+    const auto level = pick_int(random, 3, 5);
     LitWorld world(level, 200000);
     fill(random, level, &world);
     const EffectSet effects = pick(random, 0, 1) == 0
@@ -100,9 +100,9 @@ TEST_CASE("wide: slopes that are kept -> the core's normals and visits, any tabl
       if (pick(random, 0, 20) == 0) {
         voxel = random_voxel(random, 0, side - 1);
       } else if (pick(random, 0, 2) == 0) {
-        voxel[static_cast<int>(pick(random, 0, 2))] += static_cast<std::int32_t>(pick(random, -1, 1));
+        voxel[pick_int(random, 0, 2)] += pick_int(random, -1, 1);
       }
-      const Face face{static_cast<int>(pick(random, 0, 2)), pick(random, 0, 1) == 0};
+      const Face face{pick_int(random, 0, 2), pick(random, 0, 1) == 0};
       const std::uint16_t index = kIndices[pick(random, 0, 3)];
       Vec3i raw = random_voxel(random, 0, 255);
       raw[face.axis] = 0;

@@ -1,11 +1,7 @@
 /// The subcommands: one file each, and one line here.
 #pragma once
 
-#include <string>
-
-namespace CLI {
-class App;
-}
+#include "commands/arguments.h"
 
 namespace thimble::tools {
 

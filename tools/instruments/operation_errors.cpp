@@ -1,7 +1,6 @@
 #include "instruments/hard_cases.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <type_traits>
@@ -211,9 +210,9 @@ struct Seen {
   Camera camera;
   int level = 0;
 };
-// Random cameras with automatic bits; those that cannot be are drawn again.
+// Random cameras with automatic bits, or with any; those that cannot be are drawn again.
 template <class View>
-Seen<View> any_camera(Draw& draw) {
+Seen<View> any_camera(Draw& draw, bool gives_bits = false) {
   constexpr bool kIsPinhole = std::is_same_v<View, PerspectiveView>;
   for (;;) {
     Seen<View> made;
@@ -224,6 +223,7 @@ Seen<View> any_camera(Draw& draw) {
     }
     made.view.forward = any_vector(draw, 30);
     made.view.up = default_up(made.view.forward);
+    made.view.direction_bits = gives_bits ? draw.from32(kMinDirectionBits, kMaxDirectionBits) : 0;
     if constexpr (kIsPinhole) {
       made.view.fov_degrees = Q16::from_raw(draw.from32(kMinFov.raw, kMaxFov.raw));
     }
@@ -253,8 +253,14 @@ Pixel pixel_of(Draw& draw, const View& view, int number) {
 
 constexpr int kPixelsACamera = 16;
 
+// In 1/65536 pixel; of the bound that a camera states itself, where its bits are given.
+double ray_unit(const Camera& camera, bool gives_bits) {
+  return gives_bits ? camera.error_bound_px_q16() : 1;
+}
+
+template <bool kGivesBits>
 void perspective_rays(Draw& draw, Found* found) {
-  const auto made = any_camera<PerspectiveView>(draw);
+  const auto made = any_camera<PerspectiveView>(draw, kGivesBits);
   const Axes axes(made.view.forward, made.view.up);
   const Real focal = made.view.height_px / 2.0L /
                      std::tan(static_cast<Real>(made.view.fov_degrees.raw) / Q16::kOne * kPi / 360);
@@ -266,12 +272,13 @@ void perspective_rays(Draw& draw, Found* found) {
     const Real depth = dot(direction, axes.forward);
     const Real off_x = focal * dot(direction, axes.right) / depth - across;
     const Real off_y = focal * dot(direction, axes.up) / depth - above;
-    found->see(std::hypot(off_x, off_y) * 65536);
+    found->see(std::hypot(off_x, off_y) * 65536 / ray_unit(made.camera, kGivesBits));
   }
 }
 
+template <bool kGivesBits>
 void parallel_rays(Draw& draw, Found* found) {
-  const auto made = any_camera<OrthographicView>(draw);
+  const auto made = any_camera<OrthographicView>(draw, kGivesBits);
   const Axes axes(made.view.forward, made.view.up);
   const Real pixel = static_cast<Real>(made.view.span.raw) / Q14::kOne / made.view.width_px;
   const Exact3 eye = real(made.view.eye);
@@ -294,7 +301,8 @@ void parallel_rays(Draw& draw, Found* found) {
       const Exact3 start = along(origin, eye, -1);
       const Real t = (depth - dot(start, axes.forward)) / dot(direction, axes.forward);
       const Exact3 point = along(start, direction, t);
-      found->see(std::hypot(dot(point, axes.right) - across, dot(point, axes.up) - above) / pixel * 65536);
+      found->see(std::hypot(dot(point, axes.right) - across, dot(point, axes.up) - above) / pixel * 65536 /
+                 ray_unit(made.camera, kGivesBits));
     }
   }
 }
@@ -501,8 +509,10 @@ void sample_means(Draw& draw, Found* found) {
 }
 
 const Operation kOperations[] = {
-    {"camera: perspective ray", "kRayErrorPxQ16", "1/65536 pixel", kRayErrorPxQ16, perspective_rays},
-    {"camera: orthographic ray", "kRayErrorPxQ16", "1/65536 pixel", kRayErrorPxQ16, parallel_rays},
+    {"camera: perspective ray", "kRayErrorPxQ16", "1/65536 pixel", kRayErrorPxQ16, perspective_rays<false>},
+    {"camera: orthographic ray", "kRayErrorPxQ16", "1/65536 pixel", kRayErrorPxQ16, parallel_rays<false>},
+    {"camera: perspective, bits given", "error_bound_px_q16", "of its bound", 1, perspective_rays<true>},
+    {"camera: orthographic, bits given", "error_bound_px_q16", "of its bound", 1, parallel_rays<true>},
     {"depth per t, perspective", "kDepthPerTErrorQ8", "1/256 direction unit", kDepthPerTErrorQ8,
      perspective_depth_per_t},
     {"depth per t, orthographic", "kDepthPerTErrorParallelQ8", "1/256 direction unit",

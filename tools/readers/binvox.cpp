@@ -10,12 +10,6 @@
 // Source of the format: Patrick Min, "BINVOX voxel file format specification".
 #include "readers/formats.h"
 
-#include <memory>
-#include <string>
-#include <utility>
-
-#include "readers/text.h"
-
 namespace thimble::tools {
 namespace {
 
@@ -25,6 +19,8 @@ class BinvoxGrid final : public VoxelGrid {
  public:
   BinvoxGrid(const SharedBytes& file, const Progress& progress) : file_(file) {
     header();
+    set_size(dim_[0], dim_[2], dim_[1]);
+    has_color_ = false;
     ProgressMeter meter(progress, file.bytes.size());
     const std::uint64_t cells = std::uint64_t{dim_[0]} * dim_[1] * dim_[2];
     std::uint64_t covered = 0;
@@ -66,11 +62,6 @@ class BinvoxGrid final : public VoxelGrid {
       index = end;
     }
   }
-  std::array<std::int32_t, 3> size() const override {
-    return {static_cast<std::int32_t>(dim_[0]), static_cast<std::int32_t>(dim_[2]),
-            static_cast<std::int32_t>(dim_[1])};
-  }
-  bool has_color() const override { return false; }
 
  private:
   void header() {

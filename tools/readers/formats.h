@@ -1,15 +1,12 @@
 /// The readers of scene formats, one a file of this folder; what each reads of its format, and what it refuses, stands
-/// there. Which of them reads which file: read_any.h.
+/// there. Which of them reads which file: read_any.h. What readers are made of comes with it: bytes, words, what they return.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <optional>
-#include <span>
-#include <string>
-#include "readers/shared_bytes.h"
 
+#include "readers/file_bytes.h"
 #include "readers/source.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 

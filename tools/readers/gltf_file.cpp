@@ -1,13 +1,8 @@
 #include "readers/gltf_file.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
 
-#include "readers/file_bytes.h"
 #include "readers/formats.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {
@@ -21,22 +16,10 @@ constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 
 /// Of 0 bytes where it is none.
 NumberType component_type_of(const json& object, const std::string& place) {
-  switch (gltf_number(object, "componentType", place).value_or(0)) {
-    case 5120:
-      return {'i', 1};
-    case 5121:
-      return {'u', 1};
-    case 5122:
-      return {'i', 2};
-    case 5123:
-      return {'u', 2};
-    case 5125:
-      return {'u', 4};
-    case 5126:
-      return {'f', 4};
-    default:
-      return {'u', 0};
-  }
+  constexpr std::array<NumberType, 7> kTypes{
+      {{'i', 1}, {'u', 1}, {'i', 2}, {'u', 2}, {'u', 0}, {'u', 4}, {'f', 4}}};  // from 5120 on
+  const std::uint64_t at = gltf_number(object, "componentType", place).value_or(0) - 5120;
+  return at < kTypes.size() ? kTypes[at] : NumberType{'u', 0};
 }
 
 /// Counts what a parser would make of the text, so that no text is parsed that makes too much.

@@ -11,19 +11,11 @@
 //
 // Source of the format: Guillaume Chereau, the head of Goxel's "gox.c".
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
 #include <map>
-#include <memory>
-#include <optional>
 #include <set>
-#include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
 
-#include "readers/file_bytes.h"
 #include "readers/formats.h"
 #include "readers/picture.h"
 
@@ -56,8 +48,6 @@ class GoxGrid final : public VoxelGrid {
             static_cast<std::int32_t>(at[2] - low_[2]), color);
     });
   }
-  std::array<std::int32_t, 3> size() const override { return size_; }
-  bool has_color() const override { return true; }
 
  private:
   using Corner = std::array<std::int64_t, 3>;
@@ -265,7 +255,6 @@ class GoxGrid final : public VoxelGrid {
   std::vector<Block> placed_;
   std::uint64_t blocks_ = 0, left_out_ = 0;
   Corner low_{};
-  std::array<std::int32_t, 3> size_{};
 };
 
 }  // namespace

@@ -7,14 +7,9 @@
 #include "readers/height_grid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "readers/formats.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {
@@ -92,9 +87,7 @@ class Landscape final : public VoxelGrid {
       }
     }
   }
-  std::array<std::int32_t, 3> size() const override { return size_; }
   bool is_landscape() const override { return true; }
-  bool has_color() const override { return true; }
 
  private:
   static constexpr std::int16_t kHole = -1;
@@ -136,7 +129,6 @@ class Landscape final : public VoxelGrid {
     return count < 2 ? 0 : static_cast<double>(i) * static_cast<double>(points - 1) / (count - 1);
   }
 
-  std::array<std::int32_t, 3> size_{};
   std::vector<std::int16_t> tops_;
 };
 

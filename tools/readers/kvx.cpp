@@ -7,11 +7,6 @@
 // Source of the formats: Ken Silverman, "SLAB6.TXT".
 #include "readers/formats.h"
 
-#include <memory>
-#include <string>
-
-#include "readers/file_bytes.h"
-
 namespace thimble::tools {
 namespace {
 
@@ -23,31 +18,25 @@ constexpr std::size_t kKv6VoxelBytes = 8;    // blue, green, red, 0, two of z, v
 
 /// Columns of voxels, z down.
 class ColumnGrid : public VoxelGrid {
- public:
-  std::array<std::int32_t, 3> size() const override {
-    return {static_cast<std::int32_t>(size_[0]), static_cast<std::int32_t>(size_[1]),
-            static_cast<std::int32_t>(size_[2])};
-  }
-  bool has_color() const override { return true; }
-
  protected:
   explicit ColumnGrid(const SharedBytes& file) : file_(file) {}
   void read_size(ByteReader& reader) {
-    for (std::uint32_t& side : size_) {
+    for (std::uint32_t& side : sides_) {
       side = reader.u32();
       if (side < 1 || side > kGridSideLimit) {
         reader.fail("a side of " + std::to_string(side) + " voxels; there are 1 to " +
                     std::to_string(kGridSideLimit));
       }
     }
+    set_size(sides_[0], sides_[1], sides_[2]);
   }
   void put(const Visit& visit, std::uint32_t x, std::uint32_t y, std::uint32_t z, Rgb color) const {
-    visit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(size_[1] - 1 - y),
-          static_cast<std::int32_t>(size_[2] - 1 - z), color);
+    visit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(sides_[1] - 1 - y),
+          static_cast<std::int32_t>(sides_[2] - 1 - z), color);
   }
 
   SharedBytes file_;
-  std::array<std::uint32_t, 3> size_{};
+  std::array<std::uint32_t, 3> sides_{};
 };
 
 class KvxGrid final : public ColumnGrid {
@@ -62,11 +51,11 @@ class KvxGrid final : public ColumnGrid {
                        " bytes, which the file does not hold before a palette of 768");
     }
     const std::uint64_t tables =
-        4 * (std::uint64_t{size_[0]} + 1) + 2 * std::uint64_t{size_[0]} * (size_[1] + 1);
+        4 * (std::uint64_t{sides_[0]} + 1) + 2 * std::uint64_t{sides_[0]} * (sides_[1] + 1);
     if (kKvxHeaderBytes + tables > end) {
       throw InputError("the model of " + std::to_string(model_bytes) +
-                       " bytes has no room for the table of " + std::to_string(size_[0]) + " x " +
-                       std::to_string(size_[1]) + " columns");
+                       " bytes has no room for the table of " + std::to_string(sides_[0]) + " x " +
+                       std::to_string(sides_[1]) + " columns");
     }
     end_ = static_cast<std::size_t>(end);
     check_solid("the model holds no voxels");
@@ -75,16 +64,16 @@ class KvxGrid final : public ColumnGrid {
   void for_each(const Visit& visit) const override {
     const std::uint8_t* palette = file_.bytes.data() + file_.bytes.size() - kPaletteBytes;
     const auto up = [](std::uint8_t six) { return static_cast<std::uint8_t>((six & 63U) * 255 / 63); };
-    for (std::uint32_t x = 0; x < size_[0]; ++x) {
-      for (std::uint32_t y = 0; y < size_[1]; ++y) {
+    for (std::uint32_t x = 0; x < sides_[0]; ++x) {
+      for (std::uint32_t y = 0; y < sides_[1]; ++y) {
         ByteReader slabs = column(x, y);
         while (slabs.remaining() > 0) {
           const std::uint32_t top = slabs.u8();
           const std::uint32_t length = slabs.u8();
           slabs.skip(1);  // which sides are visible
-          if (top + length > size_[2]) {
+          if (top + length > sides_[2]) {
             slabs.fail("a slab reaches from " + std::to_string(top) + " to " + std::to_string(top + length) +
-                       ", below the model's " + std::to_string(size_[2]) + " voxels");
+                       ", below the model's " + std::to_string(sides_[2]) + " voxels");
           }
           for (std::uint32_t z = top; z < top + length; ++z) {
             const std::uint8_t* color = palette + 3 * std::size_t{slabs.u8()};
@@ -100,8 +89,8 @@ class KvxGrid final : public ColumnGrid {
   /// one within.
   ByteReader column(std::uint32_t x, std::uint32_t y) const {
     ByteReader row(file_.bytes.subspan(kKvxHeaderBytes + 4 * std::size_t{x}));
-    ByteReader inner(file_.bytes.subspan(kKvxHeaderBytes + 4 * (std::size_t{size_[0]} + 1) +
-                                         2 * (std::size_t{x} * (size_[1] + 1) + y)));
+    ByteReader inner(file_.bytes.subspan(kKvxHeaderBytes + 4 * (std::size_t{sides_[0]} + 1) +
+                                         2 * (std::size_t{x} * (sides_[1] + 1) + y)));
     const std::uint64_t first_row = row.u32();
     const std::uint64_t first = kKvxHeaderBytes + first_row + inner.u16();
     const std::uint64_t last = kKvxHeaderBytes + first_row + inner.u16();
@@ -131,23 +120,23 @@ class Kv6Grid final : public ColumnGrid {
     reader.skip(12);  // the pivot
     count_ = reader.u32();
     voxels_ = reader.take(kKv6VoxelBytes * std::uint64_t{count_});
-    reader.skip(4 * std::uint64_t{size_[0]});  // voxels of each row of columns
-    lengths_ = reader.take(2 * std::uint64_t{size_[0]} * size_[1]);
+    reader.skip(4 * std::uint64_t{sides_[0]});  // voxels of each row of columns
+    lengths_ = reader.take(2 * std::uint64_t{sides_[0]} * sides_[1]);
     check_solid("the model holds no voxels");
   }
 
   void for_each(const Visit& visit) const override {
     ByteReader voxels(voxels_, "the voxels", kKv6HeaderBytes);
     ByteReader lengths(lengths_, "the columns");
-    for (std::uint32_t x = 0; x < size_[0]; ++x) {
-      for (std::uint32_t y = 0; y < size_[1]; ++y) {
+    for (std::uint32_t x = 0; x < sides_[0]; ++x) {
+      for (std::uint32_t y = 0; y < sides_[1]; ++y) {
         for (std::uint32_t left = lengths.u16(); left > 0; --left) {
           const auto color = voxels.take(4);
           const std::uint32_t z = voxels.u16();
           voxels.skip(2);
-          if (z >= size_[2]) {
+          if (z >= sides_[2]) {
             voxels.fail("a voxel of column " + std::to_string(x) + "," + std::to_string(y) + " lies at " +
-                        std::to_string(z) + ", below the model's " + std::to_string(size_[2]) + " voxels");
+                        std::to_string(z) + ", below the model's " + std::to_string(sides_[2]) + " voxels");
           }
           put(visit, x, y, z, {color[2], color[1], color[0]});
         }

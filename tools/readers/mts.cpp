@@ -7,14 +7,7 @@
 // Source of the format: Minetest, comment of `src/mapgen/mg_schematic.h`.
 #include "readers/formats.h"
 
-#include <algorithm>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "readers/block_colors.h"
-#include "readers/file_bytes.h"
 
 namespace thimble::tools {
 namespace {
@@ -36,21 +29,22 @@ class MtsGrid final : public VoxelGrid {
       throw InputError("version " + std::to_string(version) +
                        " at byte offset 4 is not supported, only 1 to 4 are");
     }
-    for (std::uint32_t& side : size_) {
+    for (std::uint32_t& side : sides_) {
       side = reader.u16_be();
       if (side < 1 || side > kGridSideLimit) {
         reader.fail("a side of " + std::to_string(side) + " nodes; there are 1 to " +
                     std::to_string(kGridSideLimit));
       }
     }
+    set_size(sides_[0], sides_[2], sides_[1]);
     if (version >= 3) {
-      reader.skip(size_[1]);  // chances of the layers
+      reader.skip(sides_[1]);  // chances of the layers
     }
     const unsigned names = reader.u16_be();
     for (unsigned i = 0; i < names; ++i) {
       colors_.push_back(block_color(reader.text(reader.u16_be())));
     }
-    const std::uint64_t cells = std::uint64_t{size_[0]} * size_[1] * size_[2];
+    const std::uint64_t cells = std::uint64_t{sides_[0]} * sides_[1] * sides_[2];
     nodes_ = inflate_bytes(reader.take(reader.remaining()), Deflated::kZlib, cells * kNodeBytes, "the nodes");
     if (nodes_.size() != cells * kNodeBytes) {
       throw InputError("the nodes take " + std::to_string(nodes_.size()) + " bytes, not 4 for each of " +
@@ -68,21 +62,16 @@ class MtsGrid final : public VoxelGrid {
   }
 
   void for_each(const Visit& visit) const override {
-    const std::uint64_t cells = std::uint64_t{size_[0]} * size_[1] * size_[2];
+    const std::uint64_t cells = std::uint64_t{sides_[0]} * sides_[1] * sides_[2];
     for (std::uint64_t i = 0; i < cells; ++i) {
       if (is_there(i, cells)) {
-        const auto x = static_cast<std::int32_t>(i % size_[0]);
-        const auto y = static_cast<std::int32_t>(i / size_[0] % size_[1]);
-        const auto z = static_cast<std::int32_t>(i / size_[0] / size_[1]);
-        visit(x, static_cast<std::int32_t>(size_[2]) - 1 - z, y, *colors_[number(i)]);
+        const auto x = static_cast<std::int32_t>(i % sides_[0]);
+        const auto y = static_cast<std::int32_t>(i / sides_[0] % sides_[1]);
+        const auto z = static_cast<std::int32_t>(i / sides_[0] / sides_[1]);
+        visit(x, static_cast<std::int32_t>(sides_[2]) - 1 - z, y, *colors_[number(i)]);
       }
     }
   }
-  std::array<std::int32_t, 3> size() const override {
-    return {static_cast<std::int32_t>(size_[0]), static_cast<std::int32_t>(size_[2]),
-            static_cast<std::int32_t>(size_[1])};
-  }
-  bool has_color() const override { return true; }
 
  private:
   unsigned number(std::uint64_t i) const {
@@ -93,7 +82,7 @@ class MtsGrid final : public VoxelGrid {
     return colors_[number(i)].has_value() && (!has_chances_ || chance != 0);
   }
 
-  std::array<std::uint32_t, 3> size_{};  ///< x, y, z of the file
+  std::array<std::uint32_t, 3> sides_{};  ///< x, y, z of the file
   std::vector<std::optional<Rgb>> colors_;
   FileBytes nodes_;
   unsigned chance_bits_ = 0xFF;

@@ -12,21 +12,11 @@
 // arrays of voxels z is up.
 //
 // Source of the format: NumPy, "NEP 1 - A Simple File Format for NumPy Arrays".
-#include "readers/formats.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "readers/color_scale.h"
-#include "readers/file_bytes.h"
 #include "readers/height_grid.h"
-#include "readers/text.h"
 #include "readers/zip.h"
 
 namespace thimble::tools {
@@ -232,6 +222,7 @@ class ArrayGrid final : public VoxelGrid {
       }
       size_[axis] = static_cast<std::int32_t>(side);
     }
+    has_color_ = channels_ != 0;
     check_solid("the array holds nothing solid");
   }
   void for_each(const Visit& visit) const override {
@@ -245,8 +236,6 @@ class ArrayGrid final : public VoxelGrid {
       }
     }
   }
-  std::array<std::int32_t, 3> size() const override { return size_; }
-  bool has_color() const override { return channels_ != 0; }
 
  private:
   std::optional<Rgb> color_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -268,7 +257,6 @@ class ArrayGrid final : public VoxelGrid {
 
   Array array_;
   std::uint64_t channels_;  ///< 0 without colours
-  std::array<std::int32_t, 3> size_{};
 };
 
 std::string shape_of(const NpyHeader& header) {

@@ -11,11 +11,6 @@
 #include "readers/formats.h"
 
 #include <algorithm>
-#include <memory>
-#include <string>
-
-#include "readers/file_bytes.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {
@@ -63,8 +58,6 @@ class OctomapGrid final : public VoxelGrid {
                  [&](std::int32_t x, std::int32_t y, std::int32_t z) { visit(x, y, z, color); });
     });
   }
-  std::array<std::int32_t, 3> size() const override { return size_; }
-  bool has_color() const override { return has_color_; }
 
  private:
   void read_head() {
@@ -130,9 +123,7 @@ class OctomapGrid final : public VoxelGrid {
   SharedBytes file_;
   std::size_t nodes_offset_ = 0;
   Vec3i low_{};
-  std::array<std::int32_t, 3> size_{};
   bool is_binary_ = false;
-  bool has_color_ = false;
 };
 
 }  // namespace

@@ -10,11 +10,6 @@
 #include "readers/formats.h"
 
 #include <algorithm>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "readers/file_bytes.h"
 
 namespace thimble::tools {
 namespace {
@@ -61,8 +56,6 @@ class QubicleGrid final : public VoxelGrid {
       });
     }
   }
-  std::array<std::int32_t, 3> size() const override { return size_; }
-  bool has_color() const override { return true; }
 
  private:
   static constexpr std::uint64_t kMostCells = std::uint64_t{1} << 28;
@@ -289,8 +282,7 @@ class QubicleGrid final : public VoxelGrid {
 
   SharedBytes file_;
   std::vector<Matrix> matrices_;
-  std::array<std::int64_t, 3> low_{};   ///< in the file's axes
-  std::array<std::int32_t, 3> size_{};  ///< z up
+  std::array<std::int64_t, 3> low_{};  ///< in the file's axes
   std::uint64_t cells_ = 0;
   bool is_project_ = false, is_packed_ = false, is_bgra_ = false, is_left_handed_ = false;
 };

@@ -11,22 +11,9 @@
 // Sources of the formats: Markus Persson, "Named Binary Tag specification", 2011; Minecraft Wiki, "Schematic file format", "Structure file"; SpongePowered, "Sponge Schematic
 // Specification" 1 to 3; masa, Litematica, `LitematicaSchematic` and `LitematicaBitArray`.
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "readers/block_colors.h"
-#include "readers/file_bytes.h"
 #include "readers/formats.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {
@@ -272,8 +259,6 @@ class SchematicGrid final : public VoxelGrid {
       });
     }
   }
-  std::array<std::int32_t, 3> size() const override { return size_; }
-  bool has_color() const override { return true; }
 
  private:
   /// The compounds named Schematic and Blocks stand for the one that they are in.
@@ -533,8 +518,7 @@ class SchematicGrid final : public VoxelGrid {
   SharedBytes file_;
   BlockBox box_;  ///< until it is the only one of `boxes_`
   std::vector<BlockBox> boxes_;
-  std::array<std::int64_t, 3> low_{};   ///< x, y, z of the file
-  std::array<std::int32_t, 3> size_{};  ///< z is up
+  std::array<std::int64_t, 3> low_{};  ///< x, y, z of the file
   std::span<const std::uint8_t> data_, add_;
   BlockCode code_ = BlockCode::kBytes;
 };

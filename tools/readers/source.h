@@ -7,10 +7,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <string>
 #include <variant>
 #include <vector>
 
@@ -90,9 +86,9 @@ class VoxelGrid {
   /// one counts. z is up.
   virtual void for_each(const Visit& visit) const = 0;
   /// What the file declares on each axis, past every position; none is 0.
-  virtual std::array<std::int32_t, 3> size() const = 0;
+  const std::array<std::int32_t, 3>& size() const { return size_; }
   /// Otherwise every colour is white.
-  virtual bool has_color() const = 0;
+  bool has_color() const { return has_color_; }
   /// Its steps stand for a slope.
   virtual bool is_landscape() const { return false; }
 
@@ -105,6 +101,12 @@ class VoxelGrid {
       throw InputError(sentence);
     }
   }
+  void set_size(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    size_ = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)};
+  }
+
+  std::array<std::int32_t, 3> size_{};
+  bool has_color_ = true;
 };
 
 /// What an array of N x 3 to N x 9 numbers is taken for: points by its shape, heights where --as-heights says so.

@@ -7,10 +7,7 @@
 //
 // Sources of the format: Silver Spaceship, "The AoS map file format"; Ken Silverman, Voxlap's "VOXLAP5.TXT".
 #include <algorithm>
-#include <memory>
-#include <string>
 
-#include "readers/file_bytes.h"
 #include "readers/formats.h"
 
 namespace thimble::tools {
@@ -32,9 +29,9 @@ class VxlGrid final : public VoxelGrid {
       ByteReader reader(file.bytes, "the header");
       reader.skip(4);
       for (std::size_t axis = 0; axis < 2; ++axis) {
-        size_[axis] = reader.u32();
-        if (size_[axis] < 1 || size_[axis] > kGridSideLimit) {
-          reader.fail("a side of " + std::to_string(size_[axis]) + " columns; there are 1 to " +
+        sides_[axis] = reader.u32();
+        if (sides_[axis] < 1 || sides_[axis] > kGridSideLimit) {
+          reader.fail("a side of " + std::to_string(sides_[axis]) + " columns; there are 1 to " +
                       std::to_string(kGridSideLimit));
         }
       }
@@ -42,15 +39,16 @@ class VxlGrid final : public VoxelGrid {
       first_offset_ = static_cast<std::size_t>(reader.offset());
     }
     std::uint32_t deepest = 0;
-    size_[2] = kDepths[1];
+    sides_[2] = kDepths[1];
     const std::size_t left =
         walk([&](auto, auto, std::uint32_t first, std::uint32_t end, const std::uint8_t* colors) {
           deepest = std::max(deepest, colors == nullptr ? first : end);
         });
-    size_[2] = deepest <= kDepths[0] ? kDepths[0] : kDepths[1];
+    sides_[2] = deepest <= kDepths[0] ? kDepths[0] : kDepths[1];
+    set_size(sides_[0], sides_[1], sides_[2]);
     if (left != 0) {
-      notes.push_back(std::to_string(left) + " bytes behind the last of " + std::to_string(size_[0]) + " x " +
-                      std::to_string(size_[1]) + " columns are not read");
+      notes.push_back(std::to_string(left) + " bytes behind the last of " + std::to_string(sides_[0]) +
+                      " x " + std::to_string(sides_[1]) + " columns are not read");
     }
     check_solid("the map holds no voxels");
   }
@@ -59,18 +57,13 @@ class VxlGrid final : public VoxelGrid {
     walk([&](std::uint32_t x, std::uint32_t y, std::uint32_t first, std::uint32_t end,
              const std::uint8_t* color) {
       for (std::uint32_t z = first; z < end; ++z) {
-        visit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(size_[1] - 1 - y),
-              static_cast<std::int32_t>(size_[2] - 1 - z),
+        visit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(sides_[1] - 1 - y),
+              static_cast<std::int32_t>(sides_[2] - 1 - z),
               color == nullptr ? kHiddenColor : Rgb{color[2], color[1], color[0]});
         color += color == nullptr ? 0 : kColorBytes;
       }
     });
   }
-  std::array<std::int32_t, 3> size() const override {
-    return {static_cast<std::int32_t>(size_[0]), static_cast<std::int32_t>(size_[1]),
-            static_cast<std::int32_t>(size_[2])};
-  }
-  bool has_color() const override { return true; }
 
  private:
   /// Calls take(x, y, first, end, colors) for runs of solid voxels from the top of each column down; `colors` is null
@@ -82,9 +75,9 @@ class VxlGrid final : public VoxelGrid {
   template <class Take>
   std::size_t walk(const Take& take) const {
     ByteReader reader(file_.bytes.subspan(first_offset_), "the columns", first_offset_);
-    for (std::uint32_t column = 0; column < size_[0] * size_[1]; ++column) {
-      const std::uint32_t x = column % size_[0];
-      const std::uint32_t y = column / size_[0];
+    for (std::uint32_t column = 0; column < sides_[0] * sides_[1]; ++column) {
+      const std::uint32_t x = column % sides_[0];
+      const std::uint32_t y = column / sides_[0];
       std::span<const std::uint8_t> lower;  // second colours of the span before
       std::uint32_t hidden = 0;             // where the hidden voxels of the span before begin
       for (bool is_first = true, is_last = false; !is_last; is_first = false) {
@@ -94,7 +87,7 @@ class VxlGrid final : public VoxelGrid {
         const std::uint32_t air = reader.u8();  // means nothing in a first span
         const auto below = static_cast<std::uint32_t>(lower.size() / kColorBytes);
         is_last = words == 0;
-        if (top > end || end > size_[2] ||
+        if (top > end || end > sides_[2] ||
             (!is_first && (air < hidden || air > top || below > air - hidden)) ||
             (!is_last && words < 1 + end - top)) {
           reader.fail("column " + std::to_string(x) + "," + std::to_string(y) + " has a span from " +
@@ -111,13 +104,13 @@ class VxlGrid final : public VoxelGrid {
         lower = is_last ? lower : reader.take(kColorBytes * (words - 1 - count));
         hidden = end;
       }
-      take(x, y, hidden, size_[2], nullptr);
+      take(x, y, hidden, sides_[2], nullptr);
     }
     return reader.remaining();
   }
 
   SharedBytes file_;
-  std::array<std::uint32_t, 3> size_{512, 512, 0};
+  std::array<std::uint32_t, 3> sides_{512, 512, 0};
   std::size_t first_offset_ = 0;
 };
 

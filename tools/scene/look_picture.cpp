@@ -66,36 +66,29 @@ Status LookRows::trace(const Camera& camera, std::int32_t first_row, std::int32_
   return status;
 }
 
-Status LookRows::draw(std::int32_t y, Bytes work, Image* image, LitCounts* counts) const {
-  const int across = canvas_.look->across;
-  const auto samples = static_cast<std::size_t>(camera_.width_px()) * static_cast<std::size_t>(across);
-  const Bytes colors = work.subspan(0, 3 * samples);
-  const Bytes shares = work.subspan(3 * samples, samples);
-  const Status status = trace(y * across, across, colors, shares, counts);
-  for (std::int32_t x = 0; status == Status::kOk && x < image->width_px; ++x) {
-    finish(x, y, colors, shares, image);
-  }
-  return status;
-}
-
-Status LookRows::draw_rows(std::int32_t y, std::int32_t rows, Bytes work, Image* image,
-                           LitCounts* counts) const {
+Status LookRows::draw(std::int32_t y, std::int32_t rows, Bytes work, Image* image, LitCounts* counts) const {
   const int across = canvas_.look->across;
   const auto samples = static_cast<std::size_t>(camera_.width_px()) * static_cast<std::size_t>(across);
   const Bytes all_colors = work.subspan(0, 3 * samples * static_cast<std::size_t>(rows));
   const Bytes all_shares = work.subspan(all_colors.size, samples * static_cast<std::size_t>(rows));
-  const Status status = trace_colors(camera_, y * across, rows * across, all_colors, counts);
+  const bool has_streams = canvas_.streams != nullptr;
+  const Status status =
+      has_streams ? trace_colors(camera_, y * across, rows * across, all_colors, counts) : Status::kOk;
   if (status != Status::kOk) {
     return status;
   }
-  return each_until_error(rows, canvas_.streams->threads(), [&](std::int32_t row, std::size_t /*thread*/) {
+  const int threads = has_streams ? canvas_.streams->threads() : canvas_.threads;
+  return each_until_error(rows, threads, [&](std::int32_t row, std::size_t thread) {
+    const std::int32_t first = (y + row) * across;
     const Bytes colors = all_colors.subspan(3 * samples * static_cast<std::size_t>(row), 3 * samples);
     const Bytes shares = all_shares.subspan(samples * static_cast<std::size_t>(row), samples);
-    find_shares(camera_, (y + row) * across, across, shares);
-    for (std::int32_t x = 0; x < image->width_px; ++x) {
+    const Status traced =
+        has_streams ? Status::kOk : trace_colors(camera_, first, across, colors, counts + thread);
+    find_shares(camera_, first, across, shares);
+    for (std::int32_t x = 0; traced == Status::kOk && x < image->width_px; ++x) {
       finish(x, y + row, colors, shares, image);
     }
-    return Status::kOk;
+    return traced;
   });
 }
 
@@ -321,13 +314,7 @@ Status paint_whole(const LookCanvas& canvas, std::uint32_t exposure, const Progr
       std::min<std::size_t>(canvas.work.size / row_bytes, static_cast<std::size_t>(image.height_px)));
   std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
   return paint_rows(at_once, counts, progress, painting, [&](std::int32_t y, std::int32_t count) {
-    return canvas.streams != nullptr
-               ? rows.draw_rows(image.first_row + y, count, canvas.work, &image, &counts[0])
-               : each_until_error(count, canvas.threads, [&](std::int32_t row, std::size_t thread) {
-                   const Bytes work =
-                       canvas.work.subspan(static_cast<std::size_t>(row) * row_bytes, row_bytes);
-                   return rows.draw(image.first_row + y + row, work, &image, &counts[thread]);
-                 });
+    return rows.draw(image.first_row + y, count, canvas.work, &image, counts.data());
   });
 }
 

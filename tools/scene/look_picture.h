@@ -50,12 +50,10 @@ struct LookCanvas {
 class LookRows {
  public:
   LookRows(const LookCanvas& canvas, const Camera& camera, std::uint32_t exposure_q8);
-  /// Row `y` of the picture, whose size is the camera's, a pixel for all samples, into `image`, which holds it.
-  /// `work` holds look_work_bytes.
-  Status draw(std::int32_t y, Bytes work, Image* image, LitCounts* counts) const;
-  /// The same for `rows` rows from `y` on, by `canvas.streams`, which there is, and its threads. `work` holds
-  /// look_work_bytes for each.
-  Status draw_rows(std::int32_t y, std::int32_t rows, Bytes work, Image* image, LitCounts* counts) const;
+  /// `rows` rows of the picture from `y` on, whose size is the camera's, a pixel for all samples, into `image`, which
+  /// holds them: by `canvas.streams`, or row by row by the core. `work` holds look_work_bytes for each; `counts` are those
+  /// of each thread.
+  Status draw(std::int32_t y, std::int32_t rows, Bytes work, Image* image, LitCounts* counts) const;
 
   /// What an edge painter draws: samples with their tone and what is behind them, red, green, blue and cover,
   /// a byte each.
