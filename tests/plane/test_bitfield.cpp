@@ -11,6 +11,7 @@ namespace {
 
 using namespace thimble;
 using tests::pick;
+using tests::pick_int;
 
 const int kScale = thimble::tests::many_or_few(10, 1);
 

@@ -359,7 +359,7 @@ void draw(RenderCommand& command, const SceneSource& source, OutputSet& outputs)
 
   command.scene.build_threads = command.engine.threads;
   if (names_page(command.output.path)) {
-    render_page(command, *source, outputs);
+    render_page(command, source, outputs);
     return;
   }
   if (takes_look(command)) {

@@ -16,10 +16,10 @@ constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 
 /// Of 0 bytes where it is none.
 NumberType component_type_of(const json& object, const std::string& place) {
-  constexpr std::array<NumberType, 7> kTypes{
+  constexpr std::array<NumberType, 7> kComponentTypes{
       {{'i', 1}, {'u', 1}, {'i', 2}, {'u', 2}, {'u', 0}, {'u', 4}, {'f', 4}}};  // from 5120 on
   const std::uint64_t at = gltf_number(object, "componentType", place).value_or(0) - 5120;
-  return at < kTypes.size() ? kTypes[at] : NumberType{'u', 0};
+  return at < kComponentTypes.size() ? kComponentTypes[at] : NumberType{'u', 0};
 }
 
 /// Counts what a parser would make of the text, so that no text is parsed that makes too much.
@@ -438,11 +438,11 @@ void GltfFile::fill(std::uint64_t i, std::uint64_t count,
 
 GltfAccessor GltfFile::described(std::uint64_t i, const std::string& place) const {
   const json& entry = this->entry("accessors", i);
-  static constexpr std::array<std::pair<std::string_view, std::uint32_t>, 4> kTypes{
+  static constexpr std::array<std::pair<std::string_view, std::uint32_t>, 4> kShapes{
       {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}}};
   GltfAccessor accessor;
   const json* type = gltf_member(entry, "type");
-  for (const auto& [name, components] : kTypes) {
+  for (const auto& [name, components] : kShapes) {
     if (type != nullptr && type->is_string() && type->get_ref<const std::string&>() == name) {
       accessor.components = components;
     }
