@@ -13,7 +13,7 @@ const [, , modules, root, out] = process.argv;
 const MOST_BYTES = 1200000;
 const own = (name) => fs.readFileSync(path.join(__dirname, name), 'utf8');
 // The page's sources are scripts one after the other; each is a module of its own under Node.
-const script = ['machine.js', 'lzma.js', 'baker.js', 'look.js', 'crew.js', 'orbit.js', 'shelf.js', 'around.js', 'page.js'].map((name) => own(name)
+const script = ['machine.js', 'lzma.js', 'baker.js', 'look.js', 'crew.js', 'orbit.js', 'shelf.js', 'around.js', 'shop.js', 'page.js'].map((name) => own(name)
   .replace(/^'use strict';\n/m, '')
   .replace(/\nif \(typeof module !== 'undefined'\) \{[^]*?\n\}\n/, '\n')
   .replace(/^\s*\/\/.*\n/gm, '')).join('\n');
