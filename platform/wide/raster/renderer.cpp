@@ -23,6 +23,31 @@ bool is_sparse(const VoxelLists& lists, const Camera& camera, const Band& band, 
          words >= Workspace::kLeastSparseWords && lists.entries().size < words / kPieceWords;
 }
 
+// Whether a pixel has room for the numbers of all entries: where these are told apart (TileDrawer::draw_block), else for
+// those of a cube.
+bool numbers_fit(const VoxelLists& lists) {
+  constexpr size_t kMost = size_t{1} << kEntryBits;
+  if (lists.entries().size <= kMost) {
+    return true;
+  }
+  if (lists.has_blocks() || !lists.materials().empty()) {
+    return false;
+  }
+  uint32_t first = 0;  // of the nodes of a level
+  uint32_t end = 1;
+  for (int level = lists.tree().level(); level > kCubeLevel; --level) {
+    uint32_t children = 0;
+    for (; first < end; ++first) {
+      children += static_cast<uint32_t>(__builtin_popcount(lists.children(first)));
+    }
+    end += children;
+  }
+  while (first < end && lists.nodes()[first].entries <= kMost) {
+    ++first;
+  }
+  return first == end;
+}
+
 // Refuses the bands that `render_band` refuses.
 Status check(const VoxelLists& lists, const Camera& camera, const Band& band, Bytes workspace, int threads) {
   size_t stride = 0;
@@ -34,7 +59,7 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
   if (workspace.size < workspace_bytes(camera.width_px(), band.rows, threads)) {
     return Status::kOutOfMemory;
   }
-  return lists.entries().size > size_t{1} << kEntryBits ? Status::kTooFine : Status::kOk;
+  return numbers_fit(lists) ? Status::kOk : Status::kTooFine;
 }
 
 // How a frame is drawn.

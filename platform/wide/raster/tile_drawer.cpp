@@ -340,7 +340,9 @@ void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
   Run run = run_of(block);
   run.entries = lists_.entries().data + node.first_entry;
   run.count = node.entries;
-  run.first = node.first_entry;
+  // Nothing asks for numbers of voxels of one material. Without them a list may be longer than numbers reach.
+  const bool has_numbers = lists_.has_blocks() || !lists_.materials().empty();
+  run.first = has_numbers ? node.first_entry : 0;
   if (block.level > kCubeLevel) {
     draw_cubes(block, node, &run);
     return;
