@@ -7,7 +7,8 @@
 #   src/c            all rooms but drivers, and thimble/thimble_c.h, which only it sees
 #   tools, platform  no header of src
 #   tools            files and pictures (output, readers), then scene and particles, then viewer, web and instruments, then
-#                    commands: a folder sees itself and those before it
+#                    commands, library and python: a folder sees itself and those before it; library/examples what is
+#                    installed
 #   platform         nothing of the tests
 #   tests/portable   what a board has: <stdint.h>, <stddef.h>, "thimble/..." and themselves; so do the golden scenes
 #   tests/reference  nothing of the product: neither the core's nor the tools' headers
@@ -103,6 +104,10 @@ for room in output readers scene particles instruments viewer web; do
     "$(includes "tools/$room" | grep -E '"(output|readers|scene|particles|instruments|viewer|web|commands)/' |
       grep -vE "\"($room|$below)/" || true)"
 done
+complain "the libraries stand above the command, which sees neither" \
+  "$(includes tools platform | grep -vE '^tools/(library|python)/' | grep -E '"thimble/files(_c)?\.h"' || true)"
+complain "programs that know the installed package see nothing else" \
+  "$(includes tools/library/examples | grep '"' | grep -vE '"(thimble|wide)/' || true)"
 complain "tools and platform see public headers only, never src" \
   "$(includes tools platform | grep -E '["/]src/' || true)"
 complain "platform sees no test; the applications that do stand in tests/boards/apps" \

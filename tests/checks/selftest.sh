@@ -206,6 +206,9 @@ mkdir -p "$tree/tools/commands" "$tree/tools/instruments"
 add tools/commands/stats.cpp '#include "instruments/study.h"'
 passes layering
 fault layering 'tools/instruments sees only itself' tools/instruments/study.h '#include "commands/stats.h"'
+fault layering 'libraries stand above' tools/trace.cpp '#include "thimble/files.h"'
+mkdir -p "$tree/tools/library/examples"
+fault layering 'know the installed package' tools/library/examples/view.cpp '#include "scene/workers.h"'
 fault layering 'never src' platform/port.cpp '#include "../src/base/sum.h"'
 fault layering 'platform sees no test' platform/port.cpp '#include "portable/case.h"'
 mkdir -p "$tree/tests/boards/apps"

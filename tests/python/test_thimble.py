@@ -263,8 +263,14 @@ class Structures(unittest.TestCase):
             tree.insert_all(RANDOM.integers(0, 32, (100, 3)))
         with self.assertRaisesRegex(ValueError, "out of range"):
             tree.insert(32, 0, 0)
+        with self.assertRaisesRegex(ValueError, "out of range"):
+            tree.insert_all([(2**32, 0, 0)])
         with self.assertRaisesRegex(TypeError, "positions must be integers"):
             tree.insert_all(np.zeros((3, 3)))
+        with self.assertRaisesRegex(ValueError, "materials must be integers of 0 to 255"):
+            tree.insert_all([(1, 1, 1)], 256)
+        with self.assertRaisesRegex(ValueError, "palette must be integers of 0 to 255"):
+            tree.scene(palette=[(0.5, 0.5, 0.5)])
 
     def test_a_field_of_bits(self):
         field = thimble.BitField(70, 40)
@@ -290,6 +296,34 @@ class Structures(unittest.TestCase):
         again.step(300)
         self.assertEqual(world.crc32, again.crc32)
         self.assertNotEqual(world.crc32, thimble.Particles(count=200, seed=4).crc32)
+
+
+class Misuse(unittest.TestCase):
+    ODD = [None, "", "7", -1, 0, 1, 3, 2**31, 2**63, 1e300, float("nan"), float("inf"), (), (1, 2, 3), [[1, 2, 3]], b"vox",
+           np.zeros((0, 3)), np.zeros((2, 3)), np.ones((2, 2, 2)), np.full((3, 3), np.nan), np.ones(3, "M8[s]"), object(), {}]
+
+    def test_odd_arguments_are_errors_or_answers(self):
+        scene = thimble.from_voxels(np.ones((4, 4, 4)))
+        tree, field = thimble.Octree(3, 100), thimble.BitField(20, 10)
+        calls = [scene.trace, lambda a, b: scene.render(a, b), lambda a, b: scene.render(8, 6, eye=a, fov=b),
+                 lambda a, b: scene.depth_image(8, 6, target=a, span=b), lambda a, b: scene.bake(board=a, memory=b),
+                 lambda a, b: thimble.from_voxels(a, depth=b), lambda a, b: thimble.from_points(a, depth=b),
+                 lambda a, b: thimble.open(a if isinstance(a, bytes) else str(a) + "?", depth=b),
+                 tree.insert_all, tree.insert_box, lambda a, b: tree.insert(a, b, a), lambda a, b: tree.material(a, b, b),
+                 lambda a, b: tree.remove(a, b, a), lambda a, b: tree.scene(a), lambda a, b: tree.coarsen_to(a),
+                 lambda a, b: field.set_box(a, b, a, b), lambda a, b: field.set_disc(a, b, a), lambda a, b: field[a, b],
+                 lambda a, b: thimble._thimble.Octree(3, 9).insert_all(a, b), lambda a, b: scene._built.trace(a, b, 2),
+                 lambda a, b: tree._tree.baked(a), thimble.BitField, thimble.Octree]
+        answers = 0
+        for call in calls:
+            for _ in range(40):
+                a, b = (self.ODD[i] for i in RANDOM.integers(0, len(self.ODD), 2))
+                try:
+                    call(a, b)
+                    answers += 1
+                except (TypeError, ValueError, MemoryError, OverflowError):
+                    pass
+        self.assertGreater(answers, 10)
 
 
 class Documentation(unittest.TestCase):

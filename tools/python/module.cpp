@@ -55,6 +55,14 @@ py::bytes bytes_of(const std::vector<std::uint8_t>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+// Refuses arrays that are not `rows` rows of three; __init__.py has said it better before.
+template <class Number>
+void check_rows(const Array<Number>& array, py::ssize_t rows) {
+  if (array.ndim() != 2 || array.shape(1) != 3 || array.shape(0) != rows) {
+    throw py::value_error("an array is not of shape (N, 3)");
+  }
+}
+
 // An array that takes `content` over without a copy.
 template <class Number>
 Array<Number> array_of(std::vector<Number> content, const Shape& shape) {
@@ -124,8 +132,11 @@ constexpr std::size_t kRaysAtOnce = 4096;
 
 py::tuple trace(const Scene& scene, const Array<double>& origins, const Array<double>& directions,
                 int threads) {
-  const auto count = static_cast<std::size_t>(origins.shape(0));
-  HitArrays arrays(origins.shape(0));
+  const py::ssize_t rows = origins.size() / 3;
+  check_rows(origins, rows);
+  check_rows(directions, rows);
+  const auto count = static_cast<std::size_t>(rows);
+  HitArrays arrays(rows);
   const HitColumns columns(arrays);
   const double* const from = origins.data();
   const double* const along = directions.data();
@@ -249,7 +260,8 @@ void bind_scene(py::module_& module) {
         return std::make_unique<Scene>(
             ConstBytes{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, options);
       }))
-      .def("trace", trace)
+      .def("trace", trace, py::arg("origins").noconvert(), py::arg("directions").noconvert(),
+           py::arg("threads"))
       .def("render", render)
       .def("render_png", render_png)
       .def("depth_image", depth_image)
@@ -284,13 +296,14 @@ void bind_scene(py::module_& module) {
 class OwnOctree {
  public:
   OwnOctree(int level, std::size_t nodes)
-      : bytes_(std::make_unique<std::uint8_t[]>(Octree::octree_bytes(nodes))) {
+      : bytes_(std::make_unique_for_overwrite<std::uint8_t[]>(Octree::octree_bytes(nodes))) {
     check(Octree::make(level, {bytes_.get(), Octree::octree_bytes(nodes)}, &tree_));
   }
   Octree& tree() { return tree_; }
 
   std::size_t insert_all(const Array<std::int32_t>& positions, const Array<std::uint8_t>& materials) {
-    std::vector<Voxel> voxels(static_cast<std::size_t>(positions.shape(0)));
+    check_rows(positions, materials.size());
+    std::vector<Voxel> voxels(static_cast<std::size_t>(materials.size()));
     for (std::size_t i = 0; i < voxels.size(); ++i) {
       const std::int32_t* at = positions.data() + 3 * i;
       voxels[i] = {{at[0], at[1], at[2]}, materials.data()[i]};
@@ -302,6 +315,7 @@ class OwnOctree {
 
   // A scene's bytes: `palette` is 256 x 3 or empty.
   py::bytes baked(const Array<std::uint8_t>& palette) const {
+    check_rows(palette, palette.size() / 3);
     std::size_t size = 0;
     (void)CompactTree::make(tree_, Bytes(), nullptr, &size);  // says how large it is
     std::vector<std::uint8_t> tree_bytes(size);
@@ -329,7 +343,8 @@ void bind_octree(py::module_& module) {
            [](OwnOctree& own, std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
              check(own.tree().insert({x, y, z}, material));
            })
-      .def("insert_all", &OwnOctree::insert_all)
+      .def("insert_all", &OwnOctree::insert_all, py::arg("positions").noconvert(),
+           py::arg("materials").noconvert())
       .def("insert_box",
            [](OwnOctree& own, const std::array<std::int32_t, 3>& low, const std::array<std::int32_t, 3>& high,
               std::uint8_t material) {
@@ -350,7 +365,7 @@ void bind_octree(py::module_& module) {
       .def("capacity", [](OwnOctree& own) { return own.tree().capacity(); })
       .def("voxel_count", [](OwnOctree& own) { return own.tree().voxels(); })
       .def("solid_added", [](OwnOctree& own) { return own.tree().solid_added(); })
-      .def("baked", &OwnOctree::baked);
+      .def("baked", &OwnOctree::baked, py::arg("palette").noconvert());
 }
 
 Array<bool> cells_of(const BitField& field) {

@@ -66,6 +66,14 @@ def _triples(name: str, given: Any) -> _np.ndarray:
     return array
 
 
+def _bytes(name: str, given: Any) -> _np.ndarray:
+    array = _numbers(name, given, "integers of 0 to 255")
+    if array.size and (array.dtype.kind == "f" or array.min() < 0 or array.max() > 255):
+        raise ValueError(f"{name} must be integers of 0 to 255; its type is {array.dtype}, from {array.min()} to "
+                         f"{array.max()}")
+    return _np.ascontiguousarray(array, _np.uint8)
+
+
 class Hits(NamedTuple):
     """What rays hit first; rays of shape (..., 3) give arrays of shape (...) and (..., 3).
 
@@ -286,8 +294,8 @@ class Octree:
         rows = _triples("positions", positions)
         if rows.dtype.kind == "f" or rows.ndim != 2:
             raise TypeError(f"positions must be integers of shape (N, 3); they are {rows.dtype} of {rows.shape}")
-        kinds = _np.broadcast_to(_np.asarray(materials, _np.uint8), rows.shape[:1])
-        return self._tree.insert_all(_np.ascontiguousarray(rows, _np.int32), _np.ascontiguousarray(kinds))
+        kinds = _np.broadcast_to(_bytes("materials", materials), rows.shape[:1])
+        return self._tree.insert_all(_np.clip(rows, -1, 1 << 12).astype(_np.int32, "C"), _np.ascontiguousarray(kinds))
 
     def insert_box(self, low: Sequence[int], high: Sequence[int], material: int = 0) -> None:
         """Makes all voxels from `low` up to but without `high` solid; what is done when room ends stays."""
@@ -336,7 +344,7 @@ class Octree:
 
     def scene(self, palette: Any = ()) -> Scene:
         """A scene of what is solid now. palette: uint8 of shape (N, 3), a colour a material, N up to 256."""
-        colors = _np.ascontiguousarray(palette, _np.uint8).reshape(-1, 3)
+        colors = _bytes("palette", palette).reshape(-1, 3)
         return Scene(_thimble.Scene(self._tree.baked(colors), "octree.oct", []))
 
 
