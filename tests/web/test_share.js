@@ -5,6 +5,7 @@ const fs = require('fs');
 const path = require('path');
 const {Chromium} = require('./chromium.js');
 const {test, is, holds, end} = require('./check.js');
+const made = require('./files.js');
 
 const [, , thimble] = process.argv;
 const work = path.resolve('build/web/tests');
@@ -35,7 +36,7 @@ function crcOf(scene, ...words) {
   run('render', scene, '-o', path.join(work, 'share.png'), '--stats', stats, ...words);
   return JSON.parse(fs.readFileSync(stats, 'utf8')).frame_crc32;
 }
-// Opens the file, hands it to `judge` and requires that nothing was asked of a network and nothing was wrong.
+// Hands the opened file to `judge`; fails on a request to a network and on an error that the page reports.
 async function shown(file, options, judge) {
   const browser = await Chromium.open(`file://${file}`, {width: WIDTH, height: HEIGHT, ...options});
   await browser.until('document.readyState === "complete"');
@@ -58,10 +59,11 @@ const placed = async (browser) => {
 async function main() {
   await test('a scene: at rest the pixels of render, also from elsewhere; the same bytes again', async () => {
     const size = ['--size', `${WIDTH}x${HEIGHT}`];
+    const largest = fs.readFileSync(share('castle')).toString();
+    const scene = largest.match(/data-scene>([^<]*)/)[1].length;
+    holds(`${largest.length - scene} bytes beside the scene`, largest.length - scene < MOST_PAGE_BYTES);
     const file = share('castle', ...size);
     const bytes = fs.readFileSync(file);
-    const scene = bytes.toString().match(/data-scene>([^<]*)/)[1].length;
-    holds(`${bytes.length - scene} bytes beside the scene`, bytes.length - scene < MOST_PAGE_BYTES);
     holds('the same bytes', bytes.equals(fs.readFileSync(share('castle', ...size))));
     await shown(file, {}, async (browser) => {
       is('the title', await browser.eval('document.title'), 'castle');
@@ -120,6 +122,16 @@ async function main() {
     await shown(file, {media: [{name: 'prefers-reduced-motion', value: 'reduce'}]}, async (browser) => {
       await browser.until(REST, 100);
       is('it plays', await browser.eval('shared.plays'), false);
+    });
+    const film = path.join(work, 'share.vox');
+    fs.writeFileSync(film, made.vox(16, 3));
+    await shown(share(film, '--frames', '0:2', '--size', `${WIDTH}x${HEIGHT}`), {}, async (browser) => {
+      await browser.until('globalThis.shared?.frame === 2');
+      await browser.until('shared.frame === 1');
+      await browser.key(' ');
+      await browser.until(REST, 100);
+      const frame = await browser.eval('shared.frame');
+      is(`frame ${frame}`, await browser.canvasCrc(), crcOf(film, '--frame', String(frame), '--size', `${WIDTH}x${HEIGHT}`));
     });
     await shown(share('water,depth=4', '--size', `${WIDTH}x${HEIGHT}`), {}, async (browser) => {
       await browser.until(REST, 100);

@@ -22,6 +22,7 @@ namespace thimble::tools {
 namespace {
 
 constexpr std::size_t kMostErrorBytes = 400;
+constexpr int kWaitSeconds = 19;  // for a disk, and for processors that others use
 
 // Numbers of the signals that clean_up_on_signals() catches: this process has nothing to clean up.
 void die_by_signals() {
@@ -41,7 +42,7 @@ void limit_this_process(const PictureLimits& limits) {
   most(RLIMIT_CPU, static_cast<std::uint64_t>(limits.seconds));
   most(RLIMIT_CORE, 0);
   most(RLIMIT_FSIZE, 0);
-  ::alarm(static_cast<unsigned>(5 * limits.seconds));
+  ::alarm(static_cast<unsigned>(limits.seconds + kWaitSeconds));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace thimble::tools {
 
 struct PictureLimits {
-  int seconds = 1;                 ///< of processor time; with what it waits for, five times as many
+  int seconds = 1;                 ///< of processor time; the process waits 19 s more at most
   std::uint64_t memory_bytes = 0;  ///< all of the process: program, file, voxels and picture
   bool coarse = false;             ///< a mesh has no more voxels a side than the picture has pixels
 };

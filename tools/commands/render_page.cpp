@@ -25,6 +25,7 @@ namespace {
 
 constexpr std::uint64_t kMostTemplateBytes = std::uint64_t{4} << 20;
 constexpr std::size_t kMostPosterBytes = 60000;
+constexpr std::size_t kMostPreviewBytes = 8000;
 constexpr std::int32_t kPreviewPx = 320;  // the longer side of what stands for the file in a list
 constexpr int kFramesASecond = 10;
 
@@ -187,7 +188,7 @@ void render_page(const RenderCommand& command, const SceneSource& source, Output
   fill_in(&page, "turn", shortest(static_cast<double>(command.output.turntable) / kFramesASecond));
   fill_in(&page, "background", std::to_string(background_number(command.look.wishes.background)));
   fill_in(&page, "ground", std::to_string(command.look.wishes.ground ? *command.look.wishes.ground : -1));
-  fill_in(&page, "preview", base64(poster_file(draw_look(small, source).image, kMostPosterBytes)));
+  fill_in(&page, "preview", base64(poster_file(draw_look(small, source).image, kMostPreviewBytes)));
   fill_in(&page, "poster", base64(poster_file(picture.image, kMostPosterBytes)));
   fill_in(&page, "scenes", scene_scripts(command, source, picture));
   outputs[kPicture]->write(page);
