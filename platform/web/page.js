@@ -207,7 +207,9 @@ async function start() {
     else say(`This link shows ${state.wanted.file}, which stayed where it was made: drop that file here.`);
   } catch (error) {
     if (own !== generation) return;
-    say(`${current().title}: ${error.message}`, true);
+    // Of a board to buy in words for who buys it.
+    say(`${current().title}: ${error.message.replace(/^takes ([\d,]+) bytes at depth \d+, \S+ has ([\d,]+) bytes of flash for a scene behind the image: [\d,]+ bytes too many/,
+      'takes $1 bytes, and this board has room for $2')}`, true);
     offer(error.offers ?? []);
     prepareCanvas(board);
   } finally {
@@ -666,7 +668,9 @@ $('pause').onclick = () => {
   showPause();
 };
 function showPause() {
-  $('pause').setAttribute('aria-pressed', String(state.look ? !state.turns : state.paused));
+  $('pause').textContent = !state.look ? 'Pause' : state.turns ? 'Stop' : 'Turn';
+  if (state.look) $('pause').removeAttribute('aria-pressed');
+  else $('pause').setAttribute('aria-pressed', String(state.paused));
 }
 $('act').onclick = () => restart({look: !state.look, ...AFRESH});
 $('full').onclick = () => $('screen').requestFullscreen();

@@ -34,7 +34,6 @@ function showChoices(board) {
   $('act').disabled = current().scene === null;
   $('board').value = state.board;
   $('board').disabled = document.querySelector('[data-hold="select"]').disabled = state.look;
-  $('pause').textContent = state.look ? 'Stop' : 'Pause';
   $('get').hidden = $('none').hidden = true;
   const glass = state.look ? undefined : SHELF[board.name]?.glass;
   $('true').hidden = !glass;
