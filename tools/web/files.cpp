@@ -8,6 +8,7 @@
 #include <map>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "readers/file_bytes.h"
 #include "readers/mapped_file.h"
@@ -152,18 +153,18 @@ HostMemory::HostMemory(std::size_t size) : size_(size) {
   }
 }
 
-// The largest that is free again. Pages of a WebAssembly memory take none of the machine's until they are written, but they
+// Those that are free again. Pages of a WebAssembly memory take none of the machine's until they are written, but they
 // are never given back: the next frame of an animation is built where the one before was.
 namespace {
-Bytes kept_memory;
+std::vector<Bytes> kept_memory;
 }  // namespace
 
 HostMemory HostMemory::largest() {
   HostMemory memory;
   if (!kept_memory.empty()) {
-    memory.data_ = kept_memory.data;
-    memory.size_ = kept_memory.size;
-    kept_memory = {};
+    memory.data_ = kept_memory.back().data;
+    memory.size_ = kept_memory.back().size;
+    kept_memory.pop_back();
     return memory;
   }
   for (std::size_t size = std::size_t{512} << 20; size >= std::size_t{1} << 20; size /= 2) {
@@ -177,11 +178,9 @@ HostMemory HostMemory::largest() {
 }
 
 HostMemory::~HostMemory() {
-  if (size_ > kept_memory.size) {
-    std::swap(data_, kept_memory.data);
-    kept_memory.size = size_;
+  if (data_ != nullptr) {
+    kept_memory.push_back({data_, size_});
   }
-  std::free(data_);
 }
 
 }  // namespace thimble::tools
