@@ -13,7 +13,10 @@ if [ "${1:-}" = --job ]; then
     case $2 in
       examples) sh "$here/examples.sh" "$THIMBLE_FIRMWARE/examples" || status=1 ;;
       emulate) sh "$here/emulate.sh" || status=1 ;;
-      frames) sh "$here/golden_frames.sh" || status=1 ;;
+      frames)
+        sh "$here/golden_frames.sh" || status=1
+        sh "$here/scene_frames.sh" || status=1
+        ;;
       *)
         sh "$here/board.sh" "$2" || status=1
         sh "$here/silicon.sh" "$2" || status=1

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -76,7 +77,7 @@ TEST_CASE("boards: with a scene -> what fits is what bake and render say") {
   const std::uint64_t stack = platform::find_board("microbit")->stack_bytes;
   CHECK(line_of(text, "microbit", second) == "microbit              143,360   8.8 %        " +
                                                  tools::grouped(stack + 720) + "   yes        " +
-                                                 tools::grouped(stack + 33088) + "    no        7");
+                                                 tools::grouped(stack + 33088) + "    no        7       4.3");
   const auto rows = nlohmann::ordered_json::parse(read_text(json_path));
   REQUIRE(rows.size() == platform::boards().size);
   const std::vector<std::string> csv = lines_of(read_text(csv_path));
@@ -110,6 +111,9 @@ TEST_CASE("boards: with a scene -> what fits is what bake and render say") {
       CHECK_FALSE(fits(deepest + 1));
     }
     CHECK(row["deepest_tried_depth"] == 9);
+    CHECK(row["scene_frames_per_second_estimate"].get<double>() *
+              row["scene_frame_instructions"].get<double>() ==
+          doctest::Approx(board.core_mhz * 1e6 * (row["scene_frame_instructions"] == 0 ? 0 : 1)));
   }
   // The pool is what an octree of the scene takes.
   CHECK(run_command({"info", "spheres", "--structure", "pool", "--memory", rows[0]["pool_bytes"].dump()})
@@ -157,4 +161,40 @@ TEST_CASE("boards: data on standard output -> no table between; bad usage and in
   CommandLimits full;
   full.output_path = "/dev/full";
   CHECK(run_command({"boards"}, full).status == 1);
+}
+
+TEST_CASE("boards: a scene's frames -> within a fifth of what bench measures, eight scenes on six boards") {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("b.json");
+  const auto table = std::filesystem::path(__FILE__).parent_path() / "../budgets/scene_frames.csv";
+  std::map<std::string, std::map<std::string, double>> measured;
+  for (const std::string& line : lines_of(read_text(table.string()))) {
+    const std::size_t first = line.find(';');
+    const std::size_t last = line.rfind(';');
+    if (line[0] != '#' && !line.starts_with("board;")) {
+      measured[line.substr(first + 1, last - first - 1)][line.substr(0, first)] =
+          std::stod(line.substr(last + 1));
+    }
+  }
+  REQUIRE(measured.size() == 8);
+  for (const auto& [scene, boards_of] : measured) {
+    boards({scene, "--json", path});
+    CHECK(boards_of.size() == 6);
+    for (const auto& row : nlohmann::ordered_json::parse(read_text(path))) {
+      const auto found = boards_of.find(row["board"]);
+      if (found != boards_of.end()) {
+        CAPTURE(scene);
+        CAPTURE(found->first);
+        CHECK(row["scene_frame_instructions"].get<double>() == doctest::Approx(found->second).epsilon(0.2));
+      }
+    }
+  }
+}
+
+TEST_CASE("boards: the smallest that turns a scene at 10 a second; none that does not hold it") {
+  CHECK(table({"castle"}).find("\nthe smallest board that turns it at 10 frames a second: lm3s6965evb\n") !=
+        std::string::npos);
+  const std::string text = table({"points:500,depth=11"});
+  CHECK(line_of(text, "lm3s6965evb", text.find("scene flash")).ends_with(" -"));
+  CHECK(text.find("\nno board turns it at 10 frames a second\n") != std::string::npos);
 }

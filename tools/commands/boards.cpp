@@ -14,6 +14,7 @@
 #include "readers/oct.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
+#include "scene/board_frames.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
@@ -37,7 +38,8 @@ struct SceneSizes {
   std::map<int, std::uint64_t> bytes_of_depth;  ///< baked, for the depths tried
   EffectSet effects = Effect::kNone;            ///< that the scene states
   bool is_scalable = false;
-  int most_depth = 0;  ///< deeper ones were not to be tried
+  int most_depth = 0;                                       ///< deeper ones were not to be tried
+  std::map<std::string, std::uint64_t> frame_instructions;  ///< by board
 };
 
 const char* screen_name(platform::Screen screen) {
@@ -83,6 +85,11 @@ SceneSizes measure(const BoardsCommand& command) {
   sizes.pool_bytes = built.high_water_bytes();
   sizes.bytes_of_depth[sizes.depth] = sizes.baked_bytes;
   sizes.most_depth = sizes.depth;
+  BoardFrames frames(*source);
+  for (const BoardFacts& board : platform::boards()) {
+    const bool fits = sizes.baked_bytes <= scene_flash_bytes(board);
+    sizes.frame_instructions[board.name] = fits ? frames.instructions(board) : 0;
+  }
   sizes.is_scalable = source->is_scalable();
   if (!sizes.is_scalable) {
     return sizes;
@@ -135,9 +142,25 @@ std::uint64_t building_ram_bytes(const SceneSizes& sizes, const BoardFacts& boar
   return drawing_ram_bytes(board) + sizes.pool_bytes;
 }
 
-// One instruction a cycle: no waiting for flash, and no two at once.
+// One instruction a cycle: no waiting for flash, and no two at once. 0 of no instructions.
+double frames_per_second(const BoardFacts& board, std::uint64_t instructions) {
+  return instructions == 0 ? 0 : board.core_mhz * 1e6 / static_cast<double>(instructions);
+}
 double frames_per_second(const BoardFacts& board) {
-  return board.core_mhz * 1e6 / board.frame_instructions;
+  return frames_per_second(board, board.frame_instructions);
+}
+
+// The one with the least memory that turns the scene at so many frames a second, or null.
+const BoardFacts* smallest(const SceneSizes& sizes, double frames) {
+  const BoardFacts* found = nullptr;
+  for (const BoardFacts& board : platform::boards()) {
+    const auto bytes = [](const BoardFacts& one) { return std::uint64_t{one.ram_bytes} + one.flash_bytes; };
+    if (frames_per_second(board, sizes.frame_instructions.at(board.name)) >= frames &&
+        (found == nullptr || bytes(board) < bytes(*found))) {
+      found = &board;
+    }
+  }
+  return found;
 }
 
 JsonRow row_of(const BoardFacts& board, const SceneSizes* sizes) {
@@ -170,6 +193,9 @@ JsonRow row_of(const BoardFacts& board, const SceneSizes* sizes) {
     row["builds_in_ram"] = building_ram_bytes(*sizes, board) <= board.ram_bytes ? 1 : 0;
     row["deepest_depth"] = deepest(*sizes, board);
     row["deepest_tried_depth"] = sizes->bytes_of_depth.rbegin()->first;
+    row["scene_frame_instructions"] = sizes->frame_instructions.at(board.name);
+    row["scene_frames_per_second_estimate"] =
+        frames_per_second(board, sizes->frame_instructions.at(board.name));
   }
   return row;
 }
@@ -200,19 +226,21 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
                      (sizes.voxels == 1 ? " voxel" : " voxels") + " at depth " + std::to_string(sizes.depth) +
                      ", " + grouped(sizes.baked_bytes) + " bytes baked, " + grouped(sizes.pool_bytes) +
                      " bytes as a pool built on the chip\n\n";
-  std::vector<Cells> rows{
-      {"board", "scene flash", "scene", "RAM to draw", "fits", "RAM to build", "fits", "deepest"}};
+  std::vector<Cells> rows{{"board", "scene flash", "scene", "RAM to draw", "fits", "RAM to build", "fits",
+                           "deepest", "a second"}};
   for (const BoardFacts& board : platform::boards()) {
     const std::uint64_t flash = scene_flash_bytes(board, sizes.effects);
     const std::uint64_t building = building_ram_bytes(sizes, board);
     const auto yes = [](bool fits) { return fits ? "yes" : "no"; };
     const double share = 100 * static_cast<double>(sizes.baked_bytes) / static_cast<double>(flash);
     const int depth = deepest(sizes, board);
+    const double frames = frames_per_second(board, sizes.frame_instructions.at(board.name));
     const bool open_end = sizes.is_scalable && depth == sizes.most_depth && depth < kMaxLevel;
     rows.push_back({board.name, grouped(flash), sizes.baked_bytes <= flash ? fixed(share, 1) + " %" : "no",
                     grouped(drawing_ram_bytes(board)), yes(drawing_ram_bytes(board) <= board.ram_bytes),
                     grouped(building), yes(building <= board.ram_bytes),
-                    depth == 0 ? "-" : (open_end ? ">= " : "") + std::to_string(depth)});
+                    depth == 0 ? "-" : (open_end ? ">= " : "") + std::to_string(depth),
+                    frames == 0 ? "-" : fixed(frames, 1)});
   }
   text += columns_of(rows, 1);
   text +=
@@ -221,7 +249,13 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
       "where there is room. RAM: renderer, a band of " +
       std::to_string(kBoardBandRows) +
       " rows and the stack; to build it also the\npool. deepest: the deepest --depth that fits the flash" +
-      (sizes.is_scalable ? "" : "; this scene has one depth only") + ".\n";
+      (sizes.is_scalable ? "" : "; this scene has one depth only") +
+      ". a second: exact frames\nwithout light, where its brick map fits, too, within a fifth.\n\n";
+  constexpr int kWantedFrames = 10;
+  const BoardFacts* const board = smallest(sizes, kWantedFrames);
+  text += board == nullptr
+              ? std::string("no board turns it at 10 frames a second\n")
+              : std::string("the smallest board that turns it at 10 frames a second: ") + board->name + "\n";
   return text;
 }
 
@@ -247,7 +281,7 @@ void add_boards(CLI::App& app) {
   CLI::App* sub = add_command(
       app, "boards",
       "The boards and their limits; with a scene also what of it fits: its baked bytes against the flash, "
-      "the RAM to draw it and to build it on the chip, and the deepest --depth.");
+      "the RAM to draw it and to build it on the chip, the deepest --depth, and frames a second.");
   command->scene.add_scene(*sub, false);
   for (const char* name : {"--depth", "--as-voxels", "--z-up"}) {
     sub->get_option(name)->needs(sub->get_option("scene"));
@@ -259,7 +293,9 @@ void add_boards(CLI::App& app) {
       "(at one instruction a cycle), scene_flash_bytes (flash less code), state_bytes, band_bytes, "
       "drawing_ram_bytes (state, band and stack); with a scene also depth, voxels, baked_bytes, fits_flash, "
       "pool_bytes, building_ram_bytes (those and the pool), builds_in_ram, deepest_depth (0: none tried), "
-      "deepest_tried_depth");
+      "deepest_tried_depth, scene_frame_instructions (of an exact frame without light, within a fifth; 0 "
+      "where "
+      "scene and brick map do not fit), scene_frames_per_second_estimate");
   add_path_option(*sub, "--json", "FILE.json", &command->files.json, "the same, an array of objects");
   add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar");
   when_chosen(*sub, [command] { run(*command); });
