@@ -67,11 +67,15 @@ int surface_share(const CompactTree& tree) {
 bool has_round_glass(const CompactTree& tree, const LitDescription& lighting) {
   constexpr int kOthers = 2;
   std::array<std::int32_t, kMaxSurfaces> balance{};
+  const auto is_clear = [](const Surface& surface) {
+    return surface.kind == SurfaceKind::kGlass ||
+           (surface.kind == SurfaceKind::kMetal && surface.mirror >= 128 && surface.roughness == 0);
+  };
+  if (std::none_of(lighting.surfaces.begin(), lighting.surfaces.end(), is_clear)) {
+    return false;
+  }
   walk_blocks(tree, [&](const Vec3i& voxel, int level, std::uint8_t material) {
-    const Surface& surface = lighting.surfaces[material];
-    const bool is_polished =
-        surface.kind == SurfaceKind::kMetal && surface.mirror >= 128 && surface.roughness == 0;
-    if (level > 0 || (surface.kind != SurfaceKind::kGlass && !is_polished)) {
+    if (level > 0 || !is_clear(lighting.surfaces[material])) {
       return;
     }
     const auto has = [&](Vec3i at, int axis, int by) {

@@ -74,11 +74,11 @@ std::optional<std::array<std::int32_t, 3>> voxel_at(const CloudPoint& point, std
   const std::array<double, 3> position{point.x, point.y, point.z};
   std::array<std::int32_t, 3> voxel{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // Written so that a NaN is outside too. -0.0 is 0.
+    // Written so that a NaN is outside too. -0.0 is 0. Of what is not negative the whole part is the floor.
     if (!(position[axis] >= 0 && position[axis] < side)) {
       return std::nullopt;
     }
-    voxel[axis] = static_cast<std::int32_t>(std::floor(position[axis]));
+    voxel[axis] = static_cast<std::int32_t>(position[axis]);
   }
   return voxel;
 }
