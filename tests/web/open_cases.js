@@ -137,7 +137,7 @@ async function judgeBoards(url, thimble, work) {
         twin.type('c'); while (twin.frames < ${Math.max(...[...shown.keys()].map(Number)) + 1}) twin.step(); return twin.output; })()`);
       const here = new Map([...uart.matchAll(/^frame (\d+) crc (\w+)/gm)].map(([, frame, crc]) => [frame, crc]));
       const both = [...shown].filter(([frame]) => here.has(frame));
-      holds(`frames ${[...shown.keys()]} are told in both`, both.length >= 2);
+      holds(`frames ${[...shown.keys()]} are in both`, both.length >= 2);
       for (const [frame, crc] of both) is(`frame ${frame} of the booted file`, crc, here.get(frame));
     });
   }
