@@ -56,7 +56,7 @@ TEST_CASE("boards: without a scene -> every board's limits, in order, in 100 col
     last = at;
   }
   CHECK(line_of(text, "lm3s6965evb") ==
-        "lm3s6965evb       cortex-m3      128x64 gray4    oled           5     65,536     262,144   " +
+        "lm3s6965evb       cortex-m3      128x64 gray4        oled           5     65,536     262,144   " +
             tools::grouped(platform::find_board("lm3s6965evb")->stack_bytes));
   // 700 MHz by 51 million instructions.
   const platform::BoardFacts* const pi = platform::find_board("raspi0");

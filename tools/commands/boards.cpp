@@ -250,7 +250,7 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
       std::to_string(kBoardBandRows) +
       " rows and the stack; to build it also the\npool. deepest: the deepest --depth that fits the flash" +
       (sizes.is_scalable ? "" : "; this scene has one depth only") +
-      ". a second: exact frames\nwithout light, where its brick map fits, too, within a fifth.\n\n";
+      ".\na second: exact frames without light, where its brick map fits, too, within a fifth.\n\n";
   constexpr int kWantedFrames = 10;
   const BoardFacts* const board = smallest(sizes, kWantedFrames);
   text += board == nullptr
