@@ -79,7 +79,10 @@ TEST_CASE("saving: the command -> only what is not the default, quoted where a s
   view.eye = {-1.5, 2, 1.0 / 8};
   view.target = {0, 0, 0};
   view.fov_degrees = 35;
-  CHECK(render_command({"x.ply", {}, false, true}, view, {"--samples", "4"}, "b.png") ==
+  SceneArguments upright;
+  upright.scene = "x.ply";
+  upright.z_up = true;
+  CHECK(render_command(upright, view, {"--samples", "4"}, "b.png") ==
         "thimble render x.ply --z-up --size 640x480 --eye -1.5,2,0.125 --target 0,0,0 --fov 35 --samples 4 "
         "-o b.png");
   CHECK(quoted_for_shell("") == "''");

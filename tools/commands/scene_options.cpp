@@ -25,7 +25,8 @@ namespace thimble::tools {
 void SceneOptions::add_scene(CLI::App& app, bool required) {
   app.add_option(
          "scene", arguments.scene,
-         "a file (.vox .scene .oct .ply .obj .off .stl .glb .gltf .xyz .csv .txt .tsv .pts .pcd .las .npy "
+         "a file (.vox .scene .oct .ply .obj .off .stl .glb .gltf .xyz .csv .txt .tsv .pts .pcd .las .laz "
+         ".npy "
          ".npz .asc .binvox .qb .qbcl .kvx .kv6 .vxl .gox .schematic .schem .litematic .nbt .mts .bt .ot, a "
          "Gadget-1 snapshot, .gz .zst .xz of any, a .zip of one) or a generator: points:N, cluster:N, "
          "spheres, water "

@@ -511,8 +511,8 @@ void sample_means(Draw& draw, Found* found) {
 const Operation kOperations[] = {
     {"camera: perspective ray", "kRayErrorPxQ16", "1/65536 pixel", kRayErrorPxQ16, perspective_rays<false>},
     {"camera: orthographic ray", "kRayErrorPxQ16", "1/65536 pixel", kRayErrorPxQ16, parallel_rays<false>},
-    {"camera: perspective, bits given", "error_bound_px_q16", "of its bound", 1, perspective_rays<true>},
-    {"camera: orthographic, bits given", "error_bound_px_q16", "of its bound", 1, parallel_rays<true>},
+    {"camera: perspective, by bits", "error_bound_px_q16", "of its bound", 1, perspective_rays<true>},
+    {"camera: orthographic, by bits", "error_bound_px_q16", "of its bound", 1, parallel_rays<true>},
     {"depth per t, perspective", "kDepthPerTErrorQ8", "1/256 direction unit", kDepthPerTErrorQ8,
      perspective_depth_per_t},
     {"depth per t, orthographic", "kDepthPerTErrorParallelQ8", "1/256 direction unit",
