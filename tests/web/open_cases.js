@@ -12,7 +12,7 @@ const SCREENS = {desktop: {width: 1280, height: 800}, telephone: {width: 390, he
 
 // CRC-32s of the first frames that an image tells, or null where its emulator is not here.
 function emulated(board, file, count) {
-  const [emulator, ...options] = {pico: ['rp2040js', '-carrier', 'pico-lcd-1.3'], 'pico-lcd-2': ['rp2040js', '-carrier', 'pico-lcd-2'], gba: ['mgba']}[board];
+  const [emulator, ...options] = {pico: ['rp2040js', '-carrier', 'pico-lcd-1.3'], 'pico-lcd-2': ['rp2040js', '-carrier', 'pico-lcd-2'], 'pico-oled': ['rp2040js', '-carrier', 'pico-oled'], gba: ['mgba']}[board];
   if (spawnSync('sh', [`platform/emulators/${emulator}/fetch.sh`]).status !== 0) return null;
   const shift = /BOARD_ICOUNT_SHIFT (\d+)/.exec(fs.readFileSync(`platform/boards/${board}/board.cmake`, 'utf8'))[1];
   return new Promise((done, fail) => {
