@@ -23,7 +23,7 @@ inline constexpr ProgramFlash kProgramFlash[] = {
     {"netduinoplus2", 98, 126, 105},
     {"pico", 130, 176, 120},
     {"pico-lcd-2", 130, 176, 120},
-    {"pico-oled", 130, 176, 120},
+    {"pico-oled", 115, 146, 120},
     {"raspi0", 251, 312, 170},
     {"sifive_e", 119, 154, 130},
     {"stm32vldiscovery", 88, 115, 100},
