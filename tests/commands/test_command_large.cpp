@@ -80,7 +80,12 @@ TEST_CASE("command on a scene larger than its memory: drawn from the file, as wi
   write_scene(scene, 0x7F);
   const CommandResult damaged = run_command({"-c", draw + folder.path("c.pgm")}, shell);
   CHECK(damaged.status == 1);
-  CHECK(damaged.err.find("another number of nodes than the masks call for") != std::string::npos);
+  CHECK(damaged.err.find("another number of nodes than the masks") != std::string::npos);
+
+  write_scene(scene, 0xFF);
+  std::fstream(scene, std::ios::in | std::ios::out | std::ios::binary).seekp(-1, std::ios::end).put('\x7f');
+  const CommandResult directory = run_command({"-c", draw + folder.path("d.pgm")}, shell);
+  CHECK_MESSAGE(directory.status == 1, directory.describe());
 }
 
 }  // namespace thimble::tests

@@ -58,14 +58,14 @@ TEST_CASE(
   check_refused({"render", "castle", "-o", page}, 1, {"{{title}}", "make web"});
   folder.write("share.html", kTemplate);
   const std::string scene =
-      folder.write("two & <three>.xyz", "2 2 2 255 0 0\n2 3 3 0 0 255\n3 3 3 0 255 0\n");
+      folder.write("two & <three> {{scenes}}.xyz", "2 2 2 255 0 0\n2 3 3 0 0 255\n3 3 3 0 255 0\n");
   const Words words{"render", scene, "--size", "64x48", "--turntable", "60", "-o", page};
   const Words more{"--background", "0a0b0c", "--ground", "off"};
   check_done(words + more);
   const std::string first = read_text(page);
   const Words lines = lines_of(first);
   REQUIRE(lines.size() == 12);
-  CHECK(lines[0] == "<title>two &amp; &lt;three></title>");
+  CHECK(lines[0] == "<title>two &amp; &lt;three> &#123;&#123;scenes}}</title>");
   CHECK(lines[1].starts_with("3 voxels"));
   CHECK(lines[3] == "#0a0b0c");
   CHECK(lines[4] == "#0a0b0c");

@@ -254,7 +254,7 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
   constexpr int kWantedFrames = 10;
   const BoardFacts* const board = smallest(sizes, kWantedFrames);
   text += board == nullptr
-              ? std::string("no board turns it at 10 frames a second\n")
+              ? std::string("no board is known to turn it at 10 frames a second\n")
               : std::string("the smallest board that turns it at 10 frames a second: ") + board->name + "\n";
   return text;
 }

@@ -141,7 +141,7 @@ void RenderOutput::check(bool is_transparent) const {
   const bool named_film = tools::is_film(path);
   if (!named_film && !image_kind(path)) {
     refuse_usage("--output", in_quotes(path) + " does not end in " + kImageEndings +
-                                 ", as pictures do, nor in .gif or .y4m, as films");
+                                 ", as pictures do, nor in .gif or .y4m, as films, nor in .html, as pages");
   }
   if (named_film ? !is_film() : is_film() && !is_sequence(path)) {
     refuse_usage(named_film ? std::string("a .gif and a .y4m are films, which want ") + kFilmOptions

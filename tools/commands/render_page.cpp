@@ -56,10 +56,15 @@ std::vector<std::uint8_t> deflated(std::span<const std::uint8_t> bytes) {
   return packed;
 }
 
+// Without braces, either, which are the template's.
 std::string for_html(std::string_view text) {
   std::string out;
   for (const char c : utf8_text(text, true)) {
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+    out += c == '&'   ? "&amp;"
+           : c == '<' ? "&lt;"
+           : c == '"' ? "&quot;"
+           : c == '{' ? "&#123;"
+                      : std::string(1, c);
   }
   return out;
 }

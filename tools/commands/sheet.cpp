@@ -27,6 +27,7 @@ namespace {
 
 constexpr std::size_t kMostTiles = 1024;
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{480} << 20;  // of all processes that draw
+constexpr int kMostProcesses = 4;                                 // so that each has enough of it for a scene
 constexpr int kSeconds = 10;                                      // for one scene
 constexpr int kPollMicroseconds = 2000;
 
@@ -88,14 +89,14 @@ std::vector<Tile> find_scenes(const std::string& folder) {
   return tiles;
 }
 
-// Draws them all, `command.processes` at a time.
+// Draws them all, several at a time.
 void draw_tiles(const SheetCommand& command, std::vector<Tile>* tiles) {
   ProgressBar bar("drawing", command.quiet);
   struct Work {
     std::unique_ptr<LimitedPicture> drawing{};
     Tile* tile = nullptr;
   };
-  std::vector<Work> works(static_cast<std::size_t>(command.processes));
+  std::vector<Work> works(static_cast<std::size_t>(std::min(command.processes, kMostProcesses)));
   const PictureLimits limits{kSeconds, kMemoryBytes / works.size()};
   std::size_t next = 0;
   for (std::size_t done = 0; done < tiles->size(); ::usleep(kPollMicroseconds)) {
@@ -209,7 +210,8 @@ void add_sheet(CLI::App& app) {
   add_whole_option(*sub, "--columns", "N", 1, kMostTiles, &command->columns, "pictures in a row")
       ->default_str("a little more than there are rows");
   add_threads(*sub, &command->processes,
-              "scenes drawn at once, each by a process of its own, which gets 10 s and its share of 480 MB");
+              "scenes drawn at once, 4 at most, each by a process of its own, which gets 10 s and its share "
+              "of 480 MB");
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar and no summary on standard error");
   when_chosen(*sub, [command] { run(*command); });
 }
