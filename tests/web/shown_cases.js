@@ -16,7 +16,7 @@ async function judgeShown(browser, {work, began, choose, showsItsFrame, reloaded
       const wrong = await browser.eval(`document.getElementById('said').classList.contains('wrong')`);
       if (wrong) return holds('it says why', (await browser.text('said')).includes('bytes'));
       await showsItsFrame('demo', name);
-      holds('it shows something', await browser.eval(`new Set(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data).size > 2`));
+      holds('it shows something', await browser.eval(`new Set(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((_, i) => i % 4 !== 3)).size > 1`));
     });
   }
   await test('whatever the zoom, a display is seen whole', async () => {
@@ -181,6 +181,8 @@ async function judgeWheels(browser, {began}) {
     for (const apart of [25, 30, 40, 50, 60]) await fingers('touchMove', apart);
     await browser.until(`/\\+/.test(typed)`);
     holds(`a pinch: ${await browser.eval('typed')}`, /^@\d+,\d+\.\++$/.test(await browser.eval('typed')));
+    // What the last moves call for is typed a frame later.
+    await browser.eval(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
     await browser.eval(`typed = ''`);
     for (const apart of [50, 40, 30, 25, 20]) await fingers('touchMove', apart);
     await fingers('touchEnd', 0);
