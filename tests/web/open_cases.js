@@ -150,8 +150,9 @@ async function judgeModelLink(url, work) {
     fs.writeFileSync(file, made.vox(16, 1));
     const browser = await Chromium.open(`${url}#scene=castle&look=1&size=320x240`);
     await browser.until(`document.documentElement.dataset.ready === '1'`, 30);
+    const before = await browser.eval('generation');
     await browser.drop([file]);
-    await browser.until(`viewer !== null && state.dropped !== null && viewer.phase === 'finished'`, 60);
+    await browser.until(`Number(document.documentElement.dataset.ready) > ${before} && state.dropped !== null && viewer?.phase === 'finished'`, 60);
     const wanted = await browser.canvasCrc();
     await browser.click('#link');
     await browser.until(`/model=/.test(location.hash)`);
