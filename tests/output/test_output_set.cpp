@@ -6,12 +6,14 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "output/held_signals.h"
 #include "output/output_set.h"
+#include "readers/mapped_file.h"
 #include "support/run_command.h"
 
 using namespace thimble::tools;
@@ -82,4 +84,25 @@ TEST_CASE(
   }
   CHECK(all_new != 0);
   CHECK(all_old != 0);
+}
+
+TEST_CASE("outputs: a mapped input that is cut off while it is read -> exit status 1, and nothing is left") {
+  const TemporaryFolder folder;
+  const std::string input = folder.write("input", "");
+  std::filesystem::resize_file(input, kMappedBytes);
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    clean_up_on_signals();
+    OutputSet outputs({folder.path("output")}, {input});
+    outputs[0]->write("new");
+    const SharedBytes mapped = load_shared(input, {});
+    std::filesystem::resize_file(input, 0);
+    ::_exit(2 + *static_cast<const volatile std::uint8_t*>(mapped.bytes.data()));
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 1);
+  CHECK(folder.names() == std::vector<std::string>{"input"});
 }

@@ -26,7 +26,7 @@ constexpr int kWaitSeconds = 19;  // for a disk, and for processors that others 
 
 // Numbers of the signals that clean_up_on_signals() catches: this process has nothing to clean up.
 void die_by_signals() {
-  for (const int number : {SIGHUP, SIGINT, SIGQUIT, SIGABRT, SIGALRM, SIGTERM, SIGXCPU}) {
+  for (const int number : {SIGHUP, SIGINT, SIGQUIT, SIGABRT, SIGBUS, SIGALRM, SIGTERM, SIGXCPU}) {
     std::signal(number, SIG_DFL);
   }
 }
@@ -54,7 +54,7 @@ struct LimitedPicture::Shared {
 
   std::uint8_t* pixels() { return reinterpret_cast<std::uint8_t*>(this + 1); }
   void fail(std::string_view sentence) {
-    std::copy_n(sentence.begin(), std::min(sentence.size(), error.size() - 1), error.begin());
+    sentence.copy(error.data(), error.size() - 1);
     is_done = true;
   }
   void draw(const std::string& path, std::int32_t side_px, const PictureLimits& limits) {

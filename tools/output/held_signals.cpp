@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <string_view>
 
 namespace thimble::tools {
 namespace {
@@ -15,12 +16,16 @@ std::array<std::atomic<const char*>, kMostUnfinished> unfinished{};
 std::atomic<int> holders{0};
 std::atomic<int> arrived{0};  // the signal that ends the program, as soon as nobody holds it
 
-void end_by(int number) {
+void remove_unfinished() {
   for (const std::atomic<const char*>& name : unfinished) {
     if (name != nullptr) {
       ::unlink(name);
     }
   }
+}
+
+void end_by(int number) {
+  remove_unfinished();
   std::signal(number, SIG_DFL);
   std::raise(number);
 }
@@ -34,9 +39,18 @@ extern "C" void end_unless_held(int number) {
   }
 }
 
+// Reading on in a mapped file (mapped_file.h) that another program cut off would bring the signal again.
+extern "C" void end_cut_off(int) {
+  constexpr std::string_view kSentence = "thimble: an input was cut off, or failed, while it was read\n";
+  remove_unfinished();
+  static_cast<void>(::write(STDERR_FILENO, kSentence.data(), kSentence.size()) > 0);
+  ::_exit(1);
+}
+
 }  // namespace
 
 void clean_up_on_signals() {
+  std::signal(SIGBUS, end_cut_off);
   for (const int number : {SIGHUP, SIGINT, SIGQUIT, SIGABRT, SIGALRM, SIGTERM, SIGUSR1, SIGUSR2, SIGPOLL,
                            SIGPROF, SIGVTALRM, SIGXCPU, SIGPWR, SIGSTKFLT}) {
     if (std::signal(number, end_unless_held) == SIG_IGN) {
