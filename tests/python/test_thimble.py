@@ -4,6 +4,7 @@ import io
 import json
 import os
 import pydoc
+import re
 import subprocess
 import tempfile
 import threading
@@ -139,9 +140,20 @@ class Pictures(unittest.TestCase):
         for options, sentence in (({"tilt_": 3}, '"--tilt-" is not an option of thimble render .did you mean --tilt'),
                                   ({"fov": 300}, "--fov: "),
                                   ({"depth": 4}, "--depth: says how a scene is opened, and this one is open"),
+                                  ({"help": True}, '"--help" is not an option'),
+                                  ({"shade": "co\0lor"}, "has a zero byte"),
+                                  ({"shade": "\udcff"}, r'--shade: "\\xff" is not'),
                                   ({"rows": "0:3"}, "only the command writes")):
             with self.assertRaisesRegex(thimble.Error, sentence):
                 scene.render(32, 32, **options)
+        with self.assertRaisesRegex(thimble.Error, "only the command writes"):
+            scene.bake(stats="s.json")
+        self.assertEqual(scene.render(8, 8, quiet=np.bool_(True), verbose=np.bool_(False)).shape, (8, 8, 3))
+        for threads in (0, -1, 257):
+            with self.assertRaisesRegex(ValueError, "threads must be 1 to 256"):
+                scene.trace((0, 0, 0), (1, 1, 1), threads=threads)
+            with self.assertRaisesRegex(ValueError, "threads must be 1 to 256"):
+                scene.depth_image(8, 8, threads=threads)
 
     @unittest.skipUnless(COMMAND, "THIMBLE_COMMAND names no command")
     def test_pictures_are_the_command_s_byte_for_byte(self):
@@ -214,6 +226,23 @@ class Arrays(unittest.TestCase):
                 np.testing.assert_array_equal(again.color, scene.voxels().color)
             with self.assertRaisesRegex(thimble.Error, "does not end in .vox"):
                 scene.write(os.path.join(folder, "out.xyz"))
+            with self.assertRaisesRegex(thimble.Error, "has a zero byte"):
+                scene.write(os.path.join(folder, "out\0.npy"))
+            self.assertEqual(len(os.listdir(folder)), 2)
+            with self.assertRaisesRegex(thimble.Error, "has a zero byte"):
+                thimble.open(os.path.join(folder, "out.vox") + "\0")
+
+    def test_a_path_may_hold_any_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "\udcff\udcfe.obj")
+            with open(path, "w") as file:
+                file.write("mtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 1\nusemtl no\nf 1 2 3\n")
+            scene = thimble.open(path, depth=3)
+            self.assertIn("\\xff\\xfe.obj: the materials of", scene.notes[0])
+            scene.write(path + ".npy")
+            self.assertEqual(len(thimble.open(path + ".npy")), len(scene))
+            with self.assertRaisesRegex(thimble.Error, r"\\xff\\xfe.obj does not end in .vox"):
+                scene.write(path)
 
 
 class Budgets(unittest.TestCase):
@@ -231,6 +260,21 @@ class Budgets(unittest.TestCase):
         np.testing.assert_array_equal(again.voxels().position, scene.voxels().position)
         with self.assertRaisesRegex(thimble.Error, "--coarsen makes the finest tree that fits"):
             scene.bake(memory="2K")
+
+    def test_smaller_depths_that_would_fit_are_those_of_the_bytes_that_were_given(self):
+        cloud = "\n".join(f"{x} {y} {z}" for x, y, z in RANDOM.uniform(0, 1, (300, 3))).encode()
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "cloud.xyz")
+            with open(path, "wb") as file:
+                file.write(cloud)
+            for options in ({}, {"fit": 50}):
+                with self.assertRaises(thimble.Error) as caught:
+                    thimble.open(path, depth=6, **options).bake(memory="900", effects="none")
+                depth, size = re.search(r"--depth (\d) fits with (\d+) bytes", str(caught.exception)).groups()
+                self.assertEqual(len(thimble.open(path, depth=depth, **options).bake(effects="none")), int(size))
+            with self.assertRaises(thimble.Error) as caught:
+                thimble.open(cloud, name=path, depth=6).bake(memory="900", effects="none")
+            self.assertNotIn("fits with", str(caught.exception))
 
     @unittest.skipUnless(COMMAND, "THIMBLE_COMMAND names no command")
     def test_bytes_and_rows_are_the_command_s(self):
@@ -271,6 +315,9 @@ class Structures(unittest.TestCase):
             tree.insert_all([(1, 1, 1)], 256)
         with self.assertRaisesRegex(ValueError, "palette must be integers of 0 to 255"):
             tree.scene(palette=[(0.5, 0.5, 0.5)])
+        for shape in ((257, 3), (6,), (3, 4)):
+            with self.assertRaisesRegex(ValueError, r"palette must be uint8 of shape \(N, 3\), N up to 256"):
+                tree.scene(palette=np.zeros(shape, np.uint8))
 
     def test_a_field_of_bits(self):
         field = thimble.BitField(70, 40)
@@ -296,6 +343,10 @@ class Structures(unittest.TestCase):
         again.step(300)
         self.assertEqual(world.crc32, again.crc32)
         self.assertNotEqual(world.crc32, thimble.Particles(count=200, seed=4).crc32)
+        for options in ({"gravity": (np.nan, 0)}, {"gravity": (0, -65536.5)}, {"bounciness": np.nan}, {"bounciness": 65536.5},
+                        {"speed": np.inf}, {"speed": -1}):
+            with self.assertRaisesRegex(thimble.Error, "beyond its limits"):
+                thimble.Particles(count=1, **options)
 
 
 class Misuse(unittest.TestCase):

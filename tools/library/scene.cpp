@@ -11,6 +11,7 @@
 #include "output/output_file.h"
 #include "output/output_set.h"
 #include "output/png.h"
+#include "output/units.h"
 #include "output/voxel_file.h"
 #include "readers/input_error.h"
 #include "scene/built_scene.h"
@@ -38,12 +39,20 @@ auto with_error(const Run& run) {
   }
 }
 
+// The system ends a path at its first zero byte: it would open another file.
+void check_text(const std::string& word) {
+  if (word.find('\0') != std::string::npos) {
+    throw Error(in_quotes(word) + " has a zero byte, which no path and no option has");
+  }
+}
+
 // What `words` say as options of `thimble NAME`. `is_open`: none of those that say how a scene is opened.
 template <class Add>
 void parse(const std::string& name, const Options& words, bool is_open, const Add& add) {
   CLI::App app("", "thimble");
   app.require_subcommand(1);
   CLI::App* sub = add_command(app, name, "");
+  sub->set_help_flag();  // nobody reads it here
   add(*sub);
   when_chosen(*sub, [&] {
     CLI::App opening;
@@ -54,6 +63,9 @@ void parse(const std::string& name, const Options& words, bool is_open, const Ad
       }
     }
   });
+  for (const std::string& word : words) {
+    check_text(word);
+  }
   Options reversed(words.rbegin(), words.rend());  // as CLI11 takes them
   reversed.push_back(name);
   try {
@@ -88,7 +100,7 @@ SceneOptions opening(const std::string& scene, const Options& options) {
 
 struct Scene::Parts {
   explicit Parts(const SceneOptions& options)
-      : name(options.arguments.scene),
+      : arguments(options.arguments),
         source(options.open()),
         built(options.build(*source)),
         shape(shape_of(*source, built)),
@@ -98,18 +110,22 @@ struct Scene::Parts {
     lighting.find_glow(built.compact());
     light = lit_scene_for(lighting, used, effects);
     source->keep(&built.compact());  // what is made of the source copies it
+    if (arguments.content) {
+      arguments.content = SharedBytes();  // so that no file of this name is opened in their place
+    }
   }
 
   std::shared_ptr<RenderCommand> render_command(std::int32_t width_px, std::int32_t height_px,
                                                 const Options& options) const {
     auto command = std::make_shared<RenderCommand>();
-    parse("render",
-          with_words({"-o", "picture.png", "--size", size_text(width_px, height_px)}, options, name), true,
-          [&](CLI::App& app) { add_render_options(app, command); });
+    parse(
+        "render",
+        with_words({"-o", "picture.png", "--size", size_text(width_px, height_px)}, options, arguments.scene),
+        true, [&](CLI::App& app) { add_render_options(app, command); });
     return command;
   }
 
-  std::string name;
+  SceneArguments arguments;  // it was opened with
   std::unique_ptr<SceneSource> source;
   mutable BuiltScene built;  // whose arena gets the map of many rays
   SceneShape shape;
@@ -173,6 +189,9 @@ EffectSet Scene::effects() const {
 
 Status Scene::trace(Span<const Ray> rays, Span<Hit> hits) const {
   constexpr std::size_t kRaysForMap = 1000;  // fewer are not worth the map
+  if (hits.size < rays.size) {
+    return Status::kBadArgument;
+  }
   if (rays.size >= kRaysForMap) {
     std::call_once(parts_->has_map, [&] { parts_->first_hits = wide_first_hits(&parts_->built); });
     if (parts_->first_hits) {
@@ -209,8 +228,12 @@ Image Scene::render(std::int32_t width_px, std::int32_t height_px, const Options
 std::vector<std::uint8_t> Scene::bake(const Options& options) const {
   return with_error([&] {
     const auto command = std::make_shared<BakeCommand>();
-    parse("bake", with_words({"-o", "scene.oct"}, options, parts_->name), true,
+    parse("bake", with_words({"-o", "scene.oct"}, options, parts_->arguments.scene), true,
           [&](CLI::App& app) { add_bake_options(app, command); });
+    if (!command->scene.stats_path.empty()) {
+      throw InputError("--stats is a file, which only the command writes");
+    }
+    command->scene.arguments = parts_->arguments;  // whose smaller depths are tried where it does not fit
     use_display(command->scene.board, &command->view);
     BakingOptions baking;
     return tools::bake(command.get(), *parts_->source, &baking).bytes;
@@ -221,12 +244,13 @@ std::string Scene::memory(int frames) const {
   return with_error([&] {
     StudyOptions options;
     options.frames = frames;
-    return memory_json(study_memory(*parts_->source, parts_->name, options, [](double) {}));
+    return memory_json(study_memory(*parts_->source, parts_->arguments.scene, options, [](double) {}));
   });
 }
 
 void Scene::write(const std::string& path) const {
   with_error([&] {
+    check_text(path);
     const auto format = voxel_format(path);
     if (!format || tree().empty()) {
       throw InputError(format ? "nothing is solid" : path + " does not end in .vox, .npy, .ply or .csv");
@@ -238,6 +262,12 @@ void Scene::write(const std::string& path) const {
 }
 
 std::vector<std::uint8_t> png(const Image& image) {
+  if (image.width_px < 1 || image.height_px < 1 || image.channels < 1 || image.channels > 4 ||
+      image.pixels.size() != static_cast<std::uint64_t>(image.width_px) *
+                                 static_cast<std::uint64_t>(image.height_px) *
+                                 static_cast<std::uint64_t>(image.channels)) {
+    throw Error("an image has other pixels than its sizes say");
+  }
   return png_file(image.width_px, image.height_px, image.channels, image.pixels);
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <string>
@@ -53,6 +54,16 @@ void check(Status status) {
 
 py::bytes bytes_of(const std::vector<std::uint8_t>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Text of a file or a path, which need not be UTF-8.
+py::str text_of(const std::string& text) {
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace");
+  if (decoded == nullptr) {
+    throw py::error_already_set();
+  }
+  return py::reinterpret_steal<py::str>(decoded);
 }
 
 // Refuses arrays that are not `rows` rows of three; __init__.py has said it better before.
@@ -279,7 +290,14 @@ void bind_scene(py::module_& module) {
       .def("memory", &Scene::memory, py::call_guard<py::gil_scoped_release>())
       .def("write", &Scene::write, py::call_guard<py::gil_scoped_release>())
       .def("kind", &Scene::kind)
-      .def("notes", &Scene::notes)
+      .def("notes",
+           [](const Scene& scene) {
+             py::list notes;
+             for (const std::string& note : scene.notes()) {
+               notes.append(text_of(note));
+             }
+             return notes;
+           })
       .def("has_colors", &Scene::has_colors)
       .def("level", [](const Scene& scene) { return scene.tree().level(); })
       .def("voxel_count", [](const Scene& scene) { return scene.tree().voxel_count(); })
@@ -457,6 +475,12 @@ void bind_particles(py::module_& module) {
         options.least_diameter = diameters[0];
         options.most_diameter = diameters[1];
         options.bounciness = bounciness;
+        // Beyond these limits, and those of the command, numbers would wrap round.
+        const auto most = [](double number) { return std::abs(number) <= 8192; };  // NaN is not
+        if (!most(gravity[0]) || !most(gravity[1]) || !most(speed) || speed < 0 || !(bounciness >= 0) ||
+            bounciness > 1) {
+          throw files::Error("a value of the world is beyond its limits");
+        }
         options.gravity_q16 = {static_cast<std::int32_t>(std::lround(gravity[0] * 65536)),
                                static_cast<std::int32_t>(std::lround(gravity[1] * 65536))};
         options.seed = seed;
@@ -494,7 +518,14 @@ void bind_particles(py::module_& module) {
 
 PYBIND11_MODULE(_thimble, module) {
   module.attr("__version__") = THIMBLE_VERSION;
-  py::register_exception<thimble::files::Error>(module, "Error", PyExc_ValueError);
+  static const py::exception<thimble::files::Error> error(module, "Error", PyExc_ValueError);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      std::rethrow_exception(std::move(thrown));
+    } catch (const thimble::files::Error& caught) {
+      PyErr_SetObject(error.ptr(), thimble::python::text_of(caught.what()).ptr());
+    }
+  });
   thimble::python::bind_scene(module);
   thimble::python::bind_octree(module);
   thimble::python::bind_field(module);

@@ -83,8 +83,8 @@ class THIMBLE_FILES_API Scene {
   EffectSet effects() const;
 
   /// What many rays hit first: as `closest_hit` in each, with vectors where this machine has them. `hits[i]` is of
-  /// `rays[i]`; both are equally long. The first ray outside the limits of ray.h ends it, with the status of
-  /// `closest_hit`.
+  /// `rays[i]`. kBadArgument, with nothing done, where there are fewer hits than rays; the status of `closest_hit` for the
+  /// first ray outside the limits of ray.h: what the others hit is then not said.
   Status trace(Span<const Ray> rays, Span<Hit> hits) const;
 
   /// The camera of `render`: `options` are its own (--view, --eye, --fov, ...).
@@ -103,7 +103,7 @@ class THIMBLE_FILES_API Scene {
   std::unique_ptr<const Parts> parts_;
 };
 
-/// `image` as a PNG's bytes.
+/// `image`, of 1 to 4 channels, as a PNG's bytes.
 THIMBLE_FILES_API std::vector<std::uint8_t> png(const Image& image);
 
 }  // namespace thimble::files

@@ -34,11 +34,19 @@ __version__ = _thimble.__version__
 _THREADS = min(len(_os.sched_getaffinity(0)), 64)
 
 
-def _words(options: Dict[str, Any]) -> List[str]:
-    """Keywords as the words of the command line."""
+def _threads(given: Optional[int]) -> int:
+    if given is not None and not 1 <= given <= 256:
+        raise ValueError(f"threads must be 1 to 256, not {given}")
+    return _THREADS if given is None else given
+
+
+def _words(options: Dict[str, Any]) -> List[bytes]:
+    """Keywords as the words of the command line, in the bytes of the system's paths."""
     words = []
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
+        if isinstance(value, _np.bool_):
+            value = bool(value)
         if value is None or value is False:
             continue
         if value is True:
@@ -47,7 +55,7 @@ def _words(options: Dict[str, Any]) -> List[str]:
             words += [option, ",".join(str(item) for item in _np.asarray(value).tolist())]
         else:
             words += [option, str(value)]
-    return words
+    return [_os.fsencode(word) for word in words]
 
 
 def _numbers(name: str, given: Any, what: str) -> _np.ndarray:
@@ -163,7 +171,7 @@ class Scene:
         origins, directions: numbers of shape (..., 3), in voxels; one of shape (3,) stands for all rays. An origin is
         taken to the nearest 1/256 voxel, -4 to 5 world sizes from 0. A direction has any length above 0: whole numbers
         up to 1,048,575 are taken as they are, others scaled so that the largest is that, and rounded.
-        threads: as many as there are processors unless said.
+        threads: 1 to 256; as many as there are processors unless said.
 
         Errors: ValueError names the first ray that is none.
         """
@@ -175,15 +183,16 @@ class Scene:
                              f"{from_.shape} and {along.shape}") from None
         rows = [_np.ascontiguousarray(_np.broadcast_to(array, shape), _np.float64).reshape(-1, 3)
                 for array in (from_, along)]
-        hits = self._built.trace(rows[0], rows[1], threads or _THREADS)
+        hits = self._built.trace(rows[0], rows[1], _threads(threads))
         return Hits(*(array.reshape(shape[:-1] + array.shape[1:]) for array in hits))
 
     def render(self, width: int = 800, height: int = 600, **options: Any) -> _np.ndarray:
         """The picture that `thimble render SCENE --size WIDTHxHEIGHT` writes: uint8, height x width x 3.
 
         With background="none" it has a fourth channel, how much is covered. Among the options are view="front", turn,
-        tilt, eye=(x, y, z), target, up, fov, projection="orthographic", span, shade="depth" | "face" | "color" | "mono",
-        effects="none" | "shadows,sky", samples, background, ground, engine and threads; `thimble render --help` has all.
+        tilt, eye=(x, y, z), target, up, fov, projection="orthographic", span, shade="depth" | "normal" | "color" |
+        "mono" | "ink", effects="none" | "shadows,sky", samples, background, ground, engine and threads;
+        `thimble render --help` has all.
         """
         return self._built.render(int(width), int(height), _words(options))
 
@@ -197,7 +206,7 @@ class Scene:
 
         The camera is that of `render` with the same options.
         """
-        return self._built.depth_image(int(width), int(height), _words(options), threads or _THREADS)
+        return self._built.depth_image(int(width), int(height), _words(options), _threads(threads))
 
     def voxels(self) -> Voxels:
         """All that is solid, as arrays."""
@@ -221,7 +230,7 @@ class Scene:
 
     def write(self, path: Union[str, "_os.PathLike[str]"]) -> None:
         """Writes the voxels as .vox, .npy, .ply or .csv, by the path's ending."""
-        self._built.write(_os.fspath(path))
+        self._built.write(_os.fsencode(path))
 
 
 def open(scene: Union[str, "_os.PathLike[str]", bytes], *, name: str = "", **options: Any) -> Scene:
@@ -231,15 +240,15 @@ def open(scene: Union[str, "_os.PathLike[str]", bytes], *, name: str = "", **opt
     options: those of `thimble info`: depth, as_voxels, z_up, frame, fit, clip=(x, y, z, x, y, z), ...
     """
     if isinstance(scene, (bytes, bytearray, memoryview)):
-        return Scene(_thimble.Scene(bytes(scene), name, _words(options)))
-    return Scene(_thimble.Scene(_os.fspath(scene), _words(options)))
+        return Scene(_thimble.Scene(bytes(scene), _os.fsencode(name), _words(options)))
+    return Scene(_thimble.Scene(_os.fsencode(scene), _words(options)))
 
 
 def _of_array(array: _np.ndarray, options: Dict[str, Any]) -> Scene:
     """An array as the reader of .npy takes it."""
     file = _io.BytesIO()
     _np.save(file, array, allow_pickle=False)
-    return Scene(_thimble.Scene(file.getvalue(), "array.npy", _words(options)))
+    return Scene(_thimble.Scene(file.getvalue(), b"array.npy", _words(options)))
 
 
 def from_voxels(array: Any, **options: Any) -> Scene:
@@ -295,7 +304,8 @@ class Octree:
         if rows.dtype.kind == "f" or rows.ndim != 2:
             raise TypeError(f"positions must be integers of shape (N, 3); they are {rows.dtype} of {rows.shape}")
         kinds = _np.broadcast_to(_bytes("materials", materials), rows.shape[:1])
-        return self._tree.insert_all(_np.clip(rows, -1, 1 << 12).astype(_np.int32, "C"), _np.ascontiguousarray(kinds))
+        return self._tree.insert_all(_np.clip(rows.astype(_np.int64), -1, 1 << 12).astype(_np.int32, "C"),
+                                     _np.ascontiguousarray(kinds))
 
     def insert_box(self, low: Sequence[int], high: Sequence[int], material: int = 0) -> None:
         """Makes all voxels from `low` up to but without `high` solid; what is done when room ends stays."""
@@ -344,8 +354,10 @@ class Octree:
 
     def scene(self, palette: Any = ()) -> Scene:
         """A scene of what is solid now. palette: uint8 of shape (N, 3), a colour a material, N up to 256."""
-        colors = _bytes("palette", palette).reshape(-1, 3)
-        return Scene(_thimble.Scene(self._tree.baked(colors), "octree.oct", []))
+        colors = _bytes("palette", palette)
+        if colors.size and (colors.ndim != 2 or colors.shape[1] != 3 or len(colors) > 256):
+            raise ValueError(f"palette must be uint8 of shape (N, 3), N up to 256; its shape is {colors.shape}")
+        return Scene(_thimble.Scene(self._tree.baked(colors.reshape(-1, 3)), b"octree.oct", []))
 
 
 class BitField:
@@ -417,7 +429,8 @@ class Particles:
     """The paper's particle world: balls in a bit field, where a collision costs the same however many there are.
 
     width, height: cells. count: balls, of random `diameters` (least, most), places and velocities up to `speed` cells a
-    step on each axis. gravity: cells a step a step. The same arguments give the same balls on every machine.
+    step on each axis (to 8192). gravity: cells a step a step. bounciness: 0 to 1. What is beyond is an Error. The same
+    arguments give the same balls on every machine.
     """
 
     def __init__(self, width: int = 800, height: int = 600, count: int = 693, *, diameters: Tuple[int, int] = (2, 12),
