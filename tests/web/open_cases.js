@@ -152,13 +152,13 @@ async function judgeModelLink(url, work) {
     await browser.until(`document.documentElement.dataset.ready === '1'`, 30);
     const before = await browser.eval('generation');
     await browser.drop([file]);
-    await browser.until(`Number(document.documentElement.dataset.ready) > ${before} && state.dropped !== null && viewer?.phase === 'finished'`, 60);
+    await browser.until(`Number(document.documentElement.dataset.ready) > ${before} && state.dropped !== null && document.documentElement.dataset.phase === 'finished'`, 60);
     const wanted = await browser.canvasCrc();
     await browser.click('#link');
     await browser.until(`/model=/.test(location.hash)`);
     const link = await browser.eval('location.href');
     const other = await Chromium.open(link);
-    await other.until(`viewer !== null && state.dropped !== null && viewer.phase === 'finished'`, 60);
+    await other.until(`viewer !== null && state.dropped !== null && document.documentElement.dataset.phase === 'finished'`, 60);
     is('what is shown', await other.eval('state.dropped.title'), 'small.vox');
     is('the picture', await other.canvasCrc(), wanted);
     await other.eval(`location.hash = location.hash.replace(/model=..../, 'model=AAAA')`);
