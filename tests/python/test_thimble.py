@@ -267,7 +267,7 @@ class Budgets(unittest.TestCase):
             path = os.path.join(folder, "cloud.xyz")
             with open(path, "wb") as file:
                 file.write(cloud)
-            for options in ({}, {"fit": 50}):
+            for options in ({}, {"clip": (0, 0, 0, 1, 1, 0.9)}):
                 with self.assertRaises(thimble.Error) as caught:
                     thimble.open(path, depth=6, **options).bake(memory="900", effects="none")
                 depth, size = re.search(r"--depth (\d) fits with (\d+) bytes", str(caught.exception)).groups()
