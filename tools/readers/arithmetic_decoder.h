@@ -13,7 +13,7 @@
 
 namespace thimble::tools {
 
-[[noreturn]] void refuse_damaged() {
+[[noreturn]] inline void refuse_damaged() {
   throw InputError("its compressed points are damaged or cut off");
 }
 
