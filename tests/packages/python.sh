@@ -11,6 +11,8 @@ WORK=$(cd "$WORK" && pwd)
 packages=$(cd "$PACKAGES" && pwd)
 here=$PWD
 tried=
+# To compile the archive takes minutes: FROM_SOURCE=yes does so, else its module is the one that is built already.
+[ "${FROM_SOURCE:-}" = yes ] || export THIMBLE_BUILD="$here/build/release"
 export CMAKE_BUILD_PARALLEL_LEVEL="${CMAKE_BUILD_PARALLEL_LEVEL:-2}"
 for file in "$packages"/thimble_voxels-"$VERSION"-*.whl "$packages/thimble_voxels-$VERSION.tar.gz"; do
   [ -f "$file" ] || fail "$file was not made"
