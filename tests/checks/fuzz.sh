@@ -15,7 +15,8 @@ case $topic in
   gadget | nbody) endings='dat' ;;
   schematic) endings='schematic schem litematic nbt' ;;
   octomap) endings='bt ot' ;;
-  binvox | mts | pcd | las | stl | qb | qbcl | kvx | kv6 | vxl | gox) endings=$topic ;;
+  las) endings='las laz' ;;
+  binvox | mts | pcd | stl | qb | qbcl | kvx | kv6 | vxl | gox) endings=$topic ;;
   npy) endings='npy npz' ;;
   gltf) endings='gltf glb' ;;
   gz | gzip | file_bytes) endings='gz' ;;

@@ -22,8 +22,8 @@ inline constexpr std::uint64_t kColoredPointBytes = 22;
 
 /// Unpacks the points that `points` describes, one record each.
 ///
-/// Time: some 100 to 300 ns a point. Memory: the records and 4 MB; records that claim to be packed more than a
-/// hundredfold may take 256 MiB.
+/// Time: some 100 to 300 ns a point. Memory: the records and 4 MB. Believed are 2,000,000 points, and 5 for
+/// each byte of the file.
 ///
 /// Source: M. Isenburg, "LASzip: lossless compression of LiDAR data" (2013) and the specification of LASzip's native
 /// extension for LAS 1.4; A. Said, "Introduction to Arithmetic Coding" (HPL-2004-76).
