@@ -257,7 +257,7 @@ class MaskPyramid {
       to.count = to.solid_blocks = 0;
       to.block_materials.clear();
       for (std::size_t i = 0; i < words.size; ++i) {
-        if (words[i] == 0 || (level < top_ && (solid_[level + 1][i >> 3] >> (i & 7U) & 1U) != 0)) {
+        if (words[i] == 0 || (level < top_ && (solid_[level + 1][i >> 3] >> (i & 7U) & 1) != 0)) {
           continue;
         }
         const unsigned solid = solid_[level][i];
