@@ -25,37 +25,42 @@ struct Levels {
 // (N. Otsu, "A threshold selection method from gray-level histograms", IEEE Trans. SMC 9, 1979). Where one or two
 // tones are all that there is, these are told apart, the brightest white.
 Levels levels_of(const uint32_t (&pixels)[kTones]) {
-  // Of tones below each: pixels, and the sum of their tones. At most 2^28 pixels, so sums are below 2^33.
-  uint32_t count[kTones + 1] = {};
-  uint64_t sum[kTones + 1] = {};
-  for (int tone = 0; tone < kTones; ++tone) {
-    count[tone + 1] = count[tone] + pixels[tone];
-    sum[tone + 1] = sum[tone] + wide_product_u(pixels[tone], static_cast<uint32_t>(tone));
-  }
+  // Of the tones of a pattern: pixels, and the sum of their tones. At most 2^28 pixels, so sums are below 2^33.
+  struct Pattern {
+    uint32_t count = 0;
+    uint64_t sum = 0;
+  };
+  const auto add = [&pixels](Pattern& pattern, int tone) {
+    pattern.count += pixels[tone];
+    pattern.sum += wide_product_u(pixels[tone], static_cast<uint32_t>(tone));
+  };
   // A pattern's sum, squared and divided by its pixels: the sum times the mean, which has 8 bits behind the point.
-  const auto weight = [&](int from, int to) {
-    const uint32_t n = count[to] - count[from];
-    const uint64_t s = sum[to] - sum[from];
-    if (n == 0) {
-      return uint64_t{0};
-    }
-    return (s * divide(s << 8, n)) >> 8;  // below 2^33 * 2^13
+  const auto weight = [](const Pattern& pattern) {
+    return pattern.count == 0
+               ? uint64_t{0}
+               : (pattern.sum * divide(pattern.sum << 8, pattern.count)) >> 8;  // below 2^33 * 2^13
   };
   uint64_t bright[kTones];
-  for (int white = 0; white < kTones; ++white) {
-    bright[white] = weight(white, kTones);
+  Pattern white_ones;
+  for (int white = kTones - 1; white >= 0; --white) {
+    add(white_ones, white);
+    bright[white] = weight(white_ones);
   }
   Levels best;
   uint64_t most = 0;
+  Pattern black_ones;
   for (int checker = 0; checker < kTones; ++checker) {
-    const uint64_t dark = weight(0, checker);
+    const uint64_t dark = weight(black_ones);
+    Pattern between;
     for (int white = checker; white < kTones; ++white) {
-      const uint64_t all = dark + weight(checker, white) + bright[white];
+      const uint64_t all = dark + weight(between) + bright[white];
       if (all > most) {
         most = all;
         best = {checker, white};
       }
+      add(between, white);
     }
+    add(black_ones, checker);
   }
   return best;
 }
