@@ -116,7 +116,7 @@ void draw_tiles(const SheetCommand& command, std::vector<Tile>* tiles) {
 }
 
 // The end of a name counts more than its beginning.
-std::string cut_to(std::string text, std::size_t columns) {
+std::string cut_to(const std::string& text, std::size_t columns) {
   return text.size() <= columns ? text : "..." + text.substr(text.size() - columns + 3);
 }
 

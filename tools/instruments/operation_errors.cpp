@@ -272,7 +272,7 @@ void perspective_rays(Draw& draw, Found* found) {
     const Real depth = dot(direction, axes.forward);
     const Real off_x = focal * dot(direction, axes.right) / depth - across;
     const Real off_y = focal * dot(direction, axes.up) / depth - above;
-    found->see(std::hypot(off_x, off_y) * 65536 / ray_unit(made.camera, kGivesBits));
+    found->see(std::hypot(off_x, off_y) * 65536 / static_cast<Real>(ray_unit(made.camera, kGivesBits)));
   }
 }
 
@@ -302,7 +302,7 @@ void parallel_rays(Draw& draw, Found* found) {
       const Real t = (depth - dot(start, axes.forward)) / dot(direction, axes.forward);
       const Exact3 point = along(start, direction, t);
       found->see(std::hypot(dot(point, axes.right) - across, dot(point, axes.up) - above) / pixel * 65536 /
-                 ray_unit(made.camera, kGivesBits));
+                 static_cast<Real>(ray_unit(made.camera, kGivesBits)));
     }
   }
 }

@@ -114,6 +114,7 @@ OutputClaim::OutputClaim(const std::vector<std::string>& paths, const std::vecto
   read.insert(read.end(), inputs.begin(), inputs.end());
   std::erase(read, "");
   std::vector<FilePlace> read_places;
+  read_places.reserve(read.size());
   for (const std::string& input : read) {
     read_places.emplace_back(input == "-" ? "./-" : input);
   }

@@ -495,7 +495,7 @@ SharedBytes load_shared(const std::string& path, const FirstLook& look) {
   if (::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
       static_cast<std::uint64_t>(status.st_size) >= kMappedBytes) {
     const Descriptor file(path);
-    const SharedBytes mapped = file.map(static_cast<std::size_t>(file.size_hint_bytes()));
+    SharedBytes mapped = file.map(static_cast<std::size_t>(file.size_hint_bytes()));
     const bool is_packed = std::any_of(kPackings.begin(), kPackings.end(), [&](const Packing& packing) {
       return path.ends_with(packing.ending) || mapped.text().starts_with(packing.signature);
     });

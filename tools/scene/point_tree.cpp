@@ -607,6 +607,7 @@ PointTree build_point_tree(const SceneSource& source, Bytes room, int threads, c
   GrowingTree tree(source, room);
   PartLists lists(room.subspan(tree.end()), parts, many);
   std::vector<PartWorker> workers;
+  workers.reserve(static_cast<std::size_t>(threads));
   for (int worker = 0; worker < threads; ++worker) {
     workers.emplace_back(many);
   }

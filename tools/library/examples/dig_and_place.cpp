@@ -56,8 +56,9 @@ int main(int count, char** words) {
     }
     threads.each(kHeight / kBandRows, [&](int band_number) {
       const std::int32_t row = band_number * kBandRows;
-      const Band band{Bytes(&rgb[static_cast<std::size_t>(3 * kWidth * row)], 3 * kWidth * kBandRows),
-                      PixelFormat::kRgb888, 0, row, kBandRows};
+      const Band band{
+          Bytes(&rgb[std::size_t{3} * kWidth * static_cast<std::size_t>(row)], 3 * kWidth * kBandRows),
+          PixelFormat::kRgb888, 0, row, kBandRows};
       (void)render_lit_band<kSunlight>(world.tree(), world.map(), camera, shading, light, {}, band);
     });
   }
