@@ -162,6 +162,16 @@ void fill(std::mt19937_64& random, int materials, VoxelModel* model) {
   }
 }
 
+// Of a tree and some edits: as often tight, so that edits are refused, as plenty.
+EditRoom random_room(std::mt19937_64& random, const CompactTree& tree) {
+  EditRoom room = EditedWorld::room_of(tree);
+  const bool is_tight = pick_int(random, 0, 1) == 0;
+  room.nodes += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 40)) : 3000;
+  room.leaves += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 60)) : 5000;
+  room.bricks += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 4)) : 300;
+  return room;
+}
+
 }  // namespace
 
 TEST_CASE("edited world: random edits of random worlds -> bytes, map and pictures of the world built anew") {
@@ -175,11 +185,7 @@ TEST_CASE("edited world: random edits of random worlds -> bytes, map and picture
     VoxelModel model(level);
     fill(random, materials, &model);
     const HeapBytes first = model.built();
-    EditRoom room = EditedWorld::room_of(open_or_throw(first));
-    const bool is_tight = pick_int(random, 0, 1) == 0;
-    room.nodes += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 40)) : 3000;
-    room.leaves += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 60)) : 5000;
-    room.bricks += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 4)) : 300;
+    const EditRoom room = random_room(random, open_or_throw(first));
     HeapBytes bytes(edited_world_bytes(level, room));
     EditedWorld world;
     const Status made = EditedWorld::make(open_or_throw(first), room, bytes.span(), &world);
@@ -241,11 +247,7 @@ TEST_CASE(
     VoxelModel model(pick_int(random, 2, 4));
     fill(random, materials, &model);
     const HeapBytes first = model.built();
-    EditRoom room = EditedWorld::room_of(open_or_throw(first));
-    const bool is_tight = pick_int(random, 0, 1) == 0;
-    room.nodes += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 40)) : 3000;
-    room.leaves += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 60)) : 5000;
-    room.bricks += is_tight ? static_cast<std::uint32_t>(pick_int(random, 0, 4)) : 300;
+    const EditRoom room = random_room(random, open_or_throw(first));
     HeapBytes bytes(edited_world_bytes(model.level(), room));
     EditedWorld world;
     if (EditedWorld::make(open_or_throw(first), room, bytes.span(), &world) != Status::kOk) {
