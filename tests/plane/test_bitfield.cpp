@@ -44,15 +44,6 @@ struct Picture {
 // A set of cells to do something with, in reading order.
 using Cells = std::vector<Vec2i>;
 
-Cells cells_of(const CellBox& box) {
-  Cells cells;
-  for (int y = box.low.y; y < box.high.y; ++y) {
-    for (int x = box.low.x; x < box.high.x; ++x) {
-      cells.push_back({x, y});
-    }
-  }
-  return cells;
-}
 // The disc by its definition, in real numbers.
 bool in_disc(int diameter, int column, int row) {
   const double u = column + 0.5 - diameter / 2.0;
@@ -132,40 +123,6 @@ class Both {
 
 // --- Making a field
 
-TEST_CASE("bitfield_bytes: rows of whole words -> 60,000 bytes for the paper's world; 0 beyond the range") {
-  static_assert(bitfield_bytes(800, 600) == 60000);
-  static_assert(bitfield_bytes(128, 64) == 1024);
-  static_assert(bitfield_bytes(1, 1) == 4);
-  static_assert(bitfield_bytes(33, 2) == 16);
-  static_assert(bitfield_bytes(0, 600) == 0);
-  static_assert(bitfield_bytes(800, 0) == 0);
-  static_assert(bitfield_bytes(-1, 5) == 0);
-  static_assert(bitfield_bytes(5, kMaxFieldSide + 1) == 0);
-  CHECK(bitfield_bytes(kMaxFieldSide, kMaxFieldSide) == std::size_t{32} << 20);
-}
-
-TEST_CASE("init: every byte count that is too small -> out of memory, nothing touched") {
-  for (const auto& [width, height] : {std::pair{40, 13}, {32, 16}, {1, 1}, {100, 3}}) {
-    const std::size_t needed = bitfield_bytes(width, height);
-    alignas(4) std::array<std::uint8_t, 256> bytes;
-    REQUIRE(needed < bytes.size());
-    for (std::size_t size = 0; size < needed; ++size) {
-      bytes.fill(0x5A);
-      BitField field;
-      CHECK(BitField::make(width, height, {bytes.data(), size}, &field) == Status::kOutOfMemory);
-      CHECK(field.width() == 0);
-      CHECK(std::count(bytes.begin(), bytes.end(), 0x5A) == 256);
-    }
-    bytes.fill(0x5A);
-    BitField field;
-    CHECK(BitField::make(width, height, {bytes.data(), needed}, &field) == Status::kOk);
-    CHECK(field.used_bytes() == needed);
-    CHECK(field.count() == 0);
-    CHECK(static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), 0)) == needed);
-    CHECK(bytes[needed] == 0x5A);
-  }
-}
-
 TEST_CASE("init: sides beyond the limits and odd addresses -> refused") {
   alignas(4) std::array<std::uint8_t, 64> bytes;
   BitField field;
@@ -180,58 +137,6 @@ TEST_CASE("init: sides beyond the limits and odd addresses -> refused") {
   CHECK(field.width() == 0);
 }
 
-// --- Cells and boxes
-
-TEST_CASE(
-    "boxes: random sets, clears and questions, at, over and beyond the edges -> as a picture of chars") {
-  const std::uint64_t seed = 20260401;
-  INFO("seed " << seed);
-  std::mt19937_64 random(seed);
-  for (const auto& [width, height] :
-       {std::pair{1, 1}, {31, 7}, {32, 8}, {33, 9}, {64, 3}, {65, 20}, {100, 40}, {3, 70}}) {
-    Both both(width, height);
-    for (int turn = 0; turn < 60 * kScale; ++turn) {
-      const auto edge = [&random](int side) { return pick_int(random, -5, side + 5); };
-      CellBox box{{edge(width), edge(height)}, {edge(width), edge(height)}};
-      if (turn % 3 == 0) {
-        box.high.y = box.low.y + 1;  // a span
-      }
-      const Cells cells = cells_of(box);
-      const bool value = pick(random, 0, 2) == 0;
-      both.put(cells, value);
-      if (value) {
-        both.field.set(box);
-      } else {
-        both.field.clear(box);
-      }
-      const Vec2i single{edge(width), edge(height)};
-      both.picture.put(single.x, single.y, !value);
-      if (value) {
-        both.field.clear(single);
-      } else {
-        both.field.set(single);
-      }
-      REQUIRE(both.difference() == "");
-      CHECK(both.field.test(single) == both.picture.test(single.x, single.y));
-
-      const CellBox asked{{edge(width), edge(height)}, {edge(width), edge(height)}};
-      const Cells asked_cells = cells_of(asked);
-      const std::uint32_t count = both.count(asked_cells);
-      CHECK(both.field.count(asked) == count);
-      CHECK(both.field.any(asked) == (count != 0));
-
-      std::uint32_t window = 0;
-      const Vec2i corner{pick_int(random, -70, width + 40), edge(height)};
-      for (int bit = 0; bit < 32; ++bit) {
-        window |= (both.picture.test(corner.x + bit, corner.y) ? 1U : 0U) << bit;
-      }
-      CHECK(both.field.window(corner.x, corner.y) == window);
-    }
-    CHECK(both.field.count() ==
-          static_cast<std::uint32_t>(std::count(both.picture.cells.begin(), both.picture.cells.end(), 1)));
-  }
-}
-
 // --- Discs
 
 TEST_CASE("disc_corner: a centre between cells -> the nearest place, and the middle of a place stays") {
@@ -243,36 +148,6 @@ TEST_CASE("disc_corner: a centre between cells -> the nearest place, and the mid
       CHECK(disc_corner(middle_q16 + 32768, diameter) == corner + 1);
       CHECK(disc_corner(middle_q16 - 32768, diameter) == corner);
       CHECK(disc_corner(middle_q16 - 32769, diameter) == corner - 1);
-    }
-  }
-}
-
-TEST_CASE("discs: set, cleared and asked at random places, clipped at the edges -> as a picture of chars") {
-  const std::uint64_t seed = 20260402;
-  INFO("seed " << seed);
-  std::mt19937_64 random(seed);
-  for (const auto& [width, height] : {std::pair{1, 1}, {20, 12}, {40, 30}, {100, 60}, {200, 15}}) {
-    Both both(width, height);
-    for (int turn = 0; turn < 50 * kScale; ++turn) {
-      const auto place = [&random](int side, int diameter) {
-        return pick_int(random, -diameter - 1, side + 1);
-      };
-      const int diameter =
-          static_cast<int>(pick(random, 0, 3) == 0 ? pick(random, 17, 90) : pick(random, 0, 16));
-      const DiscStamp disc = disc_stamp(diameter);
-      const Vec2i corner{place(width, diameter), place(height, diameter)};
-      CAPTURE(diameter);
-      CAPTURE(at(corner));
-      const Cells cells = cells_of_disc(diameter, corner);
-      CHECK(both.field.any(disc, corner) == (both.count(cells) != 0));
-      const bool value = pick(random, 0, 1) == 0;
-      both.put(cells, value);
-      if (value) {
-        both.field.set(disc, corner);
-      } else {
-        both.field.clear(disc, corner);
-      }
-      REQUIRE(both.difference() == "");
     }
   }
 }

@@ -24,9 +24,6 @@ bool long_runs() {
 double wide(UInt128 value) {
   return static_cast<double>(value.high) * 0x1p64 + static_cast<double>(value.low);
 }
-bool above(UInt128 a, UInt128 b) {
-  return a.high > b.high || (a.high == b.high && a.low > b.low);
-}
 
 TEST_CASE("particles: worlds of every kind -> field, discs and sleepers are right after every step") {
   std::mt19937 random(20240607);
@@ -137,59 +134,6 @@ TEST_CASE("particles: 5,000 cells a step -> nothing comes through a wall of one 
       }
     }
   }
-}
-
-TEST_CASE("particles: restitution below 1 without forces -> energy never grows") {
-  for (const std::uint32_t restitution : {0U, 20000U, 52429U, 65000U, 65535U}) {
-    for (std::uint32_t seed = 1; seed <= 3; ++seed) {
-      ParticleConfig config;
-      config.width = 200;
-      config.height = 150;
-      config.capacity = 150;
-      config.gravity_q16 = {0, 0};
-      config.restitution_q16 = restitution;
-      config.seed = seed;
-      ShadowedWorld shadow(config);
-      shadow.draw_wall({60, 20}, {140, 120}, 3);
-      shadow.fill(150, seed == 3 ? 40 : q16(3));
-      CAPTURE(restitution);
-      CAPTURE(seed);
-      UInt128 before = shadow.world.energy();
-      for (int step = 0; step < 3000 / kShare; ++step) {
-        shadow.world.step();
-        const UInt128 now = shadow.world.energy();
-        REQUIRE_FALSE(above(now, before));
-        before = now;
-      }
-    }
-  }
-}
-
-TEST_CASE("particles: restitution 1, 693 balls -> energy within 0.1 per cent and without a trend") {
-  const int steps = 100000 / (kShare * kShare);
-  ParticleConfig config;
-  config.restitution_q16 = 65536;
-  config.gravity_q16 = {0, 0};
-  ShadowedWorld shadow(config);
-  REQUIRE(shadow.fill(693, q16(3)) == 693);
-  const double start = wide(shadow.world.energy());
-  double before = 0;
-  double greatest = 0;
-  int up = 0;
-  for (int part = 0; part < 20; ++part) {
-    for (int step = 0; step < steps / 20; ++step) {
-      shadow.world.step();
-    }
-    const double now = wide(shadow.world.energy()) / start - 1;
-    up += now > before ? 1 : 0;
-    before = now;
-    greatest = std::fmax(greatest, std::fabs(now));
-  }
-  CHECK(shadow.fault() == "");
-  MESSAGE("energy: greatest deviation ", greatest, ", ", up, " of 20 parts upwards");
-  CHECK(greatest < 2e-4);
-  CHECK(up >= 3);
-  CHECK(up <= 17);
 }
 
 // Lets a world fall until all sleep; the step at which they do, or `limit`.

@@ -75,26 +75,6 @@ TEST_CASE("particles: held for long under gravity, let go without -> moves for e
   CHECK(ball_of(shadow, 0).vx_q16 == q16(1));
 }
 
-TEST_CASE("particles: spawn, draw and erase with the pointer -> balls and walls come and go") {
-  ShadowedWorld shadow(box(120, 90, 40));
-  shadow.world.set_pointer(PointerMode::kSpawn, {60, 20});
-  run(shadow, 60);
-  const std::uint32_t spawned = shadow.world.count();
-  CHECK(spawned > 3);
-  shadow.world.set_pointer(PointerMode::kDraw, {10, 40}, 2);
-  shadow.world.set_pointer(PointerMode::kDraw, {110, 45}, 2);
-  shadow.world.step();
-  shadow.note_walls();
-  CHECK(shadow.world.field().test({11, 40}));
-  CHECK(shadow.world.field().test({109, 45}));
-  run(shadow, 200);
-  shadow.world.set_pointer(PointerMode::kErase, {60, 80}, 300);
-  shadow.world.step();
-  CHECK(shadow.world.count() == 0);
-  CHECK(shadow.world.field().count() == 0);
-  CHECK(shadow.world.awake() == 0);
-}
-
 TEST_CASE("particles: a level wall, an upright wall and a slope -> mirror the way exactly, and nearly") {
   ParticleConfig config = box(200, 200, 1);
   config.gravity_q16 = {0, 0};
