@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -73,35 +72,6 @@ class Drawer {
 };
 
 }  // namespace
-
-TEST_CASE("wide choice: worlds and cameras made to mislead, every order -> the core's picture") {
-  Drawer drawer;
-  int drawn = 0;
-  std::array<int, 3> chosen{};
-  for (const std::string& name : kWorlds) {
-    const TrialWorld world(name);
-    for (const TrialView& view : trial_views(world.tree(), kWidthPx, kHeightPx)) {
-      CAPTURE(name);
-      CAPTURE(view.name);
-      const std::vector<std::uint8_t> expected = drawer.draw_core(world, view.camera);
-      for (const wide::Order order : {wide::Order::kAuto, wide::Order::kFlat, wide::Order::kBlocks}) {
-        CAPTURE(static_cast<int>(order));
-        wide::Stats stats;
-        const std::vector<std::uint8_t>* const ours = drawer.draw(world, view.camera, order, &stats);
-        if (ours != nullptr) {
-          CHECK(*ours == expected);
-          CHECK(stats.order != wide::Order::kAuto);
-          CHECK((order == wide::Order::kAuto || stats.order == order));
-          chosen[static_cast<std::size_t>(stats.order)] += order == wide::Order::kAuto ? 1 : 0;
-          ++drawn;
-        }
-      }
-    }
-  }
-  CHECK(drawn > static_cast<int>(kWorlds.size()) * 30);
-  CHECK(chosen[static_cast<std::size_t>(wide::Order::kFlat)] > 20);
-  CHECK(chosen[static_cast<std::size_t>(wide::Order::kBlocks)] > 20);
-}
 
 // In ns, about. Fitted to the times of views so large in which voxels are small (0.18 rms of the logarithm in
 // blocks, 0.11 in flat order as it was when a box took 0.56 ns there; 0.35 is what it takes now): a frame, a

@@ -2,14 +2,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <random>
 #include <vector>
 
 #include "support/lit_cases.h"
 #include "support/lit_world.h"
 #include "support/wide_cases.h"
-#include "wide/lit/kernels.h"
 #include "wide/lit/lit_renderer.h"
 
 namespace thimble::tests {
@@ -176,103 +174,8 @@ TEST_CASE("wide: many lamps, in solids, behind glass and out of reach -> every b
   check_lit_frames(20261125, many_or_few(300, 20), random_lamps);
 }
 
-TEST_CASE("wide: rays to lamps in lanes -> the core's direction, place and brightness") {
-  const BestInstructionSet after;
-  std::mt19937_64 random(78);
-  constexpr std::size_t kCount = 100;
-  int shining = 0;
-  int wrong = 0;
-  for (int trial = 0; trial < 400; ++trial) {
-    wide::use_instruction_set(trial % wide::instruction_set_count());
-    const std::int64_t scale = std::int64_t{1} << pick(random, 1, 22);
-    Light light = testing::lamp(random_voxel(random, -scale, scale));
-    for (PackedU16& channel : light.color_q8) {
-      channel =
-          static_cast<std::uint16_t>(pick(random, 0, 2) == 0 ? pick(random, 0, 3) : pick(random, 0, 65535));
-    }
-    light.reach =
-        static_cast<std::uint16_t>(pick(random, 0, 1) == 0 ? pick(random, 1, 10) : pick(random, 1, 65535));
-    const int axis = pick_int(random, 0, 2);
-    const bool is_negative = pick(random, 0, 1) == 0;
-    std::vector<std::int32_t> of[10];
-    for (auto& column : of) {
-      column.resize(kCount + wide::kMostLightLanes);
-    }
-    wide::LampRays lamp;
-    for (int turn = 0; turn < 3; ++turn) {
-      lamp.place[turn] = light.place[(axis + turn) % 3];
-      lamp.color_q8[turn] = light.color_q8[turn];
-      lamp.at[turn] = of[turn].data();
-      lamp.direction[turn] = of[3 + turn].data();
-      lamp.brightness[turn] = of[6 + turn].data();
-      for (std::size_t i = 0; i < kCount; ++i) {
-        // Ways of which the largest component is about a power of two, equal ones, none at all, any.
-        const std::int64_t way = pick(random, 0, 1) == 0
-                                     ? (std::int64_t{1} << pick(random, 0, 22)) - pick(random, 0, 3)
-                                     : pick(random, 0, scale);
-        of[turn][i] = static_cast<std::int32_t>(lamp.place[turn] + (pick(random, 0, 1) == 0 ? way : -way));
-      }
-    }
-    lamp.numerator = of[9].data();
-    lamp.is_negative = is_negative;
-    lamp.reach = light.reach;
-    wide::aim_at(lamp, kCount);
-    for (std::size_t i = 0; i < kCount; ++i) {
-      lit::Spot spot;
-      spot.face = {axis, is_negative};
-      for (int turn = 0; turn < 3; ++turn) {
-        spot.at[(axis + turn) % 3] = Q8::from_raw(of[turn][i]);
-      }
-      lit::LightRay expected;
-      const bool shines = lit::light_ray(light, spot, &expected);
-      shining += shines ? 1 : 0;
-      bool is_same = true;
-      for (int turn = 0; turn < 3; ++turn) {
-        const auto bright = static_cast<std::uint32_t>(of[6 + turn][i]);
-        is_same = is_same && bright == (shines ? expected.brightness[turn] : 0);
-        is_same = is_same && (!shines || of[3 + turn][i] == expected.ray.direction[(axis + turn) % 3]);
-      }
-      is_same = is_same && (!shines || of[9][i] == expected.place.t_numerator);
-      wrong += is_same ? 0 : 1;
-    }
-  }
-  CHECK(wrong == 0);
-  CHECK(shining > 5000);
-}
-
 TEST_CASE("wide: lit scenes with slopes -> every byte is the core's") {
   check_lit_frames(20261126, many_or_few(80, 10), random_smooth_light);
-}
-
-TEST_CASE("wide: the sky in lanes -> the core's, also where a length is rounded up") {
-  const BestInstructionSet after;
-  std::mt19937_64 random(77);
-  constexpr std::size_t kCount = 4000;
-  std::vector<std::int32_t> axes[3];
-  for (std::size_t i = 0; i < kCount + wide::kMostLightLanes; ++i) {
-    for (auto& axis : axes) {
-      const std::int64_t most = std::int64_t{1} << pick(random, 0, 20);
-      const std::int64_t size = pick(random, 0, 1) == 0 ? pick(random, 0, most - 1) : most - 1;
-      axis.push_back(static_cast<std::int32_t>(pick(random, 0, 1) == 0 ? size : -size));
-    }
-    axes[0].back() = axes[0].back() == 0 ? 1 : axes[0].back();
-  }
-  // So bright that each share is another colour.
-  LitScene scene;
-  scene.sky = {{255, 255, 255}, {0, 0, 0}, {255, 255, 255}};
-  const CompactTree tree;
-  const lit::Frame frame{tree, Camera(), Shading(), scene, LitOptions(), Effect::kSky};
-  std::vector<std::int32_t> shares(kCount + wide::kMostLightLanes);
-  for (int set = 0; set < wide::instruction_set_count(); ++set) {
-    wide::use_instruction_set(set);
-    wide::find_sky_shares(axes[0].data(), axes[1].data(), axes[2].data(), kCount, shares.data());
-    int wrong = 0;
-    for (std::size_t i = 0; i < kCount; ++i) {
-      const std::uint32_t expected = lit::sky_color(frame, {axes[0][i], axes[1][i], axes[2][i]}).c[0];
-      wrong += (255 * lit::kLevel * static_cast<std::uint32_t>(shares[i])) >> 12 == expected ? 0 : 1;
-    }
-    CHECK(wrong == 0);
-  }
 }
 
 TEST_CASE("wide: a lit picture's errors are the core's, with nothing drawn") {

@@ -86,30 +86,4 @@ TEST_CASE("wide: rays of occlusion that are not sent -> none would meet anything
   CHECK(counts.sent > 500000);
 }
 
-TEST_CASE("wide: a floor with a wall -> only rays towards the wall are sent, and none far from it") {
-  const WideScene scene = make_scene(6, [&](Octree* octree) {
-    for (int a = 0; a < 64; ++a) {
-      for (int b = 0; b < 64; ++b) {
-        REQUIRE(octree->insert({a, b, 0}, 1) == Status::kOk);
-        REQUIRE(octree->insert({a, 40, b}, 1) == Status::kOk);
-      }
-    }
-  });
-  const HeapBytes bytes(wide::RayMap::bytes(scene.tree));
-  Arena arena(bytes.span());
-  wide::RayMap map;
-  REQUIRE(wide::RayMap::make(scene.tree, &arena, &map) == Status::kOk);
-  Occlusion occlusion;
-  occlusion.rays = 4;
-  occlusion.reach = 8;
-  wide::OpenSpace open(map, occlusion, occlusion.rays);
-  const auto rays_at = [&](int y) {
-    return open.rays_before({Q8::from_raw(10 * 256 + 77), Q8::from_raw(y * 256 + 50), Q8::from_raw(256)}, 5);
-  };
-  CHECK(rays_at(10) == 0);
-  CHECK(rays_at(36) == 0b0011);
-  CHECK(rays_at(44) == 0b1100);
-  CHECK(rays_at(60) == 0);
-}
-
 }  // namespace thimble::tests

@@ -274,46 +274,6 @@ TEST_CASE("rays: hard rays through random worlds -> the core's answers by every 
   CHECK(check_random_scenes(31000, many_or_few(300, 40), 300) > 10000);
 }
 
-// All kinds of leaves: some voxels of several materials beside cells, leaves and cubes that are solid through
-// in one, and merged ones.
-TEST_CASE("rays: the material of every voxel -> the tree's") {
-  for (int level = 1; level <= 6; ++level) {
-    for (std::uint64_t seed = 0; seed < 12; ++seed) {
-      CAPTURE(level);
-      CAPTURE(seed);
-      std::mt19937_64 random(seed);
-      const std::int64_t side = std::int64_t{1} << level;
-      const std::int64_t materials = pick(random, 1, 4);
-      const WideScene scene = make_scene(level, [&](Octree* octree) {
-        for (std::int64_t left = side * side; left > 0; --left) {
-          const int block = pick_int(random, 0, std::min(level - 1, pick(random, 0, 40) == 0 ? 5 : 2));
-          const Vec3i at = random_voxel(random, 0, (side >> block) - 1);
-          const auto material = static_cast<std::uint8_t>(pick(random, 1, materials));
-          REQUIRE(octree->insert_block({at.x << block, at.y << block, at.z << block}, block, material) ==
-                  Status::kOk);
-        }
-        if (seed % 4 == 3) {
-          (void)octree->coarsen_to(octree->nodes_used() / 2);
-        }
-      });
-      const MapUnderTest made = make_map(random, scene.tree);
-      const auto last = static_cast<int>(side);
-      std::size_t wrong = 0;
-      for (int z = -1; z <= last; ++z) {
-        for (int y = -1; y <= last; ++y) {
-          for (int x = -1; x <= last; ++x) {
-            std::uint8_t ours = 0;
-            std::uint8_t expected = 0;
-            const bool is_solid = material_at(scene.tree, {x, y, z}, &expected);
-            wrong += made.map.material_at({x, y, z}, &ours) != is_solid || ours != expected ? 1U : 0U;
-          }
-        }
-      }
-      CHECK(wrong == 0);
-    }
-  }
-}
-
 TEST_CASE("rays: boxes -> empty where nothing solid is in them") {
   std::size_t empty = 0;
   std::size_t full = 0;

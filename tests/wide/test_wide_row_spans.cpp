@@ -2,10 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <random>
-#include <vector>
 
 #include "support/wide_cases.h"
-#include "wide/lit/kernels.h"
 #include "wide/lit/row_spans.h"
 
 namespace thimble::tests {
@@ -84,27 +82,6 @@ TEST_CASE("wide: columns of a row that can show a box -> no other ray touches it
   CHECK(beside > 100000);
   CHECK(touching > 50000);
   CHECK(idle < touching / 20);
-}
-
-TEST_CASE("wide: a component along a row in lanes -> the camera's, halves away from zero") {
-  const BestInstructionSet after;
-  std::mt19937_64 random(82);
-  for (int trial = 0; trial < 2000; ++trial) {
-    use_random_instruction_set(random);
-    // Often halves, on both sides of zero.
-    const int fraction = static_cast<int>(pick(random, 0, 1) == 0 ? 31 : pick(random, 0, 31));
-    const std::int64_t most = std::int64_t{1} << pick(random, 1, 20);
-    const std::int64_t first = pick(random, -most, most) << fraction;
-    const std::int64_t step = pick(random, -most, most) << fraction >> 6;
-    const auto count = static_cast<std::size_t>(pick(random, 1, 100));
-    std::vector<std::int32_t> rounded(count + wide::kMostLightLanes);
-    wide::round_along_row(first, step, count, rounded.data());
-    CAPTURE(first);
-    CAPTURE(step);
-    for (std::size_t i = 0; i < count; ++i) {
-      REQUIRE(rounded[i] == Camera::rounded(first + static_cast<std::int64_t>(i) * step));
-    }
-  }
 }
 
 }  // namespace thimble::tests

@@ -9,7 +9,6 @@
 #include "support/lit_world.h"
 #include "support/wide_cases.h"
 #include "thimble/light/host/optics.h"
-#include "wide/lit/kernels.h"
 #include "wide/lit/slope_table.h"
 
 namespace thimble::tests {
@@ -123,48 +122,6 @@ TEST_CASE("wide: slopes that are kept -> the core's normals and visits, any tabl
     REQUIRE(wrong == 0);
   }
   CHECK(bent > asked / 20);
-}
-
-TEST_CASE("wide: a face that is looked up again -> the visits of the first time, added") {
-  std::mt19937_64 random(3);
-  LitWorld world(5, 200000);
-  fill(random, 5, &world);
-  const lit::Frame frame{world.tree,  world.camera, world.shading,
-                         world.scene, LitOptions(), Effect::kSmoothNormals};
-  std::vector<wide::KnownSlope> places(16);
-  std::vector<wide::KnownWindow> windows(4);
-  wide::SlopeTable table(frame, places.data(), windows.data(), 16);
-  std::uint32_t visits = 0;
-  (void)table.normal(LitWorld::point({16 * 256 + 5, 16 * 256 + 7, 16 * 256}), {2, true}, 0, &visits);
-  CHECK(visits > 0);
-  const std::uint32_t once = visits;
-  (void)table.normal(LitWorld::point({16 * 256 + 90, 16 * 256 + 200, 16 * 256}), {2, true}, 0, &visits);
-  CHECK(visits == 2 * once);
-}
-
-TEST_CASE("wide: words turned in lanes -> bit j of word k is bit k of word j") {
-  const BestInstructionSet after;
-  std::mt19937_64 random(8);
-  for (int set = 0; set < wide::instruction_set_count(); ++set) {
-    wide::use_instruction_set(set);
-    std::uint16_t words[16][wide::kTurnLanes];
-    std::uint16_t turned[16][wide::kTurnLanes];
-    for (int k = 0; k < 16; ++k) {
-      for (std::size_t lane = 0; lane < wide::kTurnLanes; ++lane) {
-        words[k][lane] = turned[k][lane] = static_cast<std::uint16_t>(pick(random, 0, 65535));
-      }
-    }
-    wide::turn_words(turned);
-    int wrong = 0;
-    for (int k = 0; k < 16; ++k) {
-      for (int j = 0; j < 16; ++j) {
-        for (std::size_t lane = 0; lane < wide::kTurnLanes; ++lane) {
-          wrong += (turned[k][lane] >> j & 1) == (words[j][lane] >> k & 1) ? 0 : 1;
-        }
-      }
-    }
-    CHECK(wrong == 0);
-  }
 }
 
 }  // namespace thimble::tests
