@@ -1,7 +1,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -13,7 +12,6 @@
 #include "apps/demo_view.h"
 #include "apps/scene_light.h"
 #include "boards/board_table.h"
-#include "golden/demo_table.h"
 #include "scene/baking.h"
 #include "scene/random.h"
 #include "support/baked_demo.h"
@@ -29,7 +27,6 @@ using namespace thimble;
 using tests::bake_demo;
 using tests::demo_scene;
 
-const std::uint32_t kFrameStep = thimble::tests::many_or_few<std::uint32_t>(1, 8);
 const int kWandering = thimble::tests::many_or_few(2000, 200);
 
 const tools::Baked& lit_scene() {
@@ -88,37 +85,6 @@ std::size_t lit_frames(const std::string& out) {
 
 }  // namespace
 
-TEST_CASE("demo view: sine, angle and length -> those of real numbers") {
-  constexpr double kPi = 3.14159265358979323846;
-  for (std::int32_t angle = -apps::kTurn; angle <= 2 * apps::kTurn; angle += 13) {
-    const double exact = 16384 * std::sin(2 * kPi * angle / apps::kTurn);
-    REQUIRE(std::abs(apps::sine_q14(angle) - exact) < 3);
-    REQUIRE(std::abs(apps::cosine_q14(angle) - 16384 * std::cos(2 * kPi * angle / apps::kTurn)) < 3);
-  }
-  tools::SplitMix64 random(1);
-  for (int i = 0; i < 20000; ++i) {
-    const std::int64_t limit = std::int64_t{1} << random.between(1, 25);
-    const auto component = [&] { return random.between(static_cast<int>(-limit), static_cast<int>(limit)); };
-    const std::int64_t x = component();
-    const std::int64_t y = component();
-    const std::int64_t z = component();
-    const auto real = [](std::int64_t value) { return static_cast<double>(value); };
-    REQUIRE(apps::length_of(x, y, z) == static_cast<std::int32_t>(std::sqrt(real(x * x + y * y + z * z))));
-    if (x != 0 || y != 0) {
-      const std::int32_t angle = apps::angle_of(x, y);
-      REQUIRE((angle >= 0 && angle < apps::kTurn));
-      const double off = std::remainder(angle - std::atan2(real(y), real(x)) / (2 * kPi) * apps::kTurn,
-                                        static_cast<double>(apps::kTurn));
-      REQUIRE(std::abs(off) < 4);
-    }
-  }
-  CHECK(apps::angle_of(0, 0) == 0);
-  CHECK(apps::angle_of(5, 0) == 0);
-  CHECK(apps::angle_of(0, 5) == apps::kTurn / 4);
-  CHECK(apps::angle_of(-5, 0) == apps::kTurn / 2);
-  CHECK(apps::angle_of(0, -5) == 3 * apps::kTurn / 4);
-}
-
 TEST_CASE("demo view: a baked camera -> the round begins at its eye and keeps its target and distance") {
   const BakedScene& scene = demo_scene().scene;
   REQUIRE(scene.has_camera());
@@ -137,114 +103,6 @@ TEST_CASE("demo view: a baked camera -> the round begins at its eye and keeps it
       distance += std::pow(camera.eye()[axis].raw - target[axis].raw, 2);
     }
     CHECK(std::abs(std::sqrt(distance) - orbit.distance_q8) < 4);
-  }
-}
-
-TEST_CASE("demo scene: what the firmware shows -> large enough to be a model, small enough for flash") {
-  const CompactTree& tree = demo_scene().scene.tree();
-  CHECK(tree.level() == 6);
-  CHECK(tree.voxel_count() >= 25000);
-  CHECK(tree.size_bytes() <= 2 * tree.voxel_count());
-  CHECK(demo_scene().bytes.size() <= 40 * 1024);
-  const VoxelBox& box = tree.bounds();
-  CHECK(box.high.x - box.low.x == 64);
-  CHECK(box.high.y - box.low.y == 64);
-  CHECK(box.high.z - box.low.z >= 40);
-}
-
-TEST_CASE(
-    "demo view: every frame of the round -> covers nine tenths, moves, voxels of 1 to 6 pixels, eye free") {
-  const BakedScene& scene = demo_scene().scene;
-  const apps::Orbit orbit = apps::orbit_of(scene);
-  std::vector<std::uint8_t> picture(64 * 64);
-  std::vector<std::uint32_t> crcs;
-  double smallest = 1e9;
-  double largest = 0;
-  std::uint64_t least = 8192;
-  for (std::uint32_t frame = 0; frame < apps::kFramesARound; frame += kFrameStep) {
-    CAPTURE(frame);
-    Camera camera;
-    REQUIRE(apps::view_at(orbit, scene.tree(), frame, {}, 128, 64, &camera) == Status::kOk);
-    CHECK_FALSE(eye_in_solid(scene.tree(), camera.eye()));
-    RenderCounts counts;
-    REQUIRE(render_band(scene.tree(), camera, apps::demo_shading(scene.palette()),
-                        {Bytes(picture.data(), picture.size()), PixelFormat::kGray4, 0, 0, 64},
-                        &counts) == Status::kOk);
-    CHECK(counts.hits * 10 >= counts.rays * 9);
-    least = std::min(least, counts.hits);
-    crcs.push_back(crc32(bytes_of(picture)));
-    // Pixels that a voxel's side takes, by its distance along the view.
-    const double focal_px =
-        32 / std::tan(scene.camera().fov_degrees.raw / 65536.0 / 2 * 3.14159265358979323846 / 180);
-    for (std::int32_t y = 0; y < 64; y += 3) {
-      for (std::int32_t x = 0; x < 128; x += 3) {
-        Hit hit;
-        REQUIRE(closest_hit(scene.tree(), camera.ray(x, y), &hit) == Status::kOk);
-        if (hit.kind == HitKind::kHit) {
-          const double side_px = focal_px / (planar_depth_q8(hit, camera) / 256.0);
-          smallest = std::min(smallest, side_px);
-          largest = std::max(largest, side_px);
-        }
-      }
-    }
-  }
-  CAPTURE(least);
-  CHECK(smallest >= 0.9);
-  CHECK(largest <= 6.5);
-  std::sort(crcs.begin(), crcs.end());
-  CHECK(std::adjacent_find(crcs.begin(), crcs.end()) == crcs.end());
-}
-
-TEST_CASE("demo view: the golden frames -> the table") {
-  const BakedScene& scene = demo_scene().scene;
-  const apps::Orbit orbit = apps::orbit_of(scene);
-  std::vector<std::uint8_t> picture(64 * 64);
-  const Band band{Bytes(picture.data(), picture.size()), PixelFormat::kGray4, 0, 0, 64};
-  CHECK(crc32({scene.tree().bytes(), scene.tree().size_bytes()}) == golden::kDemoTreeCrc32);
-  static_assert(std::size(golden::kDemoFrameCrc32) == apps::kGoldenFrames);
-  for (std::uint32_t i = 0; i < apps::kGoldenFrames; ++i) {
-    CAPTURE(i);
-    Camera camera;
-    REQUIRE(apps::view_at(orbit, scene.tree(), i * apps::kGoldenStep, {}, 128, 64, &camera) == Status::kOk);
-    for (const Width width : {Width::k32, Width::k64}) {
-      REQUIRE(render_band(scene.tree(), camera, apps::demo_shading(scene.palette()), band, nullptr,
-                          {.width = width}) == Status::kOk);
-      CHECK(crc32(bytes_of(picture)) == golden::kDemoFrameCrc32[i]);
-    }
-  }
-}
-
-TEST_CASE("demo light: the golden frames -> the table, by the image's renderer and by the library's") {
-  constexpr EffectSet kSet = Effect::kDirectLight | Effect::kShadows;
-  const BakedScene& scene = lit_scene().scene;
-  CHECK(demo_scene().effects == Effect::kNone);  // for those who ask for it only
-  CHECK(lit_scene().effects == kSet);
-  CHECK(crc32({scene.tree().bytes(), scene.tree().size_bytes()}) == golden::kDemoTreeCrc32);
-  apps::SceneLight light;
-  REQUIRE(apps::open_light(scene, &light) == nullptr);
-  const apps::Orbit orbit = apps::orbit_of(scene);
-  std::vector<std::uint8_t> picture(64 * 64);
-  const Band band{Bytes(picture.data(), picture.size()), PixelFormat::kGray4, 0, 0, 64};
-  static_assert(std::size(golden::kDemoLitFrameCrc32) == apps::kGoldenFrames);
-  for (std::uint32_t i = 0; i < apps::kGoldenFrames; ++i) {
-    CAPTURE(i);
-    Camera camera;
-    REQUIRE(apps::view_at(orbit, scene.tree(), i * apps::kGoldenStep, {}, 128, 64, &camera) == Status::kOk);
-    const Shading shading = apps::demo_shading(scene.palette());
-    LitCounts counts;
-    REQUIRE(apps::draw_lit(scene, camera, shading, light, band, &counts) == Status::kOk);
-    CHECK(crc32(bytes_of(picture)) == golden::kDemoLitFrameCrc32[i]);
-    CHECK(counts.rays[static_cast<int>(LitRayKind::kShadow)] > 1000);
-    std::fill(picture.begin(), picture.end(), std::uint8_t{0});
-    REQUIRE(render_lit_band<kSet>(scene.tree(), camera, shading, light.baked.scene, band) == Status::kOk);
-    CHECK(crc32(bytes_of(picture)) == golden::kDemoLitFrameCrc32[i]);
-    // Sensible exposure: neither murk nor glare.
-    double sum = 0;
-    for (const std::uint8_t pair : picture) {
-      sum += (pair >> 4) + (pair & 15);
-    }
-    CHECK(sum / 8192 > 4);
-    CHECK(sum / 8192 < 9);
   }
 }
 
@@ -516,40 +374,6 @@ TEST_CASE(
   CHECK(frames.size() == 4);
   CHECK(frames[0] == golden::kDemoFrameCrc32[0]);
   CHECK(building().out == run.out);
-}
-
-TEST_CASE(
-    "demo: a rate is held with a brick map -> every 2nd pixel exact as squares; standing still -> all are") {
-  const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
-  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
-  tools::BakingOptions options;
-  options.brick_map = true;
-  options.camera = [&source](const CompactTree&) { return *source->camera(); };
-  const tools::Baked baked = tools::bake_scene(*source, options);
-  const Run exact = run_demo(board, bytes_of(baked.bytes), 6, {}, true);
-  CHECK(exact.out.find(" map 0 ") == std::string::npos);
-  // Stopped before frame 3 is drawn, held from the start.
-  const Run held = run_demo(board, bytes_of(baked.bytes), 6, {{3, "t"}, {5, "h"}}, true, 30);
-  CHECK(held.fault.empty());
-  CHECK(held.out.find("holding 30 frames a second") != std::string::npos);
-  REQUIRE(held.pictures.size() == exact.pictures.size());
-  const auto level = [](const host::PackedPicture& picture, int x, int y) {
-    const std::uint8_t pair = picture.bytes[static_cast<std::size_t>(64 * y + x / 2)];
-    return x % 2 == 0 ? pair >> 4 : pair & 15;
-  };
-  for (std::size_t frame = 0; frame < 4; ++frame) {
-    int others = 0;
-    for (int y = 0; y < 64; ++y) {
-      for (int x = 0; x < 128; ++x) {
-        others += level(held.pictures[frame], x, y) == level(exact.pictures[frame], x & ~1, y & ~1) ? 0 : 1;
-      }
-    }
-    CAPTURE(frame);
-    CHECK(others == 0);
-  }
-  // It stands where it stood when the frame before was drawn.
-  CHECK(held.pictures[4].bytes == exact.pictures[3].bytes);
-  CHECK(held.pictures[5].bytes == exact.pictures[3].bytes);
 }
 
 TEST_CASE("demo: rates that are held -> squares as small as the rate leaves time for") {

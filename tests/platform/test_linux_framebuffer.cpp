@@ -131,17 +131,6 @@ TEST_CASE("linux framebuffer: layouts that cannot be drawn -> refused with the r
   CHECK(place(48, 10, usual_layout(47, 23, 94, 16)).scale == 0);
 }
 
-TEST_CASE("linux framebuffer: pixels of a band in every format -> the colour that they stand for") {
-  const uint8_t mono[] = {0x40};
-  CHECK(load_pixel(mono, 1, PixelFormat::kMono1) == Rgb8{255, 255, 255});
-  CHECK(load_pixel(mono, 0, PixelFormat::kMono1) == Rgb8{0, 0, 0});
-  const uint8_t gray4[] = {0x0F, 0x80};
-  CHECK(load_pixel(gray4, 1, PixelFormat::kGray4) == Rgb8{255, 255, 255});
-  CHECK(load_pixel(gray4, 2, PixelFormat::kGray4) == Rgb8{136, 136, 136});
-  const uint8_t rgb565[] = {0xE0, 0x07};
-  CHECK(load_pixel(rgb565, 0, PixelFormat::kRgb565) == Rgb8{0, 255, 0});
-}
-
 TEST_CASE(
     "linux framebuffer: a stand-in file -> made as large as the screen, drawn into, a longer one keeps its "
     "end") {

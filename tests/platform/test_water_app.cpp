@@ -225,37 +225,6 @@ TEST_CASE("water app: its first picture -> that of the scene as it was baked, it
   CHECK(run.pictures[0].bytes == pixels);
 }
 
-TEST_CASE("water app: bounds of the water that are wider than its waves -> the same picture") {
-  const std::vector<std::uint8_t>& bytes = baked("water,depth=5");
-  BakedScene scene;
-  REQUIRE(BakedScene::open(bytes_of(bytes), &scene) == Status::kOk);
-  BakedLighting lighting;
-  REQUIRE(BakedLighting::open(scene.section(SectionKind::kLighting), scene.tree().level(), &lighting) ==
-          Status::kOk);
-  std::vector<std::uint8_t> memory(1U << 20);
-  Arena arena({memory.data(), memory.size()});
-  apps::MovingWater water;
-  REQUIRE(apps::calm_water(scene.tree(), lighting.scene.water, &arena, &water) == Status::kOk);
-  REQUIRE(water.columns.touch(2000, 1500, 600, 500) == Status::kOk);
-  Camera camera;
-  REQUIRE(apps::view_at(apps::orbit_of(scene), scene.tree(), 0, {}, 60, 45, &camera) == Status::kOk);
-  for (int frame = 0; frame < 6; ++frame) {
-    std::vector<std::uint8_t> pictures[2];
-    for (const bool ever : {false, true}) {
-      lighting.scene.water = apps::surface_of(water, ever);
-      std::vector<std::uint8_t>& pixels = pictures[ever ? 1 : 0];
-      pixels.resize(band_bytes(PixelFormat::kRgb888, 60, 45));
-      const Band band{{pixels.data(), pixels.size()}, PixelFormat::kRgb888, 0, 0, 45};
-      REQUIRE(render_lit_band(lighting.effects, scene.tree(), camera, apps::demo_shading(scene.palette()),
-                              lighting.scene, band) == Status::kOk);
-    }
-    CHECK(pictures[0] == pictures[1]);
-    for (int i = 0; i < 5; ++i) {
-      water.columns.step();
-    }
-  }
-}
-
 TEST_CASE("water app: what it cannot show -> one sentence, status 1") {
   const auto source = tools::open_scene({.scene = "spheres,depth=4", .depth = std::nullopt});
   const std::vector<std::uint8_t> dry = tools::bake_scene(*source, {}).bytes;
