@@ -236,20 +236,6 @@ TEST_CASE(
 
 // ---- what a scene calls for
 
-TEST_CASE("lit edges: more surfaces or lights than there may be -> no bytes for them, and refused") {
-  std::vector<Surface> surfaces(kMaxSurfaces + 1);
-  std::vector<Light> lights(kMaxLights + 1);
-  std::vector<std::uint8_t> bytes(20000);
-  for (int bits = 0; bits < 4; ++bits) {
-    BakedLighting lighting;
-    lighting.scene.surfaces = {surfaces.data(), kMaxSurfaces + (bits & 1)};
-    lighting.scene.lights = {lights.data(), kMaxLights + static_cast<std::size_t>(bits >> 1)};
-    CHECK((lighting_bytes(lighting.scene) == 0) == (bits != 0));
-    CHECK(BakedLighting::make(lighting, 5, {bytes.data(), bytes.size()}) ==
-          (bits == 0 ? Status::kOk : Status::kBadArgument));
-  }
-}
-
 // ---- paper
 
 // Without dither a colour becomes the ink of the middle threshold; with it, ink by ink as many of the 64

@@ -93,32 +93,6 @@ TEST_CASE("no effects: the picture of render_band, in every format and shade mod
   static_assert(lit_render_bytes(Effect::kNone) == render_bytes());
 }
 
-TEST_CASE("bands of any height in any order: the same picture") {
-  const EveryEffect world;
-  // Nobody gets smooth normals who does not ask for them, and what glows as lamps is for the scene's maker.
-  constexpr EffectSet kAskedFor =
-      Effect::kSmoothNormals | Effect::kEmitterLight | Effect::kEdges | Effect::kRipples;
-  REQUIRE(effects_of(world.scene) == (Effect::kAll & ~kAskedFor));
-  const EffectSet effects = Effect::kAll;
-  for (const PixelFormat format : kFormats) {
-    const std::size_t row = row_bytes(format, 48);
-    std::vector<std::uint8_t> whole(36 * row);
-    REQUIRE(render_lit_band(effects, world.tree, world.camera, world.shading, world.scene,
-                            {{whole.data(), whole.size()}, format, 0, 0, 36}) == Status::kOk);
-    for (const int rows : {1, 5, 8}) {
-      std::vector<std::uint8_t> pieces(whole.size());
-      for (int first = (35 / rows) * rows; first >= 0; first -= rows) {
-        const int height = first + rows <= 36 ? rows : 36 - first;
-        const std::size_t at = static_cast<std::size_t>(first) * row;
-        REQUIRE(render_lit_band(effects, world.tree, world.camera, world.shading, world.scene,
-                                {{pieces.data() + at, pieces.size() - at}, format, 0, first, height}) ==
-                Status::kOk);
-      }
-      CHECK(pieces == whole);
-    }
-  }
-}
-
 TEST_CASE("a set known when compiling: the picture and the rays of the same set when running") {
   const EveryEffect world;
   expect_same_as_fixed<Effect::kDirectLight>(world);
@@ -266,41 +240,6 @@ TEST_CASE("a point light: falls off with the distance as documented") {
   const Rgb8 color = world.middle(Effect::kDirectLight);
   CHECK(color.r >= 62);
   CHECK(color.r <= 64);
-}
-
-TEST_CASE("a step limit: reported, and the rays that it stops count as misses") {
-  const EveryEffect world;
-  std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kRgb888, 48, 36));
-  LitCounts counts;
-  LitOptions options;
-  options.max_visits = 3;
-  REQUIRE(render_lit_band(Effect::kAll, world.tree, world.camera, world.shading, world.scene,
-                          {{pixels.data(), pixels.size()}, PixelFormat::kRgb888, 0, 0, 36}, &counts,
-                          options) == Status::kOk);
-  CHECK(counts.step_limited > 0);
-}
-
-TEST_CASE("dither: a grey between two steps is so on average; without it every pixel is the nearest step") {
-  LitWorld world;
-  world.finish();
-  world.shading.background = {100, 100, 100};
-  world.look({16 * 256, 16 * 256, 40 * 256}, {16 * 256, 16 * 256, 0}, 20, 64, 64);
-  std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kGray4, 64, 64));
-  const Band band{{pixels.data(), pixels.size()}, PixelFormat::kGray4, 0, 0, 64};
-  LitOptions options;
-  const auto sum = [&] {
-    REQUIRE(render_lit_band(Effect::kFog, world.tree, world.camera, world.shading, world.scene, band, nullptr,
-                            options) == Status::kOk);
-    int total = 0;
-    for (const std::uint8_t byte : pixels) {
-      total += (byte >> 4) + (byte & 15);
-    }
-    return total;
-  };
-  const double exact = 64 * 64 * 100.0 / 17;
-  CHECK(sum() == doctest::Approx(exact).epsilon(0.01));
-  options.dither = false;
-  CHECK(sum() == 64 * 64 * 6);
 }
 
 }  // namespace

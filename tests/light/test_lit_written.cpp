@@ -121,22 +121,5 @@ TEST_CASE("lit written: smooth surfaces -> the CRC-32 of each dozen pictures") {
   check_dozens(kRows, 20260871);
 }
 
-TEST_CASE("lit written: effects that there are not -> as without any") {
-  std::mt19937_64 random(20260891);
-  for (int drawn = 0; drawn < 6;) {
-    const WideScene scene = cabinet(random);
-    FrameCase frame;
-    if (!random_frame(random, scene, &frame)) {
-      continue;
-    }
-    LitCase lit = random_light(random, scene.level);
-    lit.effects = Effect::kNone;
-    const LitDrawn none = draw_lit_core(scene, frame, lit);
-    lit.effects = ~Effect::kAll;
-    CHECK(draw_lit_core(scene, frame, lit).pixels == none.pixels);
-    ++drawn;
-  }
-}
-
 }  // namespace
 }  // namespace thimble::tests

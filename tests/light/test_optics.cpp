@@ -133,17 +133,6 @@ TEST_CASE("unit_q14: along an axis, a diagonal, none -> the unit worked out by h
   CHECK(unit_q14({0, 0, 0}) == Vec3i{});
 }
 
-TEST_CASE("dot_q14: two units -> their cosine to the nearest") {
-  std::mt19937_64 random(seed());
-  Worst off;
-  for (int i = 0; i < kSweep / 4; ++i) {
-    const Vec3i a = unit_q14(random_direction(random, 20));
-    const Vec3i b = unit_q14(random_direction(random, 20));
-    off.see(std::fabs(static_cast<Real>(dot_q14(a, b)) - dot(reals(a), reals(b)) / 16384), text_of(a));
-  }
-  CHECK_WORST(off, 0.5L);
-}
-
 TEST_CASE("reflect: at a face, and at a normal along an axis -> a change of one sign") {
   CHECK(reflect(Vec3i{7, -9, kMaxDirection}, 2) == Vec3i{7, -9, -kMaxDirection});
   CHECK(reflect(Vec3i{7, -9, 1}, 0) == Vec3i{-7, -9, 1});
@@ -354,18 +343,6 @@ TEST_CASE("transmittance_q16: every number of halvings -> never rising, 1 at 0 a
   CHECK(transmittance_q16(UINT32_MAX) == 0);
 }
 
-TEST_CASE("absorption: slabs of known thickness -> products of what parts of them leave") {
-  // A slab of two parts absorbs as the sum: Beer and Lambert, to the rounding of two factors.
-  std::mt19937_64 random(seed());
-  for (int i = 0; i < 10000; ++i) {
-    const std::uint32_t a = static_cast<std::uint32_t>(pick(random, 0, 4 << 16));
-    const std::uint32_t b = static_cast<std::uint32_t>(pick(random, 0, 4 << 16));
-    const std::int64_t both = transmittance_q16(a + b);
-    const std::int64_t parts = (std::int64_t{transmittance_q16(a)} * transmittance_q16(b)) >> 16;
-    REQUIRE(std::llabs(both - parts) <= 6);
-  }
-}
-
 TEST_CASE("distance_q8: worked out by hand; farther than a number says -> the greatest") {
   CHECK(distance_q8({0, -7, 0}, 1234, 7 * 256) == 1234);
   CHECK(distance_q8({300, 400, 0}, 300, 300 * 256) == 500);
@@ -473,21 +450,5 @@ TEST_CASE("roughen: four offsets -> nothing in sum, none at 0, equal lengths") {
       CHECK(angle_urad(reals(bent), reals(unit)) < 0.58e6L);
     }
     CHECK(sum == Vec3i{});
-  }
-}
-
-TEST_CASE("energy: reflected and transmitted shares -> 1 together, at most 1 after any number of surfaces") {
-  std::mt19937_64 random(seed());
-  for (int i = 0; i < 1000; ++i) {
-    std::uint32_t through = kOneQ16;
-    std::uint64_t reflected = 0;
-    for (int surface = 0; surface < 8; ++surface) {
-      const std::uint32_t share = fresnel_q16(
-          pick_int(random, 0, kUnitQ14), r0_q16(4096, static_cast<std::uint32_t>(pick(random, 4096, 16384))));
-      REQUIRE(share <= kOneQ16);
-      reflected += (std::uint64_t{through} * share) >> 16;
-      through = static_cast<std::uint32_t>((std::uint64_t{through} * (kOneQ16 - share)) >> 16);
-      REQUIRE(reflected + through <= kOneQ16);
-    }
   }
 }

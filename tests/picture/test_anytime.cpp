@@ -301,26 +301,6 @@ TEST_CASE(
   CHECK(falls > steps / 3);
 }
 
-TEST_CASE("anytime: a quarter of the work -> less than 2/5 of the error on average") {
-  double squares = 0;
-  int frames = 0;
-  for_golden(golden::Structure::kCompact, [&](const golden::Frame&, const auto& drawn) {
-    Drawing whole(drawn);
-    const Error first = drawn.error(whole.picture());
-    whole.refine(UINT32_MAX);
-    Drawing quarter(drawn);
-    quarter.refine(static_cast<std::uint32_t>(whole.frame.spent_visits() / 4));
-    if (first.squares != 0) {
-      squares +=
-          static_cast<double>(drawn.error(quarter.picture()).squares) / static_cast<double>(first.squares);
-      ++frames;
-    }
-  });
-  CAPTURE(squares / frames);
-  CHECK(frames > 35);
-  CHECK(squares / frames < 0.4);
-}
-
 TEST_CASE("anytime: random scenes, cameras, shadings, formats, sizes and slices -> all that is promised") {
   for (int i = 0; i < kRandomFrames; ++i) {
     const std::uint64_t seed = 0xA117 + static_cast<std::uint64_t>(i);

@@ -156,23 +156,6 @@ TEST_CASE("brick sweep: voxels 512 and more away at the end of the widest row ->
   }
 }
 
-TEST_CASE("brick sweep: pictures of every size that displays have take the fast way from inside the world") {
-  std::mt19937_64 random(3);
-  const ChipScene scene = make_chip_scene(random, ChipWorld::kHills, 6);
-  const Vec3Q8 eye{Q8::from_raw(20 * 256), Q8::from_raw(9 * 256 + 7), Q8::from_raw(40 * 256)};
-  const struct {
-    int width;
-    int height;
-  } kSizes[] = {{128, 64}, {160, 128}, {240, 240}, {320, 240}, {640, 480}, {800, 600}};
-  for (const auto& size : kSizes) {
-    Camera camera;
-    REQUIRE(camera.set(PerspectiveView{eye, {3, 5, -2}, {}, Q16::saturate(60), size.width, size.height, 0},
-                       6) == Status::kOk);
-    CAPTURE(size.width);
-    CHECK(draws_fast(scene.map, camera));
-  }
-}
-
 TEST_CASE(
     "deep frames: limits -> the farthest eye by the map, 1/256 voxel farther by the tree, the same bytes") {
   std::mt19937_64 random(20261126);

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <random>
-#include <vector>
 
 #include "support/scene_under_test.h"
 #include "thimble/base/memory.h"
@@ -106,36 +105,6 @@ std::uint32_t cameras(bool perspective, std::uint64_t seed) {
 TEST_CASE("picture written: cameras of numbers of every size -> the CRC-32 of rays, depths and cut-offs") {
   CHECK(cameras(true, 20260901) == 401325518U);
   CHECK(cameras(false, 20260902) == 102344967U);
-}
-
-// Which cameras bricks draw: by how far off they stand and how long their directions are.
-TEST_CASE("picture written: cameras near and far -> the CRC-32 of which are drawn by bricks at once") {
-  std::mt19937_64 random(20260951);
-  Written written;
-  std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
-  Octree octree;
-  REQUIRE(Octree::make(6, {pool.data(), pool.size()}, &octree) == Status::kOk);
-  REQUIRE(octree.insert({5, 6, 7}, 1) == Status::kOk);
-  const HeapBytes tree = compact_of(octree);
-  const HeapBytes room(most_brick_map_bytes(6));
-  BrickMap map;
-  REQUIRE(BrickMap::make(open_or_throw(tree), room.span(), &map) == Status::kOk);
-  int fast = 0;
-  for (int number = 0; number < 4000; ++number) {
-    PerspectiveView view;
-    view.eye[number % 3] = Q8::from_raw(up_to(random, 17));
-    view.eye[(number + 1) % 3] = Q8::from_raw(up_to(random, number % 2 == 0 ? 1 : 17));
-    view.forward = {up_to(random, 9) + 1, up_to(random, 9), up_to(random, 9)};
-    view.up = default_up(view.forward);
-    view.width_px = view.height_px = 8;
-    view.direction_bits = static_cast<int>(8 + random() % 13);
-    Camera camera;
-    const bool made = camera.set(view, 6) == Status::kOk;
-    written.add(made ? (draws_fast(map, camera) ? 1 : 2) : 0);
-    fast += made && draws_fast(map, camera) ? 1 : 0;
-  }
-  CHECK(fast > 500);
-  CHECK(written.crc == 1985365328U);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
-#include <random>
 #include <vector>
 
 #include "support/scene_under_test.h"
@@ -124,37 +123,5 @@ TEST_CASE(
     CHECK(map.brick_count() == world.bricks);
     CHECK(map.mixed_count() == world.mixed);
     CHECK(crc == world.crc32);
-  }
-}
-
-TEST_CASE(
-    "brick map: a world of one brick -> made; any cell that names a brick that is not there -> damaged") {
-  std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
-  Octree octree;
-  REQUIRE(Octree::make(2, {pool.data(), pool.size()}, &octree) == Status::kOk);
-  REQUIRE(octree.insert({1, 2, 3}, 5) == Status::kOk);
-  const HeapBytes small = compact_of(octree);
-  const HeapBytes room(most_brick_map_bytes(2));
-  BrickMap map;
-  REQUIRE(BrickMap::make(open_or_throw(small), room.span(), &map, nullptr) == Status::kOk);
-  CHECK(map.brick_count() == 2);
-
-  std::vector<std::uint8_t> larger(Octree::octree_bytes(400));
-  REQUIRE(Octree::make(4, {larger.data(), larger.size()}, &octree) == Status::kOk);
-  REQUIRE(octree.insert({0, 0, 0}, 5) == Status::kOk);
-  REQUIRE(octree.insert({15, 15, 15}, 5) == Status::kOk);
-  const HeapBytes tree = compact_of(octree);
-  const HeapBytes bytes(most_brick_map_bytes(4));
-  REQUIRE(BrickMap::make(open_or_throw(tree), bytes.span(), &map, nullptr) == Status::kOk);
-  const std::uint32_t bricks = map.brick_count();
-  for (std::size_t cell = 0; cell < 64; ++cell) {
-    std::uint8_t* const entry = bytes.span().data + kBrickMapHeaderBytes + 2 * cell;
-    const std::uint8_t before = *entry;
-    *entry = static_cast<std::uint8_t>(bricks - 1);
-    BrickMap opened;
-    CHECK(BrickMap::open(bytes.view(), &opened) == Status::kOk);
-    *entry = static_cast<std::uint8_t>(bricks);
-    CHECK(BrickMap::open(bytes.view(), &opened) == Status::kDamaged);
-    *entry = before;
   }
 }
