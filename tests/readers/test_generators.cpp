@@ -2,7 +2,6 @@
 #include <zlib.h>
 
 #include <array>
-#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -42,12 +41,6 @@ std::vector<std::array<int, 4>> voxels_of(const std::string& text) {
     voxels.push_back({x, y, z, material});
   });
   return voxels;
-}
-
-std::set<std::array<int, 3>> places_of(const std::string& text) {
-  std::set<std::array<int, 3>> places;
-  generate(*parse_generator(text), [&](int x, int y, int z, std::uint8_t) { places.insert({x, y, z}); });
-  return places;
 }
 
 }  // namespace
@@ -157,15 +150,6 @@ TEST_CASE("generators: golden streams -> the same on every machine") {
   }
 }
 
-TEST_CASE("generators: another seed -> another scene; the same seed -> the same") {
-  for (const char* text : {"points:100", "cluster:100", "spheres", "water", "demo"}) {
-    const std::string name = text;
-    CAPTURE(name);
-    CHECK(digest(name).crc == digest(name + ",seed=1").crc);
-    CHECK(digest(name).crc != digest(name + ",seed=2").crc);
-  }
-}
-
 TEST_CASE("generators: every kind at every depth -> inside the world, materials in the palette") {
   for (const char* text : {"points:2000", "cluster:2000", "spheres", "water", "demo"}) {
     const bool solid = std::string(text).find(':') == std::string::npos;
@@ -195,88 +179,6 @@ TEST_CASE("generators: points and clusters at a smaller depth -> the same points
       }
     }
   }
-}
-
-TEST_CASE("generators: points -> uniform in the world, repetitions allowed") {
-  // 512 cells of 200 expected; chi-square with 511 degrees of freedom has mean 511, deviation 32.
-  std::array<int, 512> cells{};
-  generate(*parse_generator("points:102400,depth=9"), [&](int x, int y, int z, std::uint8_t) {
-    ++cells[static_cast<std::size_t>((z >> 6) * 64 + (y >> 6) * 8 + (x >> 6))];
-  });
-  double chi_square = 0;
-  for (const int count : cells) {
-    chi_square += (count - 200.0) * (count - 200.0) / 200;
-  }
-  CHECK(chi_square > 511 - 5 * 32);
-  CHECK(chi_square < 511 + 5 * 32);
-  // 4096 draws out of 4096 voxels leave about 1 / e of them empty.
-  CHECK(places_of("points:4096,depth=4").size() ==
-        doctest::Approx(4096 * (1 - std::exp(-1.0))).epsilon(0.05));
-}
-
-TEST_CASE("generators: cluster -> crowded in places, a thin halo everywhere") {
-  const auto clustered = places_of("cluster:50000,depth=6");
-  const auto uniform = places_of("points:50000,depth=6");
-  CHECK(clustered.size() * 2 < uniform.size());
-  std::set<std::array<int, 3>> cells;
-  for (const auto& [x, y, z] : clustered) {
-    cells.insert({x >> 4, y >> 4, z >> 4});
-  }
-  CHECK(cells.size() > 56);
-}
-
-TEST_CASE("generators: spheres -> a dozen or so of solid balls of several colours that keep apart") {
-  std::set<int> materials;
-  std::set<std::array<int, 3>> places;
-  std::size_t calls = 0;
-  generate(*parse_generator("spheres"), [&](int x, int y, int z, std::uint8_t material) {
-    ++calls;
-    materials.insert(material);
-    places.insert({x, y, z});
-  });
-  CHECK(materials.size() == 7);
-  CHECK(places.size() == calls);
-  // Pieces that do not touch, by faces.
-  std::size_t pieces = 0;
-  while (!places.empty()) {
-    ++pieces;
-    std::vector<std::array<int, 3>> stack{*places.begin()};
-    places.erase(places.begin());
-    while (!stack.empty()) {
-      const auto voxel = stack.back();
-      stack.pop_back();
-      for (std::size_t face = 0; face < 6; ++face) {
-        auto next = voxel;
-        next[face / 2] += face % 2 == 0 ? 1 : -1;
-        if (places.erase(next) != 0) {
-          stack.push_back(next);
-        }
-      }
-    }
-  }
-  CHECK(pieces == 14);
-}
-
-TEST_CASE("generators: water -> each voxel once; sand, rock, glass and metal; the water itself is no voxel") {
-  const auto voxels = voxels_of("water");
-  std::vector<std::uint8_t> grid(64 * 64 * 64);
-  std::array<int, 6> counts{};
-  for (const auto& [x, y, z, material] : voxels) {
-    auto& cell = grid[static_cast<std::size_t>((z * 64 + y) * 64 + x)];
-    REQUIRE(cell == 0);
-    cell = static_cast<std::uint8_t>(material);
-    ++counts[static_cast<std::size_t>(material)];
-  }
-  CHECK(counts[1] == 0);
-  for (std::size_t material = 2; material < 6; ++material) {
-    CAPTURE(material);
-    CHECK(counts[material] > 50);
-  }
-  const Palette palette = generator_palette(GeneratorKind::kWater);
-  CHECK(palette[1].kind == SurfaceKind::kGlass);
-  CHECK(palette[1].ior == 1.33);
-  CHECK(palette[4].kind == SurfaceKind::kGlass);
-  CHECK(palette[5].kind == SurfaceKind::kMetal);
 }
 
 TEST_CASE("generators: demo -> each voxel once; a camera in the air that looks at the castle at any depth") {

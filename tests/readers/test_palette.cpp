@@ -153,39 +153,6 @@ TEST_CASE("palette: 255 bins -> exact; 256 -> median cut within a bin's distance
   }
 }
 
-TEST_CASE("palette: all 32,768 bins -> 255 entries, no colour far from its own") {
-  std::vector<Rgb> colors;
-  for (std::uint32_t bin = 0; bin < kColorBins; ++bin) {
-    colors.push_back(bin_color(bin));
-  }
-  const PaletteMap map(histogram_of(colors));
-  CHECK(map.colors() == 255);
-  int worst = 0;
-  for (const Rgb& color : colors) {
-    worst = std::max(worst, largest_difference(color, map.palette()[map.index(color)].color));
-  }
-  CHECK(worst <= 40);  // 255 boxes in 32^3 bins: about five bins a side
-}
-
-TEST_CASE("palette: many colours in another order -> the same palette") {
-  constexpr std::uint64_t kSeed = 9;
-  SplitMix64 random(kSeed);
-  std::vector<Rgb> colors;
-  for (int i = 0; i < 5000; ++i) {
-    colors.push_back(random_color(random));
-  }
-  const PaletteMap forward(histogram_of(colors));
-  std::reverse(colors.begin(), colors.end());
-  const PaletteMap backward(histogram_of(colors));
-  CAPTURE(kSeed);
-  for (std::size_t i = 0; i < 256; ++i) {
-    CHECK(forward.palette()[i].color == backward.palette()[i].color);
-  }
-  for (const Rgb& color : colors) {
-    REQUIRE(forward.index(color) == backward.index(color));
-  }
-}
-
 TEST_CASE("palette: more colours than entries -> the same on every machine, ties included") {
   // Colours on a coarse lattice: most cuts sort many equal values. The hash is FNV-1a, 32 bits.
   ColorHistogram histogram;

@@ -8,12 +8,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -265,16 +263,6 @@ Voxels from_zero(Voxels voxels) {
   return voxels;
 }
 
-Sides sides_of(const Voxels& voxels) {
-  Sides sides{};
-  for (const Voxel& voxel : voxels) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      sides[i] = std::max(sides[i], voxel[i] + 1);
-    }
-  }
-  return sides;
-}
-
 Voxels random_voxels(std::array<int, 3> size, std::size_t count, std::mt19937& random) {
   Voxels voxels;
   for (std::size_t i = 0; i < count; ++i) {
@@ -439,35 +427,6 @@ TEST_CASE("vox: MATL -> kind and values, newer names before older ones, bad numb
   CHECK(palette[5].weight == 1);
   CHECK(std::isfinite(palette[5].ior));
   CHECK(palette[255].kind == SurfaceKind::kDiffuse);
-}
-
-TEST_CASE("vox: each of the 48 rotations and mirrors -> as a matrix turns the voxels' centres") {
-  const std::uint32_t seed = 20240517;
-  CAPTURE(seed);
-  std::mt19937 random(seed);
-  const std::array<std::array<int, 3>, 4> sizes{{{3, 4, 5}, {2, 2, 2}, {1, 6, 1}, {7, 5, 9}}};
-  const Voxels marker{{0, 0, 0, 200}};  // unturned, so that a shift of the whole model shows
-  for (const Turn& turn : all_turns()) {
-    for (const std::array<int, 3> size : sizes) {
-      CAPTURE(turn.packed);
-      CAPTURE(size[0]);
-      const Voxels voxels = with_corners(size, random_voxels(size, 20, random));
-      Matrix world = turn.matrix;
-      world.shift = {5, -3, 11};
-      Dictionary frame = moved(5, -3, 11);
-      frame.emplace_back("_r", std::to_string(turn.packed));
-      Voxels expected;
-      place(Matrix{}, {1, 1, 1}, marker, expected);
-      place(world, size, voxels, expected);
-      expected = from_zero(expected);
-      const auto model =
-          read(file(model_chunks({1, 1, 1}, marker) + model_chunks(size, voxels) +
-                    transform_chunk(0, 1, {{}}) + group_chunk(1, {2, 4}) + transform_chunk(2, 3, {{}}) +
-                    shape_chunk(3, 0) + transform_chunk(4, 5, {frame}) + shape_chunk(5, 1)));
-      CHECK(voxels_of(*model) == expected);
-      CHECK(model->size() == sides_of(expected));
-    }
-  }
 }
 
 TEST_CASE("vox: random nested groups with rotations -> as the product of their matrices") {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <ctime>
 #include <map>
-#include <string>
 #include <vector>
 
 #include "scene/random.h"
@@ -88,32 +87,4 @@ TEST_CASE("voxelise_cells: random triangles -> what each of them meets, with the
     CHECK((by_cell(triangles, level, &blocks) == by_triangle(triangles)));
   }
   CHECK(blocks > 100);
-}
-
-TEST_CASE("voxelise: 20,000 triangles that fill a world of 512 -> seconds") {
-  SplitMix64 random(19);
-  TriangleMesh mesh;
-  for (int i = 0; i < 3000; ++i) {
-    mesh.positions.push_back({random.between(0, 1000) / 1000.0, random.between(0, 1000) / 1000.0,
-                              random.between(0, 1000) / 1000.0});
-  }
-  for (int i = 0; i < 20000; ++i) {
-    const auto corner = [&] { return random.below(3000); };
-    mesh.triangles.push_back({corner(), corner(), corner()});
-  }
-  const int kLevel = thimble::tests::many_or_few(9, 7);
-  // Processor time: what else the machine does is no matter.
-  const std::clock_t start = std::clock();
-  std::uint64_t volume = 0;
-  std::uint64_t calls = 0;
-  voxelise(mesh, kLevel, false, nullptr, BlockSink([&](const UnitPoint&, int level, std::uint8_t) {
-             volume += std::uint64_t{1} << (3 * level);
-             ++calls;
-           }),
-           {});
-  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  MESSAGE(volume << " voxels in " << calls << " blocks, " << seconds << " s");
-  CHECK(volume > std::uint64_t{1} << (3 * kLevel - 1));
-  CHECK(calls < volume / 3);
-  CHECK(seconds < 10);  // 3.7 s on a core that was shared
 }
