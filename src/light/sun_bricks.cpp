@@ -4,6 +4,7 @@
 #include "../tree/deep_map.h"
 #include "thimble/light/host/optics.h"
 #include "thimble/light/map_render.h"
+#include "thimble/tree/edited_world.h"
 
 namespace thimble {
 
@@ -33,6 +34,7 @@ Status SunBricks::make(const BrickMap& map, const Vec3i& towards, Bytes room, Su
   SunBricks result;
   result.bits_ = room.data;
   result.directory_ = map.directory();
+  result.stamp_ = map.stamp();
   result.towards_ = towards;
   for (int axis = 0; axis < 3; ++axis) {
     result.side_[axis] = map.box().high[axis] - map.box().low[axis];
@@ -42,50 +44,70 @@ Status SunBricks::make(const BrickMap& map, const Vec3i& towards, Bytes room, Su
   return Status::kOk;
 }
 
+// How the light's rays move in the mirrored numbering, where they go up on all axes: fastest along c.
+struct SunBricks::Way {
+  explicit Way(const Vec3i& towards) {
+    const Vec3i direction = shorten(towards);
+    for (int axis = 0; axis < 3; ++axis) {
+      flipped[axis] = direction[axis] < 0;
+      d[axis] = flipped[axis] ? -direction[axis] : direction[axis];
+      c = d[axis] > d[c] ? axis : c;
+    }
+    a = c == 0 ? 1 : 0;
+    b = c == 2 ? 1 : 2;
+  }
+  // A ray that is k layers further on has moved by more than k - 1 and less than k + 1 bricks along c, and d_a / d_c times
+  // that along another axis: at least and at most so many bricks.
+  int32_t least(int axis, int32_t k) const { return (k == 0 ? 0 : k - 1) * d[axis] / d[c]; }
+  int32_t most(int axis, int32_t k) const { return ((k + 1) * d[axis] + d[c] - 1) / d[c]; }
+
+  int32_t d[3];
+  bool flipped[3];
+  int c = 0;
+  int a;
+  int b;
+};
+
 bool SunBricks::prove(uint32_t bricks) {
   const uint32_t left = cells_ - done_;
   const uint32_t end = done_ + (bricks < left ? bricks : left);
-  const auto width = static_cast<uint32_t>(side_.x);
-  const auto depth = static_cast<uint32_t>(side_.y);
   for (; done_ < end; ++done_) {
-    const uint32_t row = done_ / width;
-    if (is_free({static_cast<int32_t>(done_ % width), static_cast<int32_t>(row % depth),
-                 static_cast<int32_t>(row / depth)})) {
-      bits_[done_ >> 3] = static_cast<uint8_t>(bits_[done_ >> 3] | 1U << (done_ & 7U));
-    }
+    prove_cell(done_);
   }
   return done_ < cells_;
 }
 
-// In the mirrored numbering, where rays go up on all axes: a ray from brick (a, b, c) that is k layers further on has
-// moved by more than k - 1 and less than k + 1 bricks along c, and d_a / d_c times that along a.
+void SunBricks::prove_cell(uint32_t cell) {
+  const auto width = static_cast<uint32_t>(side_.x);
+  const auto depth = static_cast<uint32_t>(side_.y);
+  const uint32_t row = cell / width;
+  if (is_free({static_cast<int32_t>(cell % width), static_cast<int32_t>(row % depth),
+               static_cast<int32_t>(row / depth)})) {
+    bits_[cell >> 3] = static_cast<uint8_t>(bits_[cell >> 3] | 1U << (cell & 7U));
+  }
+}
+
 bool SunBricks::is_free(const Vec3i& brick) const {
-  const Vec3i direction = shorten(towards_);
-  int32_t d[3];
+  const Way way(towards_);
   int32_t at[3];
   int32_t step[3];
-  int c = 0;
   int32_t stride = 2;
   int32_t offset = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const bool flipped = direction[axis] < 0;
-    d[axis] = flipped ? -direction[axis] : direction[axis];
-    c = d[axis] > d[c] ? axis : c;
-    at[axis] = flipped ? side_[axis] - 1 - brick[axis] : brick[axis];
+    at[axis] = way.flipped[axis] ? side_[axis] - 1 - brick[axis] : brick[axis];
     offset += brick[axis] * stride;
-    step[axis] = flipped ? -stride : stride;
+    step[axis] = way.flipped[axis] ? -stride : stride;
     stride *= side_[axis];
   }
-  const int a = c == 0 ? 1 : 0;
-  const int b = c == 2 ? 1 : 2;
-  for (int32_t k = 0; at[c] + k < side_[c]; ++k) {
-    const int32_t back = k == 0 ? 0 : k - 1;
+  const int a = way.a;
+  const int b = way.b;
+  for (int32_t k = 0; at[way.c] + k < side_[way.c]; ++k) {
     const int32_t last_a = side_[a] - 1 - at[a];
     const int32_t last_b = side_[b] - 1 - at[b];
-    const int32_t from_a = back * d[a] / d[c];
-    const int32_t from_b = back * d[b] / d[c];
-    int32_t to_a = ((k + 1) * d[a] + d[c] - 1) / d[c];
-    int32_t to_b = ((k + 1) * d[b] + d[c] - 1) / d[c];
+    const int32_t from_a = way.least(a, k);
+    const int32_t from_b = way.least(b, k);
+    int32_t to_a = way.most(a, k);
+    int32_t to_b = way.most(b, k);
     if (from_a > last_a || from_b > last_b) {
       return true;
     }
@@ -94,13 +116,109 @@ bool SunBricks::is_free(const Vec3i& brick) const {
     for (int32_t j = from_b; j <= to_b; ++j) {
       for (int32_t i = from_a; i <= to_a; ++i) {
         const bool itself = k == 0 && i == 0 && j == 0;
-        if (!itself && bits::load16(directory_ + offset + k * step[c] + i * step[a] + j * step[b]) != 0) {
+        if (!itself && bits::load16(directory_ + offset + k * step[way.c] + i * step[a] + j * step[b]) != 0) {
           return false;
         }
       }
     }
   }
   return true;
+}
+
+// ---- worlds that are edited
+
+// Calls each(cell) for the bricks of a layer from which rays may come to a box of bricks, both mirrored, from the
+// `first` of them on, until it is false.
+template <class Each>
+void SunBricks::each_behind(const Way& way, const VoxelBox& box, int32_t layer, uint32_t first,
+                            const Each& each) const {
+  const int32_t k_most = box.high[way.c] - 1 - layer;
+  if (k_most < 0) {
+    return;
+  }
+  const int32_t k_least = box.low[way.c] > layer ? box.low[way.c] - layer : 0;
+  int32_t low[3] = {};
+  int32_t size[3] = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == way.c) {
+      continue;
+    }
+    const int32_t from = box.low[axis] - way.most(axis, k_most);
+    const int32_t end = box.high[axis] - way.least(axis, k_least);
+    low[axis] = from < 0 ? 0 : from;
+    size[axis] = end > low[axis] ? end - low[axis] : 0;
+  }
+  const auto width = static_cast<uint32_t>(size[way.a]);
+  const uint32_t count = width * static_cast<uint32_t>(size[way.b]);
+  for (uint32_t number = first; number < count; ++number) {
+    int32_t at[3];
+    at[way.c] = layer;
+    at[way.a] = low[way.a] + static_cast<int32_t>(number % width);
+    at[way.b] = low[way.b] + static_cast<int32_t>(number / width);
+    for (int axis = 0; axis < 3; ++axis) {
+      at[axis] = way.flipped[axis] ? side_[axis] - 1 - at[axis] : at[axis];
+    }
+    if (!each(static_cast<uint32_t>((at[2] * side_.y + at[1]) * side_.x + at[0]))) {
+      return;
+    }
+  }
+}
+
+bool SunBricks::follow(const EditedWorld& world, uint32_t bricks) {
+  if (bits_ == nullptr || world.map().directory() != directory_) {
+    return false;
+  }
+  const Way way(towards_);
+  const int32_t layers = side_[way.c];
+  if (world.map().stamp() != stamp_) {
+    // What was changed since these bits were last right is within the box, if it was empty then or later.
+    const bool known = static_cast<int32_t>(world.changed_from() - stamp_) <= 0;
+    const bool is_new = edited_.empty();
+    VoxelBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int32_t low = known ? world.changed().low[axis] >> 2 : 0;
+      const int32_t high = known ? (world.changed().high[axis] + 3) >> 2 : side_[axis];
+      box.low[axis] = way.flipped[axis] ? side_[axis] - high : low;
+      box.high[axis] = way.flipped[axis] ? side_[axis] - low : high;
+      edited_.low[axis] = is_new || box.low[axis] < edited_.low[axis] ? box.low[axis] : edited_.low[axis];
+      edited_.high[axis] =
+          is_new || box.high[axis] > edited_.high[axis] ? box.high[axis] : edited_.high[axis];
+    }
+    for (int32_t layer = 0; layer < layers; ++layer) {
+      each_behind(way, box, layer, 0, [this](uint32_t cell) {
+        bits_[cell >> 3] = static_cast<uint8_t>(bits_[cell >> 3] & ~(1U << (cell & 7U)));
+        return true;
+      });
+    }
+    stamp_ = world.map().stamp();
+    layers_left_ = static_cast<uint32_t>(layers) + 1;  // the one that was begun is looked at again
+  }
+  const uint32_t left = cells_ - done_;
+  if (prove(bricks)) {
+    return true;
+  }
+  bricks -= bricks < left ? bricks : left;
+  while (layers_left_ != 0) {
+    each_behind(way, edited_, layer_, in_layer_, [this, &bricks](uint32_t cell) {
+      if (bricks == 0) {
+        return false;
+      }
+      --bricks;
+      ++in_layer_;
+      if ((bits_[cell >> 3] >> (cell & 7U) & 1U) == 0) {
+        prove_cell(cell);
+      }
+      return true;
+    });
+    if (bricks == 0) {
+      return true;
+    }
+    --layers_left_;
+    in_layer_ = 0;
+    layer_ = layer_ + 1 < layers ? layer_ + 1 : 0;
+  }
+  edited_ = {};
+  return false;
 }
 
 }  // namespace thimble

@@ -43,6 +43,9 @@ Status NodeColors::make(const CompactTree& tree, Span<const Rgb8> palette, Rgb8 
   if (out.size < node_colors_bytes(nodes)) {
     return Status::kOutOfMemory;
   }
+  if (!tree.nodes_in_order()) {
+    return Status::kDamaged;
+  }
   NodeColors result;
   result.packed_ = out.data;
   result.nodes_ = nodes;

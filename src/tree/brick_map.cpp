@@ -28,7 +28,6 @@ constexpr uint32_t kMixedOffset = 28;
 // level; from it on the low byte is the material of all that is seen of the brick.
 constexpr uint32_t kUniform = 0xFF00;
 
-constexpr int kMostLevel = kDeepWorlds ? kMaxDeepMapLevel : kMaxBrickMapLevel;
 
 using brick_parts::kChildBits;
 using brick_parts::kOriginBytes;
@@ -412,7 +411,7 @@ const char* BrickMap::validate(ConstBytes bytes) {
 }
 
 Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t* size) {
-  if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMostLevel) {
+  if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMostMapLevel) {
     return Status::kOutOfRange;
   }
   if (!is_aligned(out.data)) {
@@ -435,7 +434,7 @@ Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t*
 }
 
 size_t most_brick_map_bytes(const CompactTree& tree) {
-  if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMostLevel) {
+  if (tree.bytes() == nullptr || tree.level() < kMinBrickMapLevel || tree.level() > kMostMapLevel) {
     return 0;
   }
   if constexpr (kDeepWorlds) {

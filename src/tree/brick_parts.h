@@ -1,6 +1,7 @@
 // What a brick map and a world that is edited share. Internal to src/.
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "../base/bits.h"
@@ -12,6 +13,10 @@ namespace thimble::brick_parts {
 // the materials of voxels and of solid blocks before those of the brick.
 inline constexpr uint32_t kOriginBytes = 12;
 inline constexpr uint32_t kChildBits = 24;
+
+constexpr size_t up8(size_t bytes) {
+  return (bytes + 7) & ~size_t{7};
+}
 
 // Bits of a brick whose octants (as bits) `octant` and voxels of it `mask` are solid.
 inline uint64_t spread(unsigned octant, unsigned mask) {

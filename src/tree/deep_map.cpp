@@ -24,10 +24,10 @@ constexpr uint32_t kDeepMixedOffset = 40;
 constexpr uint32_t kDeepHeaderBytes = 48;
 constexpr uint32_t kDeepRankBytes = 8;  // for 32 bricks: which are mixed, and how many are before them
 
-constexpr uint32_t kPageEntries = deep_place::kPageEntries;
-constexpr int32_t kPageSide = deep_place::kPageSide;
-constexpr int kPageLevel = 4;  // of the node that is a page
 using brick_parts::kOriginBytes;
+using deep_place::kPageEntries;
+using deep_place::kPageLevel;
+using deep_place::kPageSide;
 
 // How many there are of what a map holds, and where each begins, in bytes from the map's first.
 struct DeepLayout {

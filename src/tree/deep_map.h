@@ -14,6 +14,7 @@ inline constexpr bool kDeepWorlds = true;
 #else
 inline constexpr bool kDeepWorlds = false;
 #endif
+inline constexpr int kMostMapLevel = kDeepWorlds ? kMaxDeepMapLevel : kMaxBrickMapLevel;
 
 // A place in the box, in bricks: x + y * 2^8 + z * 2^16. So a step along an axis is the same number everywhere, as in
 // the directories of other maps. Pages are 4 x 4 x 4 bricks.
@@ -21,8 +22,14 @@ namespace deep_place {
 
 inline constexpr int32_t kStride[3] = {1, 1 << 8, 1 << 16};
 inline constexpr int32_t kPageSide = 4;
+inline constexpr int kPageLevel = 4;  // of the node that is a page
 inline constexpr uint32_t kPageEntries = 64;
 
+// Of the brick round a voxel, both counted from the box's corner.
+[[gnu::always_inline]] constexpr uint32_t of_voxel(const Vec3i& voxel) {
+  return static_cast<uint32_t>(voxel.x >> 2) | static_cast<uint32_t>(voxel.y >> 2) << 8 |
+         static_cast<uint32_t>(voxel.z >> 2) << 16;
+}
 // The place's page in the table: x / 4 + y / 4 * 2^6 + z / 4 * 2^12.
 [[gnu::always_inline]] constexpr uint32_t page_of(uint32_t place) {
   return (place >> 2 & 0x3FU) | (place >> 4 & 0xFC0U) | (place >> 6 & 0x3F000U);

@@ -7,6 +7,7 @@
 #include "../base/fault.h"
 #include "brick_parts.h"
 #include "compact_header.h"
+#include "deep_world.h"
 #include "thimble/base/memory.h"
 
 namespace thimble {
@@ -14,14 +15,11 @@ namespace {
 
 using brick_parts::kChildBits;
 using brick_parts::kOriginBytes;
+using brick_parts::up8;
 
 constexpr unsigned kAllChildren = 0xFF;
 constexpr uint32_t kNodeBits = kMostEditRoom.nodes;
 static_assert(kNodeBits == (uint32_t{1} << kChildBits) - 1);
-
-size_t up8(size_t bytes) {
-  return (bytes + 7) & ~size_t{7};
-}
 
 // Opens or closes a gap in an array of bytes.
 void move_bytes(uint8_t* array, uint32_t from, uint32_t to, uint32_t end) {
@@ -36,9 +34,22 @@ void move_origins(uint8_t* word, uint32_t bricks, uint32_t mask, uint32_t from, 
   }
 }
 
-// Whether the masks have children where they should: what `open` does not look at. Counts mixed bricks.
-bool is_sound(const CompactTree& tree, uint32_t voxels, uint32_t blocks, uint32_t* bricks) {
-  *bricks = 0;
+// Without those of level 9 and 10 where the core has none.
+size_t bytes_of(int level, const EditRoom& room) {
+  if constexpr (kDeepWorlds) {
+    return edited_world_bytes(level, room);
+  }
+  return packed_world_bytes(level, room);
+}
+bool is_deep(const CompactTree& tree) {
+  return DeepMap::is_deep(tree.level());
+}
+
+// Whether the masks have children where they should: what `open` does not look at. Counts mixed bricks, and of level 9 and
+// 10 what else takes room.
+bool is_sound(const CompactTree& tree, uint32_t voxels, uint32_t blocks, EditRoom* room) {
+  uint32_t groups = 1;
+  *room = {tree.node_count(), voxels + blocks, 0, 0};
   uint32_t first = 0;
   uint32_t end = tree.empty() ? 0 : 1;
   uint32_t solid = 0;
@@ -48,9 +59,17 @@ bool is_sound(const CompactTree& tree, uint32_t voxels, uint32_t blocks, uint32_
       const unsigned mask = tree.mask(node);
       children += bits::popcount8(mask);
       solid += mask == 0 ? 1U : 0U;
-      *bricks += level == 2 && mask != 0 ? 1U : 0U;
+      room->bricks += level == 2 && mask != 0 ? 1U : 0U;
+      if (is_deep(tree) && mask != 0) {
+        groups += level > 2 ? 1U : 0U;
+        room->pages += level == 4 ? 1U : 0U;
+      }
     }
     if (level == 1) {
+      if (is_deep(tree)) {
+        room->nodes = 8 * groups;
+        room->leaves = 0;
+      }
       return end == tree.node_count() && children == voxels && solid == blocks;
     }
     first = end;
@@ -64,16 +83,9 @@ bool is_sound(const CompactTree& tree, uint32_t voxels, uint32_t blocks, uint32_
 
 }  // namespace
 
-struct EditedWorld::Place {
-  uint32_t node;
-  int level;
-};
-
 EditRoom EditedWorld::room_of(const CompactTree& tree) {
   EditRoom room;
-  room.nodes = tree.node_count();
-  room.leaves = tree.solid_blocks_ + tree.voxel_bits_;
-  is_sound(tree, tree.voxel_bits_, tree.solid_blocks_, &room.bricks);
+  is_sound(tree, tree.voxel_bits_, tree.solid_blocks_, &room);
   return room;
 }
 
@@ -84,11 +96,24 @@ EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
   constexpr size_t kBytesABrick = 8 + kOriginBytes + kNodesABrick + kLeavesABrick + 2;
   constexpr size_t kRounding = 64;
   EditRoom room = room_of(tree);
-  const size_t least = edited_world_bytes(tree.level(), room);
+  const size_t least = bytes_of(tree.level(), room);
   if (least == 0 || least > bytes) {
     return {};
   }
-  if (bytes - least > kRounding) {
+  if (is_deep(tree) && bytes - least > kRounding) {
+    // A page that digging opens, with twelve bricks and six nodes above them.
+    constexpr EditRoom kMore{48, 0, 12, 1};
+    constexpr size_t kBytesAPage = 9 * size_t{kMore.nodes} + 144 * size_t{kMore.bricks} + 1428;
+    const size_t most_nodes =
+        (kMostEditRoom.nodes - room.nodes - 8 * room.bricks) / (kMore.nodes + 8 * kMore.bricks);
+    const size_t most_pages = kMostEditRoom.pages - room.pages;
+    const size_t most = most_nodes < most_pages ? most_nodes : most_pages;
+    const size_t fit = (bytes - least - kRounding) / kBytesAPage;
+    const auto more = static_cast<uint32_t>(fit < most ? fit : most);
+    room.nodes += kMore.nodes * more;
+    room.bricks += kMore.bricks * more;
+    room.pages += more;
+  } else if (bytes - least > kRounding) {
     size_t more = (bytes - least - kRounding) / kBytesABrick;
     more = more < kMostEditRoom.bricks - room.bricks ? more : kMostEditRoom.bricks - room.bricks;
     room.bricks += static_cast<uint32_t>(more);
@@ -99,23 +124,30 @@ EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
 }
 
 Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes bytes, EditedWorld* world) {
-  const size_t needed = edited_world_bytes(tree.level(), room);
+  const size_t needed = bytes_of(tree.level(), room);
   if (needed == 0) {
     return Status::kOutOfRange;
   }
   if (tree.bytes() == nullptr || tree.merged() || (reinterpret_cast<size_t>(bytes.data) & 7U) != 0) {
     return Status::kBadArgument;
   }
-  EditRoom used = room_of(tree);
-  if (!is_sound(tree, tree.voxel_bits_, tree.solid_blocks_, &used.bricks)) {
+  EditRoom used;
+  if (!is_sound(tree, tree.voxel_bits_, tree.solid_blocks_, &used)) {
     return Status::kDamaged;
   }
   if (used.nodes > room.nodes || used.leaves > room.leaves || used.bricks > room.bricks ||
-      bytes.size < needed) {
+      used.pages > room.pages || bytes.size < needed) {
     return Status::kOutOfMemory;
   }
   EditedWorld made;
   made.room_ = room;
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree)) {
+      const Status status = DeepWorld::make(tree, bytes.data, &made);
+      *world = status == Status::kOk ? made : *world;
+      return status;
+    }
+  }
   const size_t blocks = (size_t{room.nodes} >> kDefaultRankShift) + 1;
   const uint32_t cells = uint32_t{1} << (3 * (tree.level() - 2));
   uint8_t* next = bytes.data;
@@ -177,15 +209,14 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
   for (uint32_t kind = 0; kind < kSolidBrickKinds; ++kind) {
     bits::store64(made.bricks_ + 8 * (1 + size_t{room.bricks} + kind), ~uint64_t{0});
   }
-  made.note_change(0);
-  for (int32_t z = 0; z < side; ++z) {
-    for (int32_t y = 0; y < side; ++y) {
-      for (int32_t x = 0; x < side; ++x) {
-        const Status status = made.update_cell({4 * x, 4 * y, 4 * z});
-        if (status != Status::kOk) {
-          return status;
-        }
-      }
+  made.write_header(0);
+  made.forget_changes();
+  const int bits_a_side = tree.level() - 2;
+  for (int32_t cell = 0; cell < static_cast<int32_t>(cells); ++cell) {
+    const Status status = made.update_cell(
+        {4 * (cell & (side - 1)), 4 * (cell >> bits_a_side & (side - 1)), 4 * (cell >> 2 * bits_a_side)});
+    if (status != Status::kOk) {
+      return status;
     }
   }
   *world = made;
@@ -193,6 +224,11 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
 }
 
 EditRoom EditedWorld::free_room() const {
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree_) && header_ != nullptr) {
+      return DeepWorld::free_room(*this);
+    }
+  }
   EditRoom room;
   room.nodes = room_.nodes - tree_.node_count_;
   room.leaves = room_.leaves - tree_.solid_blocks_ - tree_.voxel_bits_;
@@ -270,6 +306,14 @@ Status EditedWorld::check_room(const Vec3i& voxel, int material, bool* changes) 
     leaves = material >= 0 && !is_solid ? 1 : 0;
   }
   *changes = true;
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree_)) {
+      const int opened = !found                    ? place.level - (tree_.empty() ? 0 : 1)
+                         : masks_[place.node] == 0 ? place.level
+                                                   : 0;
+      return DeepWorld::has_room(*this, voxel, opened) ? Status::kOk : Status::kOutOfMemory;
+    }
+  }
   const EditRoom left = free_room();
   const uint32_t number = bits::load16(cell_of(voxel));
   const bool wants_brick = number == 0 || number > room_.bricks;
@@ -359,8 +403,38 @@ void EditedWorld::count_from(uint32_t node) {
   }
 }
 
+void EditedWorld::add_root(uint8_t material) {
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree_)) {
+      DeepWorld::add_root(this, material);
+      return;
+    }
+  }
+  insert_nodes(0, 1);
+  count_from(0);
+  change_blocks(0, 0, 1, material);
+}
+
+// The solid block that is all of the world goes.
+void EditedWorld::remove_root() {
+  tree_.bounds_ = {};
+  if (is_deep(tree_)) {
+    tree_.node_count_ = 0;
+    return;
+  }
+  change_blocks(0, 1, 0, 0);
+  remove_nodes(0, 1);
+  count_from(0);
+}
+
 // The solid block `node` gets children of its material, those of `mask`.
 void EditedWorld::open_block(uint32_t node, int level, unsigned mask) {
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree_)) {
+      DeepWorld::open_block(this, node, level, mask);
+      return;
+    }
+  }
   const uint32_t own = tree_.blocks_before(node);
   const uint8_t material = leaves_[own];
   const uint32_t child = tree_.first_child(node);
@@ -379,6 +453,12 @@ void EditedWorld::open_block(uint32_t node, int level, unsigned mask) {
 
 // The children of `node`, leaves of one material, become one: a solid block.
 void EditedWorld::close_node(uint32_t node, int level) {
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree_)) {
+      DeepWorld::close_node(this, node, level);
+      return;
+    }
+  }
   const uint32_t child = tree_.first_child(node);
   const uint32_t count = bits::popcount8(masks_[node]);
   uint8_t material = 0;
@@ -398,6 +478,12 @@ void EditedWorld::close_node(uint32_t node, int level) {
 }
 
 void EditedWorld::add_child(uint32_t node, int level, unsigned octant, uint8_t material) {
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree_)) {
+      DeepWorld::add_child(this, node, level, octant, material);
+      return;
+    }
+  }
   const uint32_t child = child_of(node, octant);
   masks_[node] = static_cast<uint8_t>(masks_[node] | 1U << octant);
   if (level == 1) {
@@ -412,6 +498,12 @@ void EditedWorld::add_child(uint32_t node, int level, unsigned octant, uint8_t m
 
 // A leaf that is not its parent's only child.
 void EditedWorld::remove_child(uint32_t node, int level, unsigned octant) {
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree_)) {
+      DeepWorld::remove_child(this, node, level, octant);
+      return;
+    }
+  }
   const uint32_t child = child_of(node, octant);
   if (level == 1) {
     change_voxels(child - tree_.node_count_, 1, 0, 0);
@@ -441,6 +533,11 @@ uint32_t EditedWorld::kind_of(uint8_t material) const {
 
 // The brick round `voxel` becomes what the tree has there. Fails only where check_room was not asked.
 Status EditedWorld::update_cell(const Vec3i& voxel) {
+  if constexpr (kDeepWorlds) {
+    if (is_deep(tree_)) {
+      return DeepWorld::update_cell(this, voxel);
+    }
+  }
   uint8_t* const cell = cell_of(voxel);
   const uint32_t old = bits::load16(cell);
   uint32_t number = 0;
@@ -479,19 +576,30 @@ Status EditedWorld::update_cell(const Vec3i& voxel) {
 }
 
 // Header and map agree on a stamp that no view of before has.
-void EditedWorld::note_change(int64_t voxels) {
+void EditedWorld::write_header(int64_t voxels) {
   using namespace compact_header;
   const uint32_t stamp = bits::load32(header_ + kChecksumOffset) + 1;
   bits::store32(header_ + kChecksumOffset, stamp);
   map_.tree_checksum_ = stamp;
   bits::store64(header_ + kVoxelCountOffset, tree_.voxel_count() + static_cast<uint64_t>(voxels));
-  CompactShape shape;
-  shape.level = tree_.level();
-  shape.nodes = tree_.node_count_;
-  shape.solid_blocks = tree_.solid_blocks_;
-  shape.voxel_bits = tree_.voxel_bits_;
-  shape.many_materials = true;
-  tree_.size_bytes_ = compact_bytes(shape);
+  if (!is_deep(tree_)) {
+    CompactShape shape;
+    shape.level = tree_.level();
+    shape.nodes = tree_.node_count_;
+    shape.solid_blocks = tree_.solid_blocks_;
+    shape.voxel_bits = tree_.voxel_bits_;
+    shape.many_materials = true;
+    tree_.size_bytes_ = compact_bytes(shape);
+  }
+}
+
+Status EditedWorld::note_change(const Vec3i& voxel, int64_t voxels) {
+  VoxelBox* const boxes[2] = {&changed_, &tree_.bounds_};
+  for (int i = 0; i < (voxels < 0 ? 1 : 2); ++i) {
+    grow_box(boxes[i], voxel, 0, 0);
+  }
+  write_header(voxels);
+  return update_cell(voxel);
 }
 
 // ---- edits
@@ -502,12 +610,10 @@ Status EditedWorld::set(const Vec3i& voxel, uint8_t material) {
   if (status != Status::kOk || !changes) {
     return status;
   }
-  uint32_t path[kMaxBrickMapLevel + 1] = {};
+  uint32_t path[kMostMapLevel + 1] = {};
   bool is_new = tree_.empty();  // of what lies above, nothing was solid here
   if (is_new) {
-    insert_nodes(0, 1);
-    count_from(0);
-    change_blocks(0, 0, 1, material);
+    add_root(material);
   }
   uint32_t node = 0;
   for (int level = tree_.level();; --level) {
@@ -528,9 +634,7 @@ Status EditedWorld::set(const Vec3i& voxel, uint8_t material) {
   for (int level = 1; level <= tree_.level() && is_uniform(path[level], level, material); ++level) {
     close_node(path[level], level);
   }
-  grow_box(&tree_.bounds_, voxel, 0, 0);
-  note_change(is_new ? 1 : 0);
-  return update_cell(voxel);
+  return note_change(voxel, is_new ? 1 : 0);
 }
 
 Status EditedWorld::clear(const Vec3i& voxel) {
@@ -539,7 +643,7 @@ Status EditedWorld::clear(const Vec3i& voxel) {
   if (status != Status::kOk || !changes) {
     return status;
   }
-  uint32_t path[kMaxBrickMapLevel + 1] = {};
+  uint32_t path[kMostMapLevel + 1] = {};
   uint32_t node = 0;
   for (int level = tree_.level(); level >= 1; --level) {
     path[level] = node;
@@ -557,60 +661,13 @@ Status EditedWorld::clear(const Vec3i& voxel) {
   if (level <= tree_.level()) {
     remove_child(path[level], level, octant_of(voxel, level));
   } else {
-    change_blocks(0, 1, 0, 0);
-    remove_nodes(0, 1);
-    count_from(0);
-    tree_.bounds_ = {};
+    remove_root();
   }
-  note_change(-1);
-  return update_cell(voxel);
+  return note_change(voxel, -1);
 }
 
 Status EditedWorld::pack(Bytes out, size_t* size) const {
-  using namespace compact_header;
-  if (tree_.bytes() == nullptr) {
-    return Status::kBadArgument;
-  }
-  const uint32_t leaves = tree_.solid_blocks_ + tree_.voxel_bits_;
-  CompactShape shape;
-  shape.level = tree_.level();
-  shape.nodes = tree_.node_count_;
-  shape.solid_blocks = tree_.solid_blocks_;
-  shape.voxel_bits = tree_.voxel_bits_;
-  for (uint32_t leaf = 1; leaf < leaves && !shape.many_materials; ++leaf) {
-    shape.many_materials = leaves_[leaf] != leaves_[0];
-  }
-  const size_t bytes = compact_bytes(shape);
-  if (size != nullptr) {
-    *size = bytes;
-  }
-  if (out.size < bytes) {
-    return Status::kOutOfMemory;
-  }
-  uint8_t* const base = out.data;
-  for (size_t i = 0; i < bytes; ++i) {
-    base[i] = i < kCompactHeaderBytes ? header_[i] : uint8_t{0};
-  }
-  const CompactSections at = sections_of(shape);
-  const size_t counts = at.merged - at.ranks;
-  __builtin_memcpy(base + at.masks, masks_, shape.nodes);
-  __builtin_memcpy(base + at.ranks, ranks_, counts);
-  if (shape.many_materials) {
-    __builtin_memcpy(base + at.block_ranks, block_ranks_, at.materials - at.block_ranks);
-    __builtin_memcpy(base + at.materials, leaves_, leaves);
-  }
-  base[kRankShiftOffset] = kDefaultRankShift;
-  base[kFlagsOffset] = static_cast<uint8_t>(shape.many_materials ? kManyMaterialsFlag : 0U);
-  base[kMaterialOffset] = shape.many_materials || leaves == 0 ? uint8_t{0} : leaves_[0];
-  bits::store32(base + kSizeOffset, static_cast<uint32_t>(bytes));
-  bits::store32(base + kNodesOffset, shape.nodes);
-  bits::store32(base + kSolidBlocksOffset, shape.solid_blocks);
-  bits::store32(base + kVoxelBitsOffset, shape.voxel_bits);
-  VoxelBox bounds;
-  bits::store64(base + kVoxelCountOffset, solid_volume(tree_, &bounds));
-  store_bounds(bounds, base);
-  bits::store32(base + kChecksumOffset, checksum_around(base, bytes, kChecksumOffset));
-  return Status::kOk;
+  return CompactTree::make(Span<const CompactTree>(&tree_, 1), out, nullptr, size);
 }
 
 }  // namespace thimble

@@ -443,7 +443,7 @@ TEST_CASE("edited worlds: one of no tree, of a level without maps, of too much r
   const auto make = [&](const CompactTree& from, const EditRoom& wanted, Bytes to) {
     return EditedWorld::make(from, wanted, to, &world);
   };
-  for (const int level : {1, 9}) {
+  for (const int level : {1, 11}) {
     OwnedPool other(level);
     REQUIRE(other.octree.insert({1, 1, 1}, 2) == Status::kOk);
     const HeapBytes of_level = compact_of(other.octree);

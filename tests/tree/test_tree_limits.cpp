@@ -367,7 +367,7 @@ TEST_CASE("tree limits: room in any number of bytes -> as much as fits, 65,000 b
     CHECK(last > 50);
     CHECK(EditedWorld::room_in(tree, std::size_t{1} << 28).bricks == 65000);
   }
-  OwnedPool large(9);
+  OwnedPool large(11);
   REQUIRE(large.octree.insert({1, 1, 1}, 4) == Status::kOk);
   const HeapBytes compact = compact_of(large.octree);
   CHECK(EditedWorld::room_in(open_or_throw(compact), std::size_t{1} << 30).nodes == 0);

@@ -24,12 +24,18 @@
 
 namespace thimble {
 
+class EditedWorld;
+
 /// The bricks of a map from which nothing is in the way to a distant light, a bit each, so that most shadow rays end
 /// after a few voxels. The bytes of the bits and of the map outlive it.
 ///
 ///     SunBricks sun;
 ///     const Bytes bytes = arena.take(SunBricks::bytes(map));
 ///     SunBricks::make(map, scene.lights[0].place, bytes, &sun); sun.prove();
+///
+/// In a world that is edited, each frame:
+///
+///     world.edit(...); sun.follow(world, 4096); world.forget_changes();
 class SunBricks {
  public:
   SunBricks() = default;
@@ -46,15 +52,28 @@ class SunBricks {
   /// each brick that lies behind another, up to the first that is not empty; some millions in a world of 64.
   bool prove(uint32_t bricks = UINT32_MAX);
 
-  /// Whether these bits are those of this map, which has not been opened anew, and of a distant light there.
+  /// Withdraws what the edits since it was made or last followed may have made wrong, then proves up to `bricks` more
+  /// bricks, those that were not proven yet and those behind an edit. Returns whether any are left. Until it is called an
+  /// edited world's bits belong to no map, so that a frame does without them. Withdrawing clears at most each bit once:
+  /// some ten instructions a brick behind what `world.changed()` holds. Bits that are behind by more than that, or those of
+  /// another world, are withdrawn altogether, or left alone.
+  bool follow(const EditedWorld& world, uint32_t bricks);
+
+  /// Whether these bits are those of this map as it is now, which has not been opened anew, and of a distant light there.
   bool belongs_to(const BrickMap& map, const Vec3i& towards) const {
-    return bits_ != nullptr && directory_ == map.directory() && towards_ == towards;
+    return bits_ != nullptr && directory_ == map.directory() && stamp_ == map.stamp() && towards_ == towards;
   }
   /// A bit a brick, in the directory's order, the lowest of a byte first.
   const uint8_t* bits() const { return bits_; }
 
  private:
+  struct Way;
+
   bool is_free(const Vec3i& brick) const;
+  void prove_cell(uint32_t cell);
+  template <class Each>
+  void each_behind(const Way& way, const VoxelBox& box, int32_t layer, uint32_t first,
+                   const Each& each) const;
 
   uint8_t* bits_ = nullptr;
   const uint8_t* directory_ = nullptr;
@@ -62,6 +81,11 @@ class SunBricks {
   Vec3i side_;
   uint32_t done_ = 0;
   uint32_t cells_ = 0;
+  uint32_t stamp_ = 0;
+  VoxelBox edited_;           // bricks, behind which some have to be proven again
+  uint32_t layers_left_ = 0;  // of these, the one that was begun, and how many of its bricks are done
+  int32_t layer_ = 0;
+  uint32_t in_layer_ = 0;
 };
 
 /// Whether a set has the fast way: direct light alone, or with shadows and any of emission, sky, and either occlusion and

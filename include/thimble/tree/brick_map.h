@@ -84,6 +84,9 @@ class BrickMap {
   /// Whether the map was made from that tree, as its checksum says.
   bool belongs_to(const CompactTree& tree) const;
 
+  /// The checksum of its tree. That of a world which is edited counts the edits.
+  uint32_t stamp() const { return tree_checksum_; }
+
   int level() const { return level_; }
   bool empty() const { return cells_ == 0; }
   size_t size_bytes() const { return size_bytes_; }
@@ -109,6 +112,7 @@ class BrickMap {
 
  private:
   friend class EditedWorld;
+  friend struct DeepWorld;
   friend struct DeepMap;
 
   uint8_t mixed_material(const CompactTree& tree, uint32_t number, unsigned bit) const;

@@ -104,6 +104,9 @@ class CompactTree {
 
   int level() const { return level_; }
   int rank_shift() const { return rank_shift_; }
+  /// Whether nodes stand breadth first without gaps, as in all bytes that `open` takes: not in an edited world of level 9 and
+  /// 10 (edited_world.h), in which each node counts for itself. Tracing reads either.
+  bool nodes_in_order() const { return rank_shift_ >= kMinRankShift; }
   bool empty() const { return node_count_ == 0; }
   uint32_t node_count() const { return node_count_; }
   /// Solid volume in voxels, merged blocks included.
@@ -147,6 +150,7 @@ class CompactTree {
 
  private:
   friend class EditedWorld;
+  friend struct DeepWorld;
 
   const uint8_t* base_ = nullptr;
   const uint8_t* masks_ = nullptr;

@@ -1,19 +1,30 @@
 /// @file edited_world.h
 /// A compact tree and its brick map that change: voxels are set and cleared while the world is drawn, on a
-/// chip, in the caller's bytes.
+/// chip too, in the caller's bytes.
 ///
-/// Worlds have level 8 at most, whatever else the core is compiled with (kMaxBrickMapLevel).
+/// Worlds have level 8 at most; with THIMBLE_DEEP_WORLDS (brick_map.h), 10.
 ///
 /// `make` copies a compact tree (from flash, say) into bytes with room to grow. From then on `tree()` and
 /// `map()` are views for everything that draws or traces, and after each edit they are what a tree and a map
-/// built anew would be: same nodes, same materials, same pictures and hits. A view that was copied before an
-/// edit must be fetched again after it. `pack` writes the tree as bytes for flash.
+/// built anew would be: same voxels, same materials, same pictures and hits. What an edit does to what was made of them:
 ///
-/// Work of an edit: no loop but over the nodes, materials and bricks that there are. It moves at most all of
+///   copies of `tree()`, `map()`    stale: fetch them again; a frame with a map and a tree of two times is kDamaged
+///   SunBricks                      belong to no map until they are followed (map_render.h), so a frame is right without
+///   AnytimeFrame, bands            of the world as it was; begin again
+///   BakedScene, Octree, flash      copies, of the world as it was; `pack` writes the tree as bytes for flash
+///   wide::VoxelLists, RayMap, what is kept on a GPU, NodeColors    copies as well: make them anew, of level 9 and 10 of
+///                                  what `pack` wrote, as they read nodes in order; `changed()` says where
+///   cameras, lights, palettes      are not concerned
+///
+/// `tree().bytes()` is a header, whose checksum is the stamp that tells a world of before an edit from one of after.
+///
+/// Work of an edit, up to level 8: no loop but over the nodes, materials and bricks that there are. It moves at most all of
 /// them by some places, once for each level that gains or loses nodes (seldom more than one, at most
 /// `level()`), and counts nodes anew from the first that changed. Nodes that it may add: 8 a level, where
 /// a large solid block is opened. In the demonstration's world (64 voxels a side, 5,700 nodes, 17,000 leaves)
 /// an edit takes at most 540,000 instructions on a Cortex-M3, a fifth of a frame. Stack below 500 bytes.
+/// Of level 9 and 10 nothing moves but the children of a node and the voxels of a brick: some thousand instructions whatever
+/// there is in the world, 30,000 where a page of 64 bricks comes.
 #ifndef THIMBLE_TREE_EDITED_WORLD_H
 #define THIMBLE_TREE_EDITED_WORLD_H
 
@@ -28,22 +39,25 @@
 
 namespace thimble {
 
-/// How much a world can hold.
+/// How much a world can hold. Of level 9 and 10 nodes are taken by eights, for all children of one, and those of level 1
+/// and leaves belong to their brick: `nodes` are those above, and `leaves` are 0.
 struct EditRoom {
   uint32_t nodes = 0;   ///< of the tree
   uint32_t leaves = 0;  ///< solid blocks and voxels of level 1: a material each
   uint32_t bricks = 0;  ///< cells of 4 x 4 x 4 voxels that are neither empty nor solid of one material
+  uint32_t pages = 0;   ///< of level 9 and 10: cells of 16 x 16 x 16 voxels that are neither
 };
 
 /// Materials of which whole bricks can be solid.
 inline constexpr uint32_t kSolidBrickKinds = 32;
 
-/// The most room: a node's number takes 24 bits, a brick's 16 with some to spare, and a node has 8 leaves at most.
-inline constexpr EditRoom kMostEditRoom{(uint32_t{1} << 24) - 1, uint32_t{1} << 27, 65000};
+/// The most room: a node's number takes 24 bits, a brick's 16 with some to spare, and a node has 8 leaves at most. Of level
+/// 9 and 10 nodes and eight times the bricks are below 2^24, and pages are 131,070 at most.
+inline constexpr EditRoom kMostEditRoom{(uint32_t{1} << 24) - 1, uint32_t{1} << 27, 65000, 131070};
 
-/// Bytes of a world of 2^level voxels a side (kMinBrickMapLevel to kMaxBrickMapLevel) with that room; 0 for another
-/// level and for more than the most room.
-constexpr size_t edited_world_bytes(int level, const EditRoom& room) {
+/// Bytes of a world of 2^level voxels a side with that room, kMinBrickMapLevel to kMaxBrickMapLevel; 0 for another level and
+/// for more than the most room.
+constexpr size_t packed_world_bytes(int level, const EditRoom& room) {
   if (level < kMinBrickMapLevel || level > kMaxBrickMapLevel || room.nodes > kMostEditRoom.nodes ||
       room.leaves > kMostEditRoom.leaves || room.bricks > kMostEditRoom.bricks) {
     return 0;
@@ -54,6 +68,29 @@ constexpr size_t edited_world_bytes(int level, const EditRoom& room) {
   return up(kCompactHeaderBytes) + up(size_t{room.nodes} + 8) + 2 * up(4 * blocks) + up(room.leaves) +
          up(2 * cells) + 8 * (1 + size_t{room.bricks} + kSolidBrickKinds) + up(12 * size_t{room.bricks}) +
          kSolidBrickKinds;
+}
+
+/// The same of level 9 and 10: 9 bytes a node, 144 a brick, 1,428 a page, and 0.5 or 1 MiB.
+constexpr size_t deep_world_bytes(int level, const EditRoom& room) {
+  const uint64_t slots = ((uint64_t{room.nodes} + 7) & ~uint64_t{7}) + 8 * uint64_t{room.bricks};
+  if (level <= kMaxBrickMapLevel || level > kMaxDeepMapLevel || slots > kMostEditRoom.nodes ||
+      64 * uint64_t{room.pages} > kMaxDeepBricks - 64) {
+    return 0;
+  }
+  const auto up = [](size_t bytes) { return (bytes + 7) & ~size_t{7}; };
+  const size_t last = (size_t{1} << (level - 4)) - 1;
+  const size_t cells = last * (1 + 64 + 4096) + 1;
+  const size_t pages = room.pages;
+  const auto nodes = static_cast<size_t>(slots);
+  return up(kCompactHeaderBytes + 16) + (nodes + 8) + 2 * up(4 * nodes) + up(256 + 72 * size_t{room.bricks}) +
+         up(4 * cells) + up(68 * (1 + kSolidBrickKinds + pages)) + (1 + pages) * (8 * 64 + 16 + 64) +
+         12 * 64 * pages;
+}
+
+/// Bytes of a world of 2^level voxels a side with that room; 0 for a level below kMinBrickMapLevel or above
+/// kMaxDeepMapLevel, and for more than the most room.
+constexpr size_t edited_world_bytes(int level, const EditRoom& room) {
+  return level > kMaxBrickMapLevel ? deep_world_bytes(level, room) : packed_world_bytes(level, room);
 }
 
 /// What edits of many voxels changed, in the caller's bytes, so that they can be taken back: 8 bytes a voxel and 8 an
@@ -87,7 +124,8 @@ class EditedWorld {
  public:
   EditedWorld() = default;
 
-  /// What `tree` takes: the least room with which `make` succeeds. One pass over the bricks of the world.
+  /// What `tree` takes: the least room with which `make` succeeds. One pass over the bricks of the world. Of level 9 and 10
+  /// solid pages of more than kSolidBrickKinds materials take room besides.
   static EditRoom room_of(const CompactTree& tree);
   /// The most room that `bytes` bytes hold for `tree`, shared out in the proportions that digging wants; none
   /// (all 0) where they do not hold the tree, or the tree has more than 65,000 bricks.
@@ -117,9 +155,20 @@ class EditedWorld {
   static constexpr int kEmpty = -1;
   static constexpr int32_t kMostEditSide = 512;
 
+  /// A box that holds all voxels that changed since `make` or `forget_changes`, for what is kept of the world elsewhere
+  /// (SunBricks::follow, a copy on a GPU); and the map's stamp of that time.
+  const VoxelBox& changed() const { return changed_; }
+  uint32_t changed_from() const { return changed_from_; }
+  void forget_changes() {
+    changed_ = {};
+    changed_from_ = map_.stamp();
+  }
+
   /// The material of `voxel`; kEmpty where nothing is, and outside the world.
   int material(const Vec3i& voxel) const;
 
+  /// Of level 9 and 10 node_count() are places, of which many are free, and nodes are not in order
+  /// (CompactTree::nodes_in_order).
   const CompactTree& tree() const { return tree_; }
   const BrickMap& map() const { return map_; }
   int level() const { return tree_.level(); }
@@ -134,6 +183,7 @@ class EditedWorld {
   Status pack(Bytes out, size_t* size = nullptr) const;
 
  private:
+  friend struct DeepWorld;
   struct Place;
 
   uint32_t child_of(uint32_t node, unsigned octant) const;
@@ -148,6 +198,8 @@ class EditedWorld {
   void change_blocks(uint32_t at, uint32_t removed, uint32_t inserted, uint8_t material);
   void change_voxels(uint32_t at, uint32_t removed, uint32_t inserted, uint8_t material);
   void count_from(uint32_t node);
+  void add_root(uint8_t material);
+  void remove_root();
   void open_block(uint32_t node, int level, unsigned mask);
   void close_node(uint32_t node, int level);
   void add_child(uint32_t node, int level, unsigned octant, uint8_t material);
@@ -156,10 +208,13 @@ class EditedWorld {
   uint8_t* cell_of(const Vec3i& voxel) const;
   uint32_t kind_of(uint8_t material) const;
   Status update_cell(const Vec3i& voxel);
-  void note_change(int64_t voxels);
+  void write_header(int64_t voxels);
+  Status note_change(const Vec3i& voxel, int64_t voxels);
 
   CompactTree tree_;
   BrickMap map_;
+  VoxelBox changed_;
+  uint32_t changed_from_ = 0;
   EditRoom room_;
   uint8_t* header_ = nullptr;
   uint8_t* masks_ = nullptr;

@@ -59,7 +59,7 @@ bool count(const CompactTree& tree, Census* census) {
     end += level == 1 ? 0 : static_cast<uint32_t>(children);
   }
   census->level_begin[0] = begin;
-  return begin == tree.node_count() && census->boxes <= UINT32_MAX;
+  return tree.nodes_in_order() && begin == tree.node_count() && census->boxes <= UINT32_MAX;
 }
 
 // Chooses to split blocks into voxels, where that adds few boxes or where voxels are wanted.

@@ -214,7 +214,7 @@ bool measure(const CompactTree& tree, MapShape* shape) {
     chunks += of_materials;
   }
   shape->words = leaves + chunks * (has_nodes(tree) ? 2 : 1);
-  return begin == tree.node_count();
+  return tree.nodes_in_order() && begin == tree.node_count();
 }
 
 // The words of all numberings, and one more.

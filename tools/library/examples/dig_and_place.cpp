@@ -22,12 +22,12 @@ int main(int count, char** words) {
     return 1;
   }
   // The tree and its brick map, in bytes with room to grow.
-  std::vector<std::uint64_t> bytes(std::size_t{4} << 20);
+  std::vector<std::uint64_t> bytes(std::size_t{16} << 20);
   const Bytes room(reinterpret_cast<std::uint8_t*>(bytes.data()), 8 * bytes.size());
   EditedWorld world;
   if (EditedWorld::make(scene->tree(), EditedWorld::room_in(scene->tree(), room.size), room, &world) !=
       Status::kOk) {
-    std::fputs("dig_and_place: only worlds of up to 256 voxels a side are edited\n", stderr);
+    std::fputs("dig_and_place: no room, or more than 1,024 voxels a side\n", stderr);
     return 1;
   }
   constexpr std::int32_t kWidth = 640, kHeight = 360, kBandRows = 8;
@@ -36,6 +36,11 @@ int main(int count, char** words) {
   LitScene light;
   light.lights = {&sun, 1};
   light.has_shadows = true;
+  std::vector<std::uint8_t> proofs(SunBricks::bytes(world.map()));  // where no shadow falls; to level 8
+  SunBricks proven;
+  if (SunBricks::make(world.map(), sun.place, Bytes(proofs.data(), proofs.size()), &proven) == Status::kOk) {
+    (void)proven.prove();
+  }
   const Camera camera = scene->camera(kWidth, kHeight, {"--view", "best"});
   Shading shading;
   shading.mode = ShadeMode::kColor;
@@ -54,12 +59,14 @@ int main(int count, char** words) {
       const Status status = frame % 4 == 3 ? world.set(beside, hit.material) : world.clear(hit.voxel);
       edits += status == Status::kOk ? 1 : 0;  // out of room, or of the world: nothing has changed
     }
+    (void)proven.follow(world, 4096);
+    world.forget_changes();
     threads.each(kHeight / kBandRows, [&](int band_number) {
       const std::int32_t row = band_number * kBandRows;
       const Band band{
           Bytes(&rgb[std::size_t{3} * kWidth * static_cast<std::size_t>(row)], 3 * kWidth * kBandRows),
           PixelFormat::kRgb888, 0, row, kBandRows};
-      (void)render_lit_band<kSunlight>(world.tree(), world.map(), camera, shading, light, {}, band);
+      (void)render_lit_band<kSunlight>(world.tree(), world.map(), camera, shading, light, {&proven, 1}, band);
     });
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
