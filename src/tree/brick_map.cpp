@@ -28,7 +28,6 @@ constexpr uint32_t kMixedOffset = 28;
 // level; from it on the low byte is the material of all that is seen of the brick.
 constexpr uint32_t kUniform = 0xFF00;
 
-
 using brick_parts::kChildBits;
 using brick_parts::kOriginBytes;
 
