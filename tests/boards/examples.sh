@@ -35,6 +35,7 @@ bake() {
 }
 bake baked_scene tools/gallery/scenes/castle.vox --effects none
 bake panels tools/gallery/scenes/castle.vox --effects none
+bake c_panels tools/gallery/scenes/castle.vox --effects none
 bake lit_room tools/gallery/scenes/room.scene
 bake c_scene tools/gallery/scenes/castle.vox --effects none
 
@@ -55,15 +56,15 @@ like() {
     fail "$name draws another picture than the command"
 }
 
-# What the models of the panels show: lit where the command's dither is, and its colours but for what 565 loses.
+# panels NAME: what the models of the panels show: lit where the command's dither is, and its colours but for what 565 loses.
 panels() {
-  "$thimble" render "$work/panels/scene.oct" --size 128x64 --shade color -o "$work/panels/command.pbm" --quiet 2>/dev/null
-  cmp "$work/panels/ssd1306.pbm" "$work/panels/command.pbm" || fail "panels: the SSD1306 shows another picture"
-  "$thimble" render "$work/panels/scene.oct" --size 240x240 --shade color -o "$work/panels/command.ppm" --quiet 2>/dev/null
-  worse=$(cmp -l "$work/panels/st7789.ppm" "$work/panels/command.ppm" | awk '
+  "$thimble" render "$work/$1/scene.oct" --size 128x64 --shade color -o "$work/$1/command.pbm" --quiet 2>/dev/null
+  cmp "$work/$1/ssd1306.pbm" "$work/$1/command.pbm" || fail "$1: the SSD1306 shows another picture"
+  "$thimble" render "$work/$1/scene.oct" --size 240x240 --shade color -o "$work/$1/command.ppm" --quiet 2>/dev/null
+  worse=$(cmp -l "$work/$1/st7789.ppm" "$work/$1/command.ppm" | awk '
     function octal(text,   i, value) { for (i = 1; i <= length(text); i++) { value = value * 8 + substr(text, i, 1) } return value }
     { difference = octal($2) - octal($3); if (difference < -7 || difference > 7) { worse++ } } END { print worse + 0 }')
-  [ "$worse" = 0 ] || fail "panels: $worse channels of the ST7789 are not the command's"
+  [ "$worse" = 0 ] || fail "$1: $worse channels of the ST7789 are not the command's"
 }
 
 # compile PREFIX FLAGS NAME OBJECT: by g++, or by gcc what is written in C.
@@ -107,16 +108,18 @@ for target in $targets; do
         display=platform/examples/display_host.cpp
         case $name in
           ball) display= ;;
-          panels)
+          panels | c_panels)
             display="tests/boards/panels_host.cpp tests/support/page_model.cpp tests/support/color_model.cpp"
             ;;
         esac
         g++ -std=c++20 -O1 -Iinclude -Iplatform -Itests -o "$work/$name/run" "$object" $display "$library"
-        if [ "$name" = panels ]; then
-          (cd "$work/panels" && ./run) || fail "panels ends with status $?"
-          panels
-          continue
-        fi
+        case $name in
+          panels | c_panels)
+            (cd "$work/$name" && ./run) || fail "$name ends with status $?"
+            panels "$name"
+            continue
+            ;;
+        esac
         frames=1
         case $name in particles | water) frames=40 ;; esac
         "$work/$name/run" $frames >"$work/$name/picture.pgm" || fail "$name ends with status $?"

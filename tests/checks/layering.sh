@@ -3,8 +3,8 @@
 #   include, src     <stdint.h>, <stddef.h>, and headers of their own room or of a room below it; a public header
 #                    none of src; only src and public headers those of a folder `detail`, and only they, platform/wide,
 #                    tools/instruments (which measure it) and tests those of a folder `host`, which no caller needs
-#   drivers          of panels: rooms up to the picture; no room sees them
-#   src/c            all rooms but drivers, and thimble/thimble_c.h, which only it sees
+#   drivers          of panels: rooms up to the picture, and thimble_c.h for their face for C; no room sees them
+#   src/c            all rooms but drivers, and thimble/thimble_c.h, which only they see
 #   tools, platform  no header of src
 #   tools            files and pictures (output, readers), then scene and particles, then viewer, web and instruments, then
 #                    commands, library and python: a folder sees itself and those before it; library/examples what is
@@ -75,7 +75,7 @@ for root in include/thimble src; do
     done
     places="include/thimble/($allowed)/"
     [ "$root" = src ] && places="$places|src/($allowed)/"
-    [ "$folder" = src/c/ ] && places="$places|include/thimble/thimble_"
+    case $folder in src/c/ | */drivers/) places="$places|include/thimble/thimble_" ;; esac
     complain "$folder sees only itself and the rooms below it ($below)" \
       "$(includes "$folder" | resolve "$root" | grep -vE ": $room ($places)[a-z0-9_/]+\.h\$" || true)"
   done

@@ -112,10 +112,10 @@ def complete(name, inside):
         text = inside.get("thimble.h", b"") + inside.get("thimble.cpp", b"")
         for path in tree_files("include", {".h"}) + tree_files("src", {".h", ".cpp", ".inc"}):
             there = f"// ---- {path.relative_to(ROOT)}\n".encode() in text
-            if path.name.endswith("_c.h"):
-                there = path.name in inside
-            elif path.parent.name == "drivers":
+            if path.parent.name == "drivers":
                 there = f"drivers/{path.name}" in inside and not there
+            elif path.name.endswith("_c.h"):
+                there = path.name in inside
             if not there:
                 yield f"{path.relative_to(ROOT)} is missing"
         return

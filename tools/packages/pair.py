@@ -86,7 +86,9 @@ def _driver(name):
 
     def to(prefix, path):
         target = _resolve(name, path)
-        return prefix + (b'"' + posixpath.basename(target).encode() + b'"' if is_driver(target) else b'"../thimble.h"')
+        if is_driver(target):
+            return prefix + b'"' + posixpath.basename(target).encode() + b'"'
+        return prefix + (b'"../' + posixpath.basename(target).encode() + b'"' if is_c(target) else b'"../thimble.h"')
 
     return tree.each_include(tree.read(name), to)
 
@@ -118,9 +120,9 @@ def files(_):
         **tree.common("pair"),
     }
     for name in tree.headers() + tree.sources():
-        if is_c(name):
-            made[posixpath.basename(name)] = tree.read(name)
-        elif is_driver(name):
+        if is_driver(name):
             made["drivers/" + posixpath.basename(name)] = _driver(name)
+        elif is_c(name):
+            made[posixpath.basename(name)] = tree.read(name)
     # Below a folder of its name, so that "thimble/thimble.h" is what it is elsewhere.
     return {"thimble-pair-{version}.zip": tree.below("thimble", made)}
