@@ -27,7 +27,7 @@ constexpr float kBlocks = 110;
 // 140 views, to be no slower than boxes rather than to be fastest.
 constexpr float kPaintedBlock = 0.8F;
 constexpr float kSurface = 1.75F;
-// Boxes of more than about so many pixels are drawn row by row: a mean of both orders (kernels/runs-inl.h).
+// Boxes of more than about so many pixels are drawn row by row: a mean of both orders (kernels/boxes.cpp).
 constexpr float kLargePx = 40;
 // The mean number of boxes in a block, and the mean side of a block in pixels (tile_drawer.cpp has the limits:
 // kTableBoxes, kBlockBoxes, kTablePx).

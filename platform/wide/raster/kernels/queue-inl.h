@@ -1,4 +1,5 @@
-/// The queues: boxes wait to be paired with their pixels, and pairs wait for their test.
+/// The queues: boxes wait to be paired with their pixels, and pairs wait for their test. Tables tell which pixels are open:
+/// not covered by anything drawn so far.
 #if defined(THIMBLE_WIDE_RASTER_KERNELS_QUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef THIMBLE_WIDE_RASTER_KERNELS_QUEUE_INL_H_
 #undef THIMBLE_WIDE_RASTER_KERNELS_QUEUE_INL_H_
@@ -9,12 +10,242 @@
 #include <type_traits>
 
 #include "wide/raster/kernels.h"
-#include "wide/raster/kernels/open_pixels-inl.h"
+#include "wide/raster/kernels/lanes-inl.h"
 #include "wide/raster/kernels/pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
+
+// Returns which of the pixels (x .. x + 31, y) are open, a bit each. Bits right of the picture and lanes outside `mask`
+// mean nothing; such lanes read `own_row`, since other rows may belong to another thread.
+HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y,
+                                int32_t own_row) {
+  const U32 d;
+  const auto own = hn::Set(d, static_cast<uint32_t>(own_row - depths.first_row));
+  const auto word = hn::IfThenElse(hn::RebindMask(d, mask), word_of(depths, x, y), own);
+  const auto column = hn::And(x, hn::Set(d, 31U));
+#if HWY_TARGET == HWY_SCALAR
+  const auto covered = hn::Set(d, depths.covered[hn::GetLane(word)]);
+  const auto beside = hn::Set(d, depths.covered[hn::GetLane(word) + static_cast<uint32_t>(depths.rows)]);
+#else
+  const auto covered = hn::GatherIndex(d, depths.covered, hn::BitCast(I32(), word));
+  const auto beside = hn::GatherIndex(d, depths.covered + depths.rows, hn::BitCast(I32(), word));
+#endif
+  // In two steps, since the shift is by 32 where the column is 0.
+  const auto from_beside = hn::Shl(hn::Add(beside, beside), hn::Xor(column, hn::Set(d, 31U)));
+  return hn::Not(hn::Or(hn::Shr(covered, column), from_beside));
+}
+
+// The open pixels of a run's rectangle. A small rectangle, of at most 32 by 32 pixels, is copied when this is made, and
+// looked up in registers (AVX-512) or in the copy, not all over the picture. For a larger one the picture is read.
+class OpenPixels {
+ public:
+  // `reach`: 0, 2, 4 or 8, for near().
+  OpenPixels(const Depths& depths, const Rectangle& where, uint32_t reach = 0) : depths_(depths) {
+    first_row_ = where.y0;
+    small_ = where.x1 - where.x0 <= 32 && where.y1 - where.y0 <= 32;
+    if (!small_) {
+      return;
+    }
+    x0_ = static_cast<uint32_t>(where.x0);
+    y0_ = static_cast<uint32_t>(where.y0);
+    const size_t first = depths.word(where.x0, where.y0);
+    const uint32_t* const left = depths.covered + first;
+    // Where the rectangle lies in one strip, the right words are the left ones again.
+    const bool is_cut = (x0_ & 31U) + static_cast<uint32_t>(where.x1 - where.x0) > 32;
+    const uint32_t* const right = is_cut ? left + depths.rows : left;
+    const int32_t rows = where.y1 - where.y0;
+    const uint32_t inside = UINT32_MAX >> (32 - (where.x1 - where.x0));
+    uint32_t columns = 0;
+    uint32_t open_rows = 0;
+    for (int32_t row = 0; row < rows; ++row) {
+      const uint64_t bits = uint64_t{right[row]} << 32 | left[row];
+      rows_[row] = ~static_cast<uint32_t>(bits >> (x0_ & 31U)) & inside;
+      columns |= rows_[row];
+      open_rows |= (rows_[row] != 0 ? 1U : 0U) << row;
+    }
+    // Joins each pixel with its neighbours to the right and below, twice as many each time.
+    for (uint32_t width = 1; width < reach; width *= 2) {
+      const uint32_t* from = width == 1 ? rows_ : near_;
+      for (int32_t row = 0; row < rows; ++row) {
+        const int32_t below = row + static_cast<int32_t>(width);
+        const uint32_t both = from[row] | (below < rows ? from[below] : 0);
+        near_[row] = both | both >> width;
+      }
+    }
+    if (columns != 0) {
+      bounds_ = {where.x0 + __builtin_ctz(columns), where.y0 + __builtin_ctz(open_rows),
+                 where.x0 + 32 - __builtin_clz(columns), where.y0 + 32 - __builtin_clz(open_rows)};
+    }
+  }
+
+  bool is_small() const { return small_; }
+  // A rectangle that holds all open pixels of a small rectangle; empty when none is open.
+  const Rectangle& bounds() const { return bounds_; }
+
+  // Returns what open_at() returns now or, for a small rectangle, returned when this was made.
+  HWY_INLINE hn::Vec<U32> at(hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) const {
+    if (small_) {
+      return look_up(rows_, x, y);
+    }
+    return open_at(depths_, mask, x, y, first_row_);
+  }
+  // Says in the lowest bit whether any of the `reach` by `reach` pixels from (x, y) on is open. Only for a small
+  // rectangle.
+  HWY_INLINE hn::Vec<U32> near(hn::Vec<U32> x, hn::Vec<U32> y) const { return look_up(near_, x, y); }
+
+ private:
+  HWY_INLINE hn::Vec<U32> look_up(const uint32_t (&rows)[32], hn::Vec<U32> x, hn::Vec<U32> y) const {
+    const U32 d;
+    const auto row = hn::And(hn::Sub(y, hn::Set(d, y0_)), hn::Set(d, 31U));
+    const auto column = hn::And(hn::Sub(x, hn::Set(d, x0_)), hn::Set(d, 31U));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    const auto index = hn::IndicesFromVec(d, hn::And(row, hn::Set(d, 15U)));
+    const auto low = hn::TableLookupLanes(hn::Load(d, rows), index);
+    const auto high = hn::TableLookupLanes(hn::Load(d, rows + 16), index);
+    const auto bits = hn::IfThenElse(hn::Gt(row, hn::Set(d, 15U)), high, low);
+#else
+    const auto bits = hn::GatherIndex(d, rows, hn::BitCast(I32(), row));
+#endif
+    return hn::Shr(bits, column);
+  }
+
+  const Depths& depths_;
+  bool small_ = false;
+  Rectangle bounds_{0, 0, 0, 0};
+  uint32_t x0_ = 0;
+  uint32_t y0_ = 0;
+  int32_t first_row_ = 0;
+  alignas(64) uint32_t rows_[32];
+  alignas(64) uint32_t near_[32];
+};
+
+// Whether one of the first `wide` + 1 pixels is open.
+HWY_INLINE hn::Mask<F32> any_open(hn::Vec<U32> open, hn::Vec<F32> wide) {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  // 2^(wide + 1) - 1
+  const auto count = hn::BitCast(du, hn::ConvertTo(di, hn::Add(wide, hn::Set(d, 1.0F))));
+  const auto bits = hn::Sub(hn::Shl(hn::Set(du, 1U), hn::Min(count, hn::Set(du, 25U))), hn::Set(du, 1U));
+  return hn::RebindMask(d, hn::Ne(hn::And(open, bits), hn::Zero(du)));
+}
+
+// The open pixels of a rectangle, as a table for pick_some. Columns and rows are counted from kMargin before
+// the rectangle's first, and nothing outside the rectangle is open.
+class OpenTable {
+ public:
+  static constexpr int32_t kMargin = 3;
+  // The most pixels of a side, with one more row and column behind the last. A row of up to kNarrowPx takes one word, a
+  // wider one two.
+  static constexpr int32_t kMostPx = 60 - kMargin - 1;
+  static constexpr int32_t kNarrowPx = 32 - kMargin - 1;
+
+  OpenTable(const Depths& depths, const Rectangle& where) : depths_(depths), where_(where) {
+    const int32_t columns = where.x1 - where.x0;
+    const int32_t rows = where.y1 - where.y0;
+    rows_ = columns > kNarrowPx || rows > kNarrowPx ? 64 : rows + kMargin + 1 > 16 ? 32 : 16;
+    none_ = fill(0, words_, kMargin);
+    if (rows_ == 64) {
+      none_ = fill(kRightColumn - kMargin, words_ + kRight, 0) && none_;
+    }
+  }
+
+  bool none() const { return none_; }
+  // The number of rows: 16, 32 or 64. There are 32 columns or, with 64 rows, 64.
+  int rows() const { return rows_; }
+  // Says in the lowest bit whether column `x` of row `y` modulo kRows is open, and in the next bit whether column x + 1
+  // is. x: 0 .. 31, or 63 with 64 rows.
+  template <int kRows>
+  HWY_INLINE hn::Vec<U32> at(hn::Vec<U32> x, hn::Vec<U32> y) const {
+    const U32 d;
+    if (kRows < 64) {
+      return hn::Shr(look_up<kRows>(words_, y), x);
+    }
+    const auto is_right = hn::Gt(x, hn::Set(d, kRightColumn + 1U));
+    const auto shift = hn::Sub(x, hn::IfThenElseZero(is_right, hn::Set(d, uint32_t{kRightColumn})));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    const auto row = hn::IfThenElse(is_right, look_up<kRows>(words_ + kRight, y), look_up<kRows>(words_, y));
+#else
+    const auto right = hn::IfThenElseZero(is_right, hn::Set(d, uint32_t{kRight}));
+    const auto index = hn::Add(hn::And(y, hn::Set(d, 63U)), right);
+    const auto row = hn::GatherIndex(d, words_, hn::BitCast(I32(), index));
+#endif
+    // The last columns lie beyond all pixels and are not stored; each is read as the last stored one.
+    return hn::Shr(row, hn::Min(shift, hn::Set(d, 31U)));
+  }
+
+ private:
+  // Wide tables have two words a row. The second word, kRight words behind the first, repeats the first word's last
+  // columns, so that each pixel stands in one word with its right neighbour.
+  static constexpr int32_t kRightColumn = 28;
+  static constexpr uint32_t kRight = 128;
+
+  // Stores the open pixels from column `first` of the rectangle on, shifted up by `shift` bits. Returns whether none is
+  // open.
+  bool fill(int32_t first, uint32_t* words, int shift) {
+    const U32 d;
+    const int32_t lanes = static_cast<int32_t>(hn::Lanes(d));
+    const int32_t rows = where_.y1 - where_.y0;
+    const int32_t columns = where_.x1 - where_.x0 - first;
+    const int32_t x = where_.x0 + first;
+    const uint32_t* const left = depths_.covered + depths_.word(columns > 0 ? x : where_.x0, where_.y0);
+    const int left_shift = x & 31;
+    // Where the rectangle reaches into the strip beside it, that strip is read too.
+    const bool is_cut = columns > 0 && left_shift + columns > 32;
+    const uint32_t* const right = is_cut ? left + depths_.rows : left;
+    const int right_shift = is_cut && left_shift != 0 ? 32 - left_shift : 0;
+    const auto beside = hn::Set(d, is_cut && left_shift != 0 ? UINT32_MAX : 0);
+    const auto inside = hn::Set(d, columns >= 32  ? UINT32_MAX
+                                   : columns <= 0 ? 0
+                                                  : UINT32_MAX >> (32 - columns));
+    auto any = hn::Zero(d);
+    for (int32_t row = 0; row < kMargin; row += lanes) {
+      hn::Store(any, d, words + row);
+    }
+    for (int32_t row = 0; row < rows; row += lanes) {
+      const auto covered =
+          hn::Or(hn::ShiftRightSame(load_some(left + row, rows - row), left_shift),
+                 hn::ShiftLeftSame(hn::And(load_some(right + row, rows - row), beside), right_shift));
+      const auto live = hn::FirstN(d, static_cast<size_t>(rows - row));
+      const auto open = hn::IfThenElseZero(live, hn::AndNot(covered, inside));
+      any = hn::Or(any, open);
+      hn::StoreU(hn::ShiftLeftSame(open, shift), d, words + kMargin + row);
+    }
+    for (int32_t row = (rows + lanes - 1) / lanes * lanes + kMargin; row < rows_; row += lanes) {
+      hn::StoreU(hn::Zero(d), d, words + row);
+    }
+    return hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
+  }
+
+  template <int kRows>
+  HWY_INLINE hn::Vec<U32> look_up(const uint32_t* words, hn::Vec<U32> row) const {
+    const U32 d;
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+    if (kRows == 16) {
+      return hn::Vec<U32>{_mm512_permutexvar_epi32(row.raw, hn::Load(d, words).raw)};
+    }
+    // Highway 1.0 has no function that looks up in two vectors. The instruction reads the lowest five bits of a row.
+    const auto of_32 = [&](const uint32_t* part) {
+      return hn::Vec<U32>{
+          _mm512_permutex2var_epi32(hn::Load(d, part).raw, row.raw, hn::Load(d, part + 16).raw)};
+    };
+    if (kRows == 32) {
+      return of_32(words);
+    }
+    return hn::IfThenElse(hn::TestBit(row, hn::Set(d, 32U)), of_32(words + 32), of_32(words));
+#else
+    return hn::GatherIndex(d, words, hn::BitCast(I32(), hn::And(row, hn::Set(d, kRows - 1U))));
+#endif
+  }
+
+  const Depths& depths_;
+  Rectangle where_;
+  int rows_;
+  bool none_;
+  alignas(64) uint32_t words_[2 * kRight];
+};
 
 // Pairs some boxes with each of their pixels. Leaves out covered pixels as long as nothing was written into the picture
 // meanwhile (`written`).
