@@ -3,6 +3,8 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -53,6 +55,13 @@ TEST_CASE("thumbnail: a model -> the picture that render draws of it, a mesh by 
   };
   same(model, {});
   same(mesh, {"--depth", "6"});
+  // tumbler makes the file and reads it by its descriptor.
+  const std::string made = folder.write("made.png", "");
+  std::ifstream reader(made, std::ios::binary);
+  check_done({"thumbnail", model, made, "--size", "64"});
+  const std::string png(std::istreambuf_iterator<char>(reader), {});
+  CHECK(png == read_text(made));
+  CHECK(png.starts_with("\x89PNG"));
 }
 
 TEST_CASE("thumbnail: what is broken, endless or huge -> a sentence in time, and no file") {

@@ -35,6 +35,14 @@ env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "
 thumbnailer=$(sed -n 's/^Exec=//p' "$WORK/root/usr/share/thumbnailers/thimble.thumbnailer" |
   sed "s|%s|64|; s|%i|$WORK/root/usr/share/thimble/scenes/castle.vox|; s|%o|$WORK/thumbnail.png|")
 env -i PATH="$WORK/root/usr/bin" $thumbnailer && [ -s "$WORK/thumbnail.png" ] || fail "this draws no picture: $thumbnailer"
+# The same where it sees nothing but the system's libraries, the package, the input and the output, which is there before.
+if command -v bwrap >/dev/null 2>&1 && bwrap --unshare-all --ro-bind / / true 2>/dev/null; then
+  : >"$WORK/made.png"
+  logged bwrap --unshare-all --die-with-parent --ro-bind /usr /usr --symlink usr/lib /lib --symlink usr/lib64 /lib64 \
+    --ro-bind "$WORK/root/usr/bin" /bin --ro-bind "$WORK/root/usr/share/thimble/scenes/castle.vox" /in \
+    --bind "$WORK/made.png" /out --clearenv ${thumbnailer%% "$WORK"*} /in /out
+  cmp "$WORK/thumbnail.png" "$WORK/made.png" || fail "in a sandbox the small picture is another one"
+fi
 grep -q '^MimeType=model/x-vox;.*;model/gltf-binary;$' "$WORK/root/usr/share/applications/thimble.desktop" || fail "the desktop entry lacks types"
 if command -v pkg-config >/dev/null 2>&1; then
   PKG_CONFIG_PATH=$(dirname "$(find "$WORK/root/usr/lib" -name thimble.pc)")

@@ -5,7 +5,8 @@
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/limited_picture.h"
-#include "output/output_set.h"
+#include "output/file_place.h"
+#include "output/output_file.h"
 
 namespace thimble::tools {
 namespace {
@@ -18,14 +19,15 @@ struct ThumbnailCommand {
 
 void run(const ThumbnailCommand& command) {
   constexpr PictureLimits kLimits{1, std::uint64_t{256} << 20, true};
-  OutputSet outputs({command.output}, {command.scene});
+  const OutputClaim claim({command.output}, {command.scene});
   SmallPicture picture;
   LimitedPicture(command.scene, command.side_px, kLimits).take(&picture, true);
   if (!picture.error.empty()) {
     throw InputError(picture.error);
   }
-  write_image(outputs[0], ImageKind::kPng, picture.image);
-  outputs.commit();
+  OutputFile file(command.output, OutputFile::Empty::kIsFilled);
+  write_image(&file, ImageKind::kPng, picture.image);
+  file.commit();
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ void check_standard_output() {
   }
 }
 
-OutputFile::OutputFile(const std::string& path) : path_(path) {
+OutputFile::OutputFile(const std::string& path, Empty empty) : path_(path) {
   const FilePlace place(path);
   target_ = place.target;
   if (place.descriptor == 1) {
@@ -57,6 +57,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
     fail(place.error);
   }
   const bool exists = place.error == 0;
+  const bool is_filled = exists && empty == Empty::kIsFilled && place.info.st_size == 0;
   if (exists && S_ISDIR(place.info.st_mode)) {
     fail(EISDIR);
   }
@@ -65,7 +66,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
     descriptor = copy_of_given(place.descriptor);
   } else if (place.is_descriptor) {
     descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);  // behind what its owner wrote
-  } else if (exists && !S_ISREG(place.info.st_mode)) {
+  } else if (exists && (is_filled || !S_ISREG(place.info.st_mode))) {
     descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   } else if (exists && ::access(path.c_str(), W_OK) != 0) {
     fail(errno);

@@ -21,8 +21,12 @@ class OutputError : public std::runtime_error {
 /// written to directly too. A symbolic link stays one: the file that it leads to is replaced, or made.
 class OutputFile {
  public:
+  /// What becomes of an empty file that is there: a caller that made it may read it by the descriptor that it has, as
+  /// thumbnailers' do, or may hide the folder that it is in.
+  enum class Empty : bool { kIsReplaced, kIsFilled };
+
   /// Opens `path` for writing. Throws OutputError (no such folder, no permission, ...).
-  explicit OutputFile(const std::string& path);
+  explicit OutputFile(const std::string& path, Empty empty = Empty::kIsReplaced);
   /// Without `commit` nothing is left behind.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
