@@ -14,8 +14,8 @@
 ///   - No function allocates or keeps anything. A handle (`thimble_scene_t`, ...) is plain bytes of a fixed
 ///     size that you put where you like, on the stack too; it needs no clean-up. All bytes 0, it holds
 ///     nothing. What it was made of (flash, a pool) stays where it is for as long as the handle is used.
-///     Copies are made by assignment, and share those bytes: of an octree, a frame or particles use
-///     one of them only.
+///     Copies are made by assignment, and share those bytes: of an octree, a world, a journal, a frame or
+///     particles use one of them only.
 ///   - Reentrant: two calls may run at a time, on an interrupt or a second core, as long as neither writes
 ///     what the other uses.
 ///   - Numbers: `_q8` counts 1/256, `_q14` 1/16384, `_q16` 1/65536, `_q32` 2^-32. Lengths are in voxels.
@@ -81,14 +81,17 @@ enum thimble_sizes {
   THIMBLE_WORDS_BRICKS = sizeof(void*) > 4 ? 12 : 9,
   THIMBLE_WORDS_LIGHT = sizeof(void*) > 4 ? 19 : 14,
   THIMBLE_WORDS_FRAME = sizeof(void*) > 4 ? 37 : 33,
-  THIMBLE_WORDS_PARTICLES = sizeof(void*) > 4 ? 33 : 29
+  THIMBLE_WORDS_PARTICLES = sizeof(void*) > 4 ? 33 : 29,
+  THIMBLE_WORDS_WORLD = sizeof(void*) > 4 ? 42 : 29,
+  THIMBLE_WORDS_JOURNAL = sizeof(void*) > 4 ? 4 : 2
 };
 
 /// A baked scene. Made by thimble_scene_open.
 typedef struct THIMBLE_HANDLE thimble_scene {
   uint64_t opaque[THIMBLE_WORDS_SCENE];
 } thimble_scene_t;
-/// A compact tree, read-only. Made by thimble_tree_make, thimble_tree_open, thimble_scene_tree.
+/// A compact tree, read-only. Made by thimble_tree_make, thimble_tree_open, thimble_scene_tree,
+/// thimble_world_tree.
 typedef struct THIMBLE_HANDLE thimble_tree {
   uint64_t opaque[THIMBLE_WORDS_TREE];
 } thimble_tree_t;
@@ -101,7 +104,7 @@ typedef struct THIMBLE_HANDLE thimble_octree {
 typedef struct THIMBLE_HANDLE thimble_camera {
   uint64_t opaque[THIMBLE_WORDS_CAMERA];
 } thimble_camera_t;
-/// The brick map of a baked scene. Made by thimble_scene_bricks.
+/// The brick map of a scene or a world. Made by thimble_scene_bricks, thimble_world_bricks.
 typedef struct THIMBLE_HANDLE thimble_bricks {
   uint64_t opaque[THIMBLE_WORDS_BRICKS];
 } thimble_bricks_t;
@@ -117,6 +120,14 @@ typedef struct THIMBLE_HANDLE thimble_frame {
 typedef struct THIMBLE_HANDLE thimble_particles {
   uint64_t opaque[THIMBLE_WORDS_PARTICLES];
 } thimble_particles_t;
+/// A compact tree and its brick map that change. Made by thimble_world_make.
+typedef struct THIMBLE_HANDLE thimble_world {
+  uint64_t opaque[THIMBLE_WORDS_WORLD];
+} thimble_world_t;
+/// What edits of a world changed, to take it back. Made by thimble_journal_make.
+typedef struct THIMBLE_HANDLE thimble_journal {
+  uint64_t opaque[THIMBLE_WORDS_JOURNAL];
+} thimble_journal_t;
 
 // --- Plain data ------------------------------------------------------------------------------------------
 
@@ -452,6 +463,54 @@ int32_t thimble_tree_render(const thimble_tree_t* tree, const thimble_camera_t* 
                             const thimble_shading_t* shading, const thimble_band_t* band);
 int32_t thimble_tree_trace(const thimble_tree_t* tree, const thimble_ray_t* ray, uint32_t max_visits,
                            thimble_hit_t* hit);
+int32_t thimble_tree_pick(const thimble_tree_t* tree, const thimble_camera_t* camera, int32_t px, int32_t py,
+                          thimble_hit_t* hit);
+/// As thimble_scene_render_fast. THIMBLE_DAMAGED: the map is another tree's, or of before an edit.
+int32_t thimble_tree_render_fast(const thimble_tree_t* tree, const thimble_bricks_t* bricks,
+                                 const thimble_camera_t* camera, const thimble_shading_t* shading,
+                                 const thimble_band_t* band);
+
+// --- Worlds that are edited while they are drawn ---------------------------------------------------------
+
+/// The least bytes of a world of that tree: add what digging and building wants, as much again, say. 0 where the handle
+/// holds nothing, the tree was coarsened, its level is no brick map's (2 .. 8; 9 and 10 too, with
+/// THIMBLE_DEEP_WORLDS), or has more than 65,000 bricks. Cost: one pass.
+size_t thimble_world_bytes(const thimble_tree_t* tree);
+/// Copies the tree into `bytes`, at a multiple of 8, and shares out what is left as room. THIMBLE_BAD_ARGUMENT: null, not
+/// open, coarsened, address; THIMBLE_DAMAGED: the tree; THIMBLE_OUT_OF_MEMORY: size_bytes, more than 32 materials of solid
+/// bricks; THIMBLE_OUT_OF_RANGE: level. Cost: some 1,000 instructions a brick.
+int32_t thimble_world_make(thimble_world_t* world, const thimble_tree_t* tree, void* bytes,
+                           size_t size_bytes);
+/// The world's tree and its brick map as they are now, to draw, trace and pick. Fetch both again after each edit; a map
+/// and a tree of two times are THIMBLE_DAMAGED, and frames of a tree begin again. THIMBLE_BAD_ARGUMENT: null, not made.
+int32_t thimble_world_tree(const thimble_world_t* world, thimble_tree_t* tree);
+int32_t thimble_world_bricks(const thimble_world_t* world, thimble_bricks_t* bricks);
+/// Makes a voxel solid, of material 0 .. 255, or empty with -1, whatever it was. THIMBLE_BAD_ARGUMENT: null, not made;
+/// THIMBLE_OUT_OF_RANGE: outside the world, material; THIMBLE_OUT_OF_MEMORY: no room, which opening a solid block takes,
+/// too. Cost: thimble/tree/edited_world.h.
+int32_t thimble_world_put(thimble_world_t* world, int32_t x, int32_t y, int32_t z, int32_t material);
+/// The voxel's material; -1 where it is empty, outside the world, and where the handle holds nothing.
+int32_t thimble_world_material(const thimble_world_t* world, int32_t x, int32_t y, int32_t z);
+
+/// An empty journal of size_bytes / 8 voxels and edits, at any address. THIMBLE_BAD_ARGUMENT: null.
+int32_t thimble_journal_make(thimble_journal_t* journal, void* bytes, size_t size_bytes);
+enum thimble_edit_shape {
+  THIMBLE_EDIT_BOX = 0,  ///< all voxels of the box
+  THIMBLE_EDIT_BALL =
+      1  ///< those whose centre lies in the ellipsoid that touches its sides, in a cube a ball
+};
+/// Puts all voxels of a shape as one edit, all or none, and notes it. What lies outside the world is passed over. A journal
+/// belongs to one world, between whose edits nothing else changes it. THIMBLE_BAD_ARGUMENT: null, not made, shape;
+/// THIMBLE_OUT_OF_RANGE: material, a side of more than 512, a corner beyond +-2^20; THIMBLE_OUT_OF_MEMORY: no room in the
+/// world, or in the journal, which takes a voxel for each that changes and one an edit.
+int32_t thimble_world_edit(thimble_world_t* world, thimble_journal_t* journal, const thimble_box_t* box,
+                           int32_t shape, int32_t material);
+/// Takes the journal's last edit back. THIMBLE_BAD_ARGUMENT: null, not made, or no edit is left.
+int32_t thimble_world_undo(thimble_world_t* world, thimble_journal_t* journal);
+/// Writes the tree as bytes for thimble_tree_open, flash, or a file; `size_written` (may be null) gets how many, also when
+/// they do not fit: THIMBLE_OUT_OF_MEMORY. THIMBLE_BAD_ARGUMENT: null, not made. Cost: level + 1 passes.
+int32_t thimble_world_pack(const thimble_world_t* world, void* bytes, size_t size_bytes,
+                           size_t* size_written);
 
 // --- Frames that stop in time ----------------------------------------------------------------------------
 

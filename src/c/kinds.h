@@ -11,6 +11,8 @@ struct BakedLighting;
 class BrickMap;
 class Camera;
 class CompactTree;
+class EditJournal;
+class EditedWorld;
 class Octree;
 class ParticleWorld;
 
@@ -33,6 +35,10 @@ template <>
 inline constexpr uint32_t kMark<AnytimeFrame> = 0x4D524654;  // TFRM
 template <>
 inline constexpr uint32_t kMark<ParticleWorld> = 0x54525054;  // TPRT
+template <>
+inline constexpr uint32_t kMark<EditedWorld> = 0x444C5754;  // TWLD
+template <>
+inline constexpr uint32_t kMark<EditJournal> = 0x4E524A54;  // TJRN
 
 }  // namespace c_face
 }  // namespace thimble

@@ -52,4 +52,18 @@ int32_t trace_ray(const Structure* structure, const Ray& ray, uint32_t max_visit
   return number(status);
 }
 
+/// The same for the ray through a pixel of the camera's picture, which may be null.
+template <class Structure>
+int32_t pick(const Structure* structure, const thimble_camera_t* camera, int32_t px, int32_t py,
+             thimble_hit_t* to) {
+  const Camera* const view = held<Camera>(camera);
+  if (structure == nullptr || to == nullptr || view == nullptr || view->level() != structure->level()) {
+    return number(Status::kBadArgument);
+  }
+  if (px < 0 || py < 0 || px >= view->width_px() || py >= view->height_px()) {
+    return number(Status::kOutOfRange);
+  }
+  return trace_ray(structure, view->ray(px, py), UINT32_MAX, to);
+}
+
 }  // namespace thimble::c_face

@@ -19,14 +19,12 @@ extern "C" int32_t thimble_tree_trace(const thimble_tree_t* tree, const thimble_
 extern "C" int32_t thimble_scene_pick(const thimble_scene_t* scene, const thimble_camera_t* camera,
                                       int32_t px, int32_t py, thimble_hit_t* hit) {
   const BakedScene* const from = held<BakedScene>(scene);
-  const Camera* const view = held<Camera>(camera);
-  if (from == nullptr || view == nullptr || view->level() != from->tree().level()) {
-    return number(Status::kBadArgument);
-  }
-  if (px < 0 || py < 0 || px >= view->width_px() || py >= view->height_px()) {
-    return number(hit == nullptr ? Status::kBadArgument : Status::kOutOfRange);
-  }
-  return trace_ray(&from->tree(), view->ray(px, py), UINT32_MAX, hit);
+  return pick(from == nullptr ? nullptr : &from->tree(), camera, px, py, hit);
+}
+
+extern "C" int32_t thimble_tree_pick(const thimble_tree_t* tree, const thimble_camera_t* camera, int32_t px,
+                                     int32_t py, thimble_hit_t* hit) {
+  return pick(held<CompactTree>(tree), camera, px, py, hit);
 }
 
 }  // namespace thimble::c_face

@@ -89,6 +89,10 @@ EditRoom EditedWorld::room_of(const CompactTree& tree) {
   return room;
 }
 
+size_t EditedWorld::least_bytes(const CompactTree& tree) {
+  return tree.merged() ? 0 : bytes_of(tree.level(), room_of(tree));
+}
+
 EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
   // A brick that digging opens: its own 20 bytes, 9 nodes with their counts, and the leaves of half of them.
   constexpr uint32_t kNodesABrick = 9;

@@ -20,6 +20,8 @@ typedef char octree_is_words[sizeof(thimble_octree_t) == 8 * THIMBLE_WORDS_OCTRE
 
 static uint8_t pool[8 * 2000 + 8];
 static uint8_t tree_bytes[4096];
+static uint64_t world_words[2048];
+static uint8_t journal_bytes[8 * 100];
 static uint8_t frame_bytes[WIDTH * HEIGHT + WIDTH / 8 * HEIGHT];
 static uint8_t picture[WIDTH * HEIGHT];
 
@@ -48,6 +50,58 @@ static int draw(const thimble_tree_t* tree, const thimble_camera_t* camera,
   WANT(thimble_band_bytes(band.format, WIDTH, HEIGHT) == sizeof picture);
   memset(picture, 0x33, sizeof picture);
   WANT(thimble_tree_render(tree, camera, shading, &band) == THIMBLE_OK);
+  return 0;
+}
+
+/* A world that is edited while it is drawn: what is under a pixel goes, a ball comes before it, and that is taken back. */
+static int dig(const thimble_tree_t* tree, const thimble_camera_t* camera, const thimble_shading_t* shading) {
+  thimble_world_t world;
+  thimble_journal_t journal;
+  thimble_tree_t now;
+  thimble_bricks_t bricks;
+  thimble_hit_t hit, before;
+  thimble_box_t ball;
+  static uint8_t fast[sizeof picture];
+  size_t size = 0;
+  thimble_band_t band = {0};
+  band.pixels = fast;
+  band.size_bytes = sizeof fast;
+  band.format = THIMBLE_FORMAT_GRAY8;
+  band.rows = HEIGHT;
+  WANT(thimble_world_bytes(tree) != 0 && thimble_world_bytes(tree) < sizeof world_words);
+  WANT(thimble_world_make(&world, tree, world_words, sizeof world_words) == THIMBLE_OK);
+  WANT(thimble_journal_make(&journal, journal_bytes, sizeof journal_bytes) == THIMBLE_OK);
+  WANT(thimble_tree_pick(tree, camera, WIDTH / 2, HEIGHT / 2, &before) == THIMBLE_OK);
+  WANT(before.kind == THIMBLE_HIT && before.side == -1);
+  WANT(thimble_world_material(&world, before.voxel.x, before.voxel.y, before.voxel.z) == before.material);
+  WANT(thimble_world_put(&world, before.voxel.x, before.voxel.y, before.voxel.z, -1) == THIMBLE_OK);
+  WANT(thimble_world_material(&world, before.voxel.x, before.voxel.y, before.voxel.z) == -1);
+  WANT(thimble_world_tree(&world, &now) == THIMBLE_OK);
+  WANT(thimble_tree_pick(&now, camera, WIDTH / 2, HEIGHT / 2, &hit) == THIMBLE_OK);
+  WANT(hit.kind == THIMBLE_MISS);
+  WANT(thimble_world_put(&world, before.voxel.x, before.voxel.y, before.voxel.z, 2) == THIMBLE_OK);
+
+  ball.low = before.voxel;
+  ball.low.y -= 5;
+  ball.high.x = ball.low.x + 3;
+  ball.high.y = ball.low.y + 3;
+  ball.high.z = ball.low.z + 3;
+  WANT(thimble_world_bricks(&world, &bricks) == THIMBLE_OK);
+  WANT(thimble_world_edit(&world, &journal, &ball, THIMBLE_EDIT_BALL, 1) == THIMBLE_OK);
+  WANT(thimble_world_material(&world, ball.low.x, ball.low.y, ball.low.z) == -1);
+  WANT(thimble_world_material(&world, ball.low.x + 1, ball.low.y, ball.low.z + 1) == 1);
+  WANT(thimble_world_tree(&world, &now) == THIMBLE_OK);
+  WANT(thimble_tree_render_fast(&now, &bricks, camera, shading, &band) == THIMBLE_DAMAGED); /* of before */
+  WANT(thimble_world_bricks(&world, &bricks) == THIMBLE_OK);
+  WANT(thimble_tree_render_fast(&now, &bricks, camera, shading, &band) == THIMBLE_OK);
+  WANT(draw(&now, camera, shading) == 0 && memcmp(fast, picture, sizeof picture) == 0);
+  WANT(thimble_world_undo(&world, &journal) == THIMBLE_OK);
+  WANT(thimble_world_undo(&world, &journal) == THIMBLE_BAD_ARGUMENT);
+  WANT(thimble_world_edit(&world, &journal, &ball, THIMBLE_EDIT_BOX, 256) == THIMBLE_OUT_OF_RANGE);
+  WANT(thimble_world_edit(&world, &journal, &ball, 2, 1) == THIMBLE_BAD_ARGUMENT);
+  WANT(thimble_world_pack(&world, world_words, 0, &size) == THIMBLE_OUT_OF_MEMORY);
+  WANT(size <= sizeof picture && thimble_world_pack(&world, fast, sizeof fast, &size) == THIMBLE_OK);
+  WANT(memcmp(fast, tree_bytes, size) == 0);
   return 0;
 }
 
@@ -92,6 +146,11 @@ int thimble_face_in_c(void) {
   WANT(hit.voxel.x == 8 && hit.voxel.y == 8);
   WANT(hit.point_q8.y == 8 * 256);
   WANT(hit.t_q32 == (int64_t)(((uint64_t)(uint32_t)hit.t_numerator << 32) / (uint32_t)hit.t_denominator));
+
+  line = dig(&tree, &camera, &shading);
+  WANT(line == 0);
+  line = draw(&tree, &camera, &shading);
+  WANT(line == 0);
 
   /* It is taken away, and a voxel put before it: the ray meets that. */
   WANT(thimble_octree_erase(&octree, hit.voxel.x, hit.voxel.y, hit.voxel.z) == THIMBLE_OK);

@@ -6,6 +6,7 @@
 #include "thimble/picture/anytime.h"
 #include "thimble/plane/particles.h"
 #include "thimble/tree/brick_map.h"
+#include "thimble/tree/edited_world.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::c_face {
@@ -28,5 +29,7 @@ static_assert(tight<BrickMap, thimble_bricks_t>(), "THIMBLE_WORDS_BRICKS");
 static_assert(tight<BakedLighting, thimble_light_t>(), "THIMBLE_WORDS_LIGHT");
 static_assert(tight<AnytimeFrame, thimble_frame_t>(), "THIMBLE_WORDS_FRAME");
 static_assert(tight<ParticleWorld, thimble_particles_t>(), "THIMBLE_WORDS_PARTICLES");
+static_assert(tight<EditedWorld, thimble_world_t>(), "THIMBLE_WORDS_WORLD");
+static_assert(tight<EditJournal, thimble_journal_t>(), "THIMBLE_WORDS_JOURNAL");
 
 }  // namespace thimble::c_face

@@ -330,6 +330,55 @@ TEST_CASE("misuse: C face, scenes of damaged bytes and anything for a handle -> 
   CHECK(opened > 100);
 }
 
+TEST_CASE("misuse: C face, edited worlds with any numbers -> a status, and the world is whole") {
+  const CWorld world;
+  misuse(74, 1500, [&](OddValues& values) {
+    Things things(world);
+    Odd odd(values, 25);
+    const std::size_t least = thimble_world_bytes(&things.tree);
+    REQUIRE(least != 0);
+    (void)thimble_world_bytes(odd.handle(&things.tree));
+    ExactBytes room(least + 64 + values.bits() % 4000 / 8 * 8);
+    ExactBytes entries(values.bits() % 900);
+    thimble_world_t edited = {};
+    thimble_journal_t journal = {};
+    REQUIRE(thimble_world_make(&edited, &things.tree, room.bytes().data, room.bytes().size) == THIMBLE_OK);
+    REQUIRE(thimble_journal_make(&journal, entries.bytes().data, entries.bytes().size) == THIMBLE_OK);
+    CHECK(thimble_world_make(&edited, &things.tree, nullptr, 100) == THIMBLE_BAD_ARGUMENT);
+    CHECK(thimble_world_make(&edited, &things.tree, room.bytes().data, least - 1) == THIMBLE_OUT_OF_MEMORY);
+    (void)odd.spoiled();
+    const auto number = [&] {
+      return values.one_in(4) ? values.any<std::int32_t>() : values.between_32(-1, 16);
+    };
+    for (int i = 0; i < 30; ++i) {
+      const std::int32_t material = values.one_in(4) ? values.any<std::int32_t>() : values.between_32(-1, 3);
+      thimble_box_t box = {{number(), number(), number()}, {}};
+      box.high = {box.low.x / 2 + number() % 8, box.low.y / 2 + 5, box.low.z / 2 + 9};
+      check(thimble_world_put(odd.handle(&edited), number(), number(), number(), material), odd);
+      check(thimble_world_edit(odd.handle(&edited), odd.handle(&journal), odd.data(&box),
+                               values.one_in(4) ? values.any<std::int32_t>() : values.between_32(0, 1),
+                               material),
+            odd);
+      (void)thimble_world_material(odd.handle(&edited), number(), number(), number());
+      (void)odd.spoiled();
+      thimble_hit_t hit;
+      check(thimble_world_tree(odd.handle(&edited), odd.target(&things.tree)), odd);
+      check(thimble_world_bricks(odd.handle(&edited), odd.target(&things.bricks)), odd);
+      check(thimble_tree_pick(odd.handle(&things.tree), odd.handle(&things.camera), number(), number(),
+                              odd.data(&hit)),
+            odd);
+      if (values.one_in(3)) {
+        check(thimble_world_undo(odd.handle(&edited), odd.handle(&journal)), odd);
+      }
+    }
+    std::size_t size = 0;
+    REQUIRE(thimble_world_pack(&edited, nullptr, 0, &size) == THIMBLE_OUT_OF_MEMORY);
+    ExactBytes packed(size);
+    REQUIRE(thimble_world_pack(&edited, packed.bytes().data, size, nullptr) == THIMBLE_OK);
+    REQUIRE(CompactTree::validate(packed.bytes()) == nullptr);
+  });
+}
+
 TEST_CASE("misuse: C face, octrees and particles with any numbers -> a status, and the world is whole") {
   const CWorld world;
   misuse(73, 1500, [&](OddValues& values) {

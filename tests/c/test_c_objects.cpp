@@ -12,6 +12,7 @@
 #include "support/allocation_trap.h"
 #include "thimble/base/memory.h"
 #include "thimble/plane/particles.h"
+#include "thimble/tree/edited_world.h"
 
 namespace {
 
@@ -60,6 +61,8 @@ TEST_CASE("C face: handles -> no word more than the objects need") {
   CHECK(sizeof(thimble_particles_t) / 8 == words(sizeof(ParticleWorld), alignof(ParticleWorld)));
   CHECK(sizeof(thimble_light_t) / 8 == words(sizeof(BakedLighting), alignof(BakedLighting)));
   CHECK(sizeof(thimble_tree_t) / 8 == words(sizeof(CompactTree), alignof(CompactTree)));
+  CHECK(sizeof(thimble_world_t) / 8 == words(sizeof(EditedWorld), alignof(EditedWorld)));
+  CHECK(sizeof(thimble_journal_t) / 8 == words(sizeof(EditJournal), alignof(EditJournal)));
   CHECK(sizeof(thimble_camera_t) / 8 == words(sizeof(Camera), alignof(Camera)));
 }
 

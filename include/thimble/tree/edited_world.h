@@ -127,6 +127,8 @@ class EditedWorld {
   /// What `tree` takes: the least room with which `make` succeeds. One pass over the bricks of the world. Of level 9 and 10
   /// solid pages of more than kSolidBrickKinds materials take room besides.
   static EditRoom room_of(const CompactTree& tree);
+  /// Bytes of a world of that room; 0 where `make` takes none of that tree, whatever the room.
+  static size_t least_bytes(const CompactTree& tree);
   /// The most room that `bytes` bytes hold for `tree`, shared out in the proportions that digging wants; none
   /// (all 0) where they do not hold the tree, or the tree has more than 65,000 bricks.
   static EditRoom room_in(const CompactTree& tree, size_t bytes);
