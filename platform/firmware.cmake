@@ -1,6 +1,7 @@
 # Firmware for one board: -DTHIMBLE_BOARD=NAME, the toolchain file of its kind of core, and
 #
 #   THIMBLE_APP            which applications, a list (demo): each becomes APP.elf, APP.bin and APP.hex (and APP.uf2)
+#   THIMBLE_MAIN           a source that has such an application in place of platform/apps (tools/new/port.cpp.in)
 #   THIMBLE_SCENE_HEADER   a header made by `thimble bake`; without it port::scene() is empty
 #   THIMBLE_SCENE_IN_FLASH a set of effects (0x3f0b): the scene is what lies behind the program and has effects within the
 #                          set, and that of the header where there is none (images/README.md)
@@ -50,7 +51,6 @@ include(${THIMBLE_PLATFORM_DIR}/scene_facts.cmake)
 configure_file(${THIMBLE_PLATFORM_DIR}/arch/common/scene.cpp.in ${generated}/scene.cpp @ONLY)
 
 string(COMPARE NOTEQUAL "${THIMBLE_SCENE_IN_FLASH}" "" scene_in_flash)
-
 # One set of flags for the core, the port and the applications.
 add_library(thimble_firmware_flags INTERFACE)
 target_compile_options(thimble_firmware_flags INTERFACE ${THIMBLE_ARCH_FLAGS}

@@ -2,6 +2,7 @@
 install(TARGETS thimble_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY gallery/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble
   FILES_MATCHING PATTERN "*.scene" PATTERN "*.vox" PATTERN "*.vox.gz")
+install(DIRECTORY new DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble)
 # Where they were built; and where the command finds them in a folder that one builds in.
 if(NOT PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/build/images ${PROJECT_BINARY_DIR}/images SYMBOLIC)

@@ -496,8 +496,9 @@ TEST_CASE("command: -- -> what follows is no option, whatever it begins with") {
 }
 
 TEST_CASE("command: help -> no option states two defaults, none states one that is not so") {
-  for (const char* const subcommand : {"view", "render", "join", "trace", "table", "bake", "image", "info",
-                                       "boards", "memory", "sim", "particles", "accuracy", "effects"}) {
+  for (const char* const subcommand :
+       {"view", "render", "join", "trace", "table", "bake", "image", "new", "info", "boards", "memory", "sim",
+        "particles", "accuracy", "effects"}) {
     CAPTURE(subcommand);
     const std::string help = run_command({subcommand, "--help"}).out;
     std::string entry;

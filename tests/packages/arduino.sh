@@ -8,7 +8,7 @@ unpack "thimble-arduino-$VERSION.zip" libraries zipfile
 here=tests/packages/arduino
 cp -R $here/hardware $here/libraries "$WORK/"
 core=$WORK/hardware/thimble/arm/cores/stub
-cp tests/checks/arduino_macros.h tests/packages/bare/start.cpp tests/packages/bare/arm.ld platform/arch/common/memory.cpp "$core/"
+cp tests/checks/arduino_macros.h tests/packages/new/wires.h tests/packages/bare/start.cpp tests/packages/bare/arm.ld platform/arch/common/memory.cpp "$core/"
 awk 'BEGIN {
   for (digits = 1; digits <= 8; ++digits) {
     for (value = 0; value < 2 ^ digits; ++value) {
@@ -28,11 +28,12 @@ sketch() {
 sketch Ball platform/examples/ball/main.cpp
 sketch Panels tests/packages/panels.cpp
 cp -R "$WORK/libraries/thimble/examples/SSD1306" "$WORK/libraries/thimble/examples/ST7789" "$WORK/sketches/"
+project sketches/Oled --board pico --panel ssd1306 --build arduino castle
 
 # One place for all, so that the library is compiled once.
 all=$(cd "$WORK" && pwd)
 mkdir -p "$all/build" "$all/sketches/Sketch"
-for sketch in SSD1306 ST7789 Ball Panels; do
+for sketch in SSD1306 ST7789 Ball Panels Oled; do
   rm -f "$all/sketches/Sketch/"*
   cp "$all/sketches/$sketch/"* "$all/sketches/Sketch/"
   mv "$all/sketches/Sketch/$sketch.ino" "$all/sketches/Sketch/Sketch.ino"
@@ -49,6 +50,7 @@ command -v qemu-system-arm >/dev/null 2>&1 || {
 same_ball in_qemu arm "$all/Ball.elf"
 no_drivers "$all/Ball.elf"
 same_panels in_qemu arm "$all/Panels.elf"
+shows_scene sketches/Oled ssd1306 128x64 ink in_qemu arm "$all/Oled.elf"
 for sketch in SSD1306 ST7789; do
   color=$([ $sketch = ST7789 ] && echo true || echo false)
   logged g++ -std=c++20 -O1 -Iinclude -I"$WORK/sketches/$sketch" -DEXPECTED_COLOR=$color $here/expected.cpp "$LIBTHIMBLE" -o "$WORK/expected"
@@ -56,4 +58,4 @@ for sketch in SSD1306 ST7789; do
   in_qemu arm "$all/$sketch.elf" </dev/null >"$WORK/$sketch.shown" 2>"$WORK/$sketch.err" || fail "$sketch ends with $?: $(tail -n 1 "$WORK/$sketch.shown")"
   cmp "$WORK/$sketch.expected" "$WORK/$sketch.shown" || fail "$sketch shows another picture than this machine draws"
 done
-say "the ball, both examples and the drivers, built by arduino-builder, show what they should"
+say "the ball, both examples, the drivers and a project of thimble new, built by arduino-builder, show what they should"

@@ -29,4 +29,23 @@ if command -v pkg-config >/dev/null 2>&1; then
   logged c++ -std=c++20 -O1 -Itests tests/packages/golden.cpp tests/golden/scenes.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/golden"
   logged "$WORK/golden"
 fi
+# A project of `thimble new` by a stand-in for the Pico's SDK, in C++ on an OLED and in C on an LCD.
+if command -v arm-none-eabi-g++ >/dev/null 2>&1; then
+  export PICO_SDK_PATH="$PWD/tests/packages/new"
+  project oled --board pico --panel ssd1306 castle
+  project lcd-1 --board pico --panel st7789 --language c castle
+  for one in oled lcd-1; do
+    logged cmake -S "$WORK/$one" -B "$WORK/$one/build" -G Ninja -DTHIMBLE="$archive" -DCMAKE_SYSTEM_NAME=Generic -DCMAKE_BUILD_TYPE=None \
+      -DCMAKE_C_COMPILER=arm-none-eabi-gcc -DCMAKE_CXX_COMPILER=arm-none-eabi-g++ -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY \
+      -DCMAKE_C_FLAGS="$(echo "$arm_options" | sed s/-fno-rtti//)" -DCMAKE_CXX_FLAGS="$arm_options -fno-threadsafe-statics -fno-tree-loop-distribute-patterns" \
+      -DBARE_SCRIPT="$PWD/tests/packages/bare/arm.ld" \
+      -DBARE_SOURCES="$PWD/tests/packages/bare/start.cpp;$PWD/platform/arch/common/memory.cpp"
+    logged cmake --build "$WORK/$one/build" -- -j1
+  done
+  if command -v qemu-system-arm >/dev/null 2>&1; then
+    shows_scene oled ssd1306 128x64 ink in_qemu arm "$WORK/oled/build/oled"
+    shows_scene lcd-1 st7789 240x240 color in_qemu arm "$WORK/lcd-1/build/lcd-1"
+    say "projects for the Pico's SDK, in C++ and in C, show their scene on a panel"
+  fi
+fi
 say "FetchContent, find_package and pkg-config, the prefix moved: the ball is drawn, also on panels (CPM is not here: it calls FetchContent)"

@@ -74,3 +74,25 @@ in_qemu() {
     riscv) timeout 60 qemu-system-riscv32 -M virt -bios none -display none -monitor none -serial stdio -kernel "$2" ;;
   esac
 }
+# project NAME OPTION...: what `thimble new` writes, in WORK/NAME.
+project() {
+  place=$WORK/$1
+  shift
+  logged build/release/thimble new "$place" "$@" --quiet
+}
+# shows_scene NAME PANEL WxH ink|color COMMAND...: what that command sends to the panel is the picture that this machine
+# draws of the project's scene.h.
+shows_scene() {
+  place=$WORK/$1 panel=$2 size=$3 shade=$4 ending=$([ "$4" = ink ] && echo pbm || echo ppm)
+  shift 4
+  "$@" </dev/null >"$place.wires" 2>"$place.err" || fail "the project $(basename "$place") ends with $?"
+  tr -d '\r' <"$place.wires" | "$PACKAGES/../test-packages/panel" "$panel" >"$place.$ending" || fail "$panel takes not what $place sends"
+  header=$(ls "$place/scene.h" "$place/src/scene.h" 2>/dev/null || true)
+  $python -c 'import sys; text = open(sys.argv[1]).read().rpartition("{")[2].partition("}")[0]
+sys.stdout.buffer.write(bytes(int(word) for word in text.split(",") if word.strip()))' "$header" >"$place.oct"
+  logged build/release/thimble render "$place.oct" --size "$size" --shade "$shade" --quiet -o "$place.right.$ending"
+  # 565 loses up to 7 of 255.
+  $python -c 'import sys; one, other = (open(name, "rb").read() for name in sys.argv[1:3])
+sys.exit(len(one) != len(other) or any(abs(a - b) > 7 for a, b in zip(one, other)))' "$place.$ending" "$place.right.$ending" ||
+    fail "$panel shows another picture of $(basename "$place") than this machine draws"
+}

@@ -22,7 +22,20 @@ for program in platform/examples/ball/main.cpp tests/packages/panels.cpp; do
   logged arm-none-eabi-g++ $options $program $bare_link "$WORK/libthimble.a" -lgcc -o "$WORK/$(basename $program .cpp).elf"
 done
 no_drivers "$WORK/main.elf"
+# A project of `thimble new`, with a stand-in for Arduino's core.
+project tft --board microbit --panel st7735 --build platformio fox
+grep -qx 'board = bbcmicrobit' "$WORK/tft/platformio.ini" || fail "platformio.ini names another board"
+arduino=tests/packages/arduino
+: >"$WORK/tft/binary.h"  # no macro of its numbers here
+for source in "$WORK/tft/src/main.cpp" $arduino/libraries/Displays/Wires.cpp $arduino/hardware/thimble/arm/cores/stub/main.cpp; do
+  object=$WORK/tft/$(basename "${source%/*}").o
+  logged arm-none-eabi-g++ $options $(sed -n 's/^build_flags = //p' "$WORK/tft/platformio.ini") -fno-threadsafe-statics -Itests/checks -I"$WORK/tft" \
+    -Itests/packages/new -I$arduino/hardware/thimble/arm/cores/stub -I$arduino/libraries/Displays -c "$source" -o "$object"
+  echo "$object"
+done >"$WORK/tft/objects"
+logged arm-none-eabi-g++ $options $(cat "$WORK/tft/objects") $bare_link "$WORK/libthimble.a" -lgcc -o "$WORK/tft.elf"
 need qemu-system-arm
+shows_scene tft st7735 160x128 color in_qemu arm "$WORK/tft.elf"
 same_ball in_qemu arm "$WORK/main.elf"
 same_panels in_qemu arm "$WORK/panels.elf"
 say "$(wc -l <"$WORK/objects") files compiled by the manifest's rules: the ball is drawn, also on panels"

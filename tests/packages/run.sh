@@ -19,6 +19,8 @@ g++ -std=c++17 -O1 -Iinclude platform/examples/ball/main.cpp "$LIBTHIMBLE" -o "$
 "$work/ball" >"$work/ball.txt"
 g++ -std=c++17 -O1 -Iinclude tests/packages/panels.cpp "$LIBTHIMBLE" -o "$work/panels"
 "$work/panels" >"$work/panels.txt"
+# What a panel shows that got what a project of `thimble new` sends.
+g++ -std=c++20 -O1 -Iinclude -Itests tests/packages/new/panel.cpp tests/support/page_model.cpp tests/support/color_model.cpp -o "$work/panel"
 [ "$(grep -c '[*#]' "$work/ball.txt")" -gt 16 ] || {
   echo "test-packages: the README's program draws no ball" >&2
   exit 1

@@ -59,8 +59,8 @@ std::string for_comment(ConstBytes name) {
   return out;
 }
 
-/// Whether `text` can name a variable in C and in C++: letters, digits and _, no keyword, no leading _ or
-/// digit, no two _ in a row, at most 63 characters.
+}  // namespace
+
 bool is_identifier(std::string_view text) {
   if (text.empty() || text.size() > kMostIdentifier ||
       std::isalpha(static_cast<unsigned char>(text[0])) == 0 || text.find("__") != std::string_view::npos ||
@@ -71,10 +71,6 @@ bool is_identifier(std::string_view text) {
                      [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; });
 }
 
-/// The header: macros IDENTIFIER_BYTES, _DEPTH, ... (the identifier in capitals: THIMBLE_SCENE_... by
-/// default; _EFFECTS is the set of scene.h that the scene was baked for, 0 for none, _LAMPS how many of its
-/// lights are points), then `static const uint8_t identifier[IDENTIFIER_BYTES]`, aligned to 4 bytes. It
-/// includes <stdint.h> and nothing else.
 std::string c_header_text(const BakedScene& scene, std::string_view identifier) {
   const std::string name(identifier);
   const std::string prefix = capitals(identifier) + "_";
@@ -139,6 +135,8 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   text += line + "\n};\n\n#endif\n";
   return text;
 }
+
+namespace {
 
 BakingOptions baking_options(const BakeCommand& command, const SceneSource& source, std::string* note) {
   BakingOptions options;

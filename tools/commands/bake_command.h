@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "commands/scene_options.h"
 #include "commands/stats.h"
@@ -42,6 +43,16 @@ Baked bake(BakeCommand* command, const SceneSource& source, BakingOptions* optio
 std::string baked_text(const BakeCommand& command, const BakingOptions& options, const Baked& baked);
 Stats baked_stats(const BakeCommand& command, const SceneSource& source, const Baked& baked,
                   std::optional<std::uint64_t> limit);
+
+/// Whether `text` can name a variable in C and in C++: letters, digits and _, no keyword, no leading _ or
+/// digit, no two _ in a row, at most 63 characters.
+bool is_identifier(std::string_view text);
+
+/// The header: macros IDENTIFIER_BYTES, _DEPTH, ... (the identifier in capitals: THIMBLE_SCENE_... by
+/// default; _EFFECTS is the set of scene.h that the scene was baked for, 0 for none, _LAMPS how many of its
+/// lights are points), then `static const uint8_t identifier[IDENTIFIER_BYTES]`, aligned to 4 bytes. It
+/// includes <stdint.h> and nothing else.
+std::string c_header_text(const BakedScene& scene, std::string_view identifier);
 
 /// What is wrong with a scene that wants these effects, for which there is no program.
 std::string not_drawn_text(const BakeCommand& command, EffectSet effects);

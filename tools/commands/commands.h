@@ -13,6 +13,7 @@ void add_trace(CLI::App& app);
 void add_table(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_image(CLI::App& app);
+void add_new(CLI::App& app);
 void add_export(CLI::App& app);
 void add_sheet(CLI::App& app);
 void add_thumbnail(CLI::App& app);
@@ -39,6 +40,7 @@ inline void add_all_commands(CLI::App& app) {
   add_table(app);
   add_bake(app);
   add_image(app);
+  add_new(app);
   add_export(app);
   add_sheet(app);
   add_thumbnail(app);

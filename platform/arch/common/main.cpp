@@ -1,5 +1,9 @@
 // Compiled once an application: THIMBLE_APPLICATION is its name.
-#include "apps/apps.h"
+namespace thimble::apps {
+
+int THIMBLE_APPLICATION();
+
+}  // namespace thimble::apps
 
 int thimble_application();
 

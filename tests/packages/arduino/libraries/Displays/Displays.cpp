@@ -1,7 +1,4 @@
 #include "Adafruit_GFX.h"
-#include "Wire.h"
-
-TwoWire Wire;
 
 namespace {
 

@@ -12,6 +12,8 @@
 void setup();
 void loop();
 void delay(unsigned long ms);
+void pinMode(uint8_t pin, uint8_t mode);
+void digitalWrite(uint8_t pin, uint8_t level);
 extern "C" int putchar(int character);
 extern "C" [[noreturn]] void exit(int status);
 

@@ -1,4 +1,5 @@
 #include "Arduino.h"
+#include "wires.h"
 
 HardwareSerial Serial;
 
@@ -9,9 +10,9 @@ void HardwareSerial::println(const char* text) {
   putchar('\n');
 }
 
-// An example waits only when it has given up.
-void delay(unsigned long) {
-  exit(1);
+// An example waits a second only when it has given up.
+void delay(unsigned long ms) {
+  wires::wait(static_cast<uint32_t>(ms));
 }
 
 int main() {
