@@ -1,5 +1,7 @@
 #include "gpu/kernels.h"
 
+#include <lit_pairs_spv.h>
+#include <lit_spv.h>
 #include <octree_pairs_spv.h>
 #include <octree_spv.h>
 
@@ -7,7 +9,10 @@
 
 namespace thimble::gpu {
 
-Kernel kernel_of(bool pairs) {
+Kernel kernel_of(bool lit, bool pairs) {
+  if (lit) {
+    return pairs ? Kernel{lit_pairs_spv, std::size(lit_pairs_spv)} : Kernel{lit_spv, std::size(lit_spv)};
+  }
   return pairs ? Kernel{octree_pairs_spv, std::size(octree_pairs_spv)}
                : Kernel{octree_spv, std::size(octree_spv)};
 }

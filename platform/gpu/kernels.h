@@ -11,7 +11,7 @@ struct Kernel {
   std::size_t words;
 };
 
-/// In pairs of words where one does not do.
-Kernel kernel_of(bool pairs);
+/// For lit pictures or others; in pairs of words where one does not do.
+Kernel kernel_of(bool lit, bool pairs);
 
 }  // namespace thimble::gpu

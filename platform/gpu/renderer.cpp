@@ -8,6 +8,7 @@
 #include "gpu/device.h"
 #include "gpu/kernel/cpp.h"
 #include "gpu/kernels.h"
+#include "thimble/light/host/asked.h"
 
 namespace thimble::gpu {
 namespace {
@@ -59,13 +60,15 @@ struct Renderer::State {
   void upload(const std::vector<std::uint32_t>& words);
   void make_layouts();
   void make_slot(std::size_t number);
-  VkPipeline pipeline(bool pairs);
+  VkPipeline pipeline(bool lit, bool pairs);
   void fit(Slot* slot, std::size_t bytes);
   // Starts a kernel over the width and height of `parameters`; `in_bytes` of the slot's host memory go to its output
   // first, `out_bytes` come back.
   void start(std::size_t number, const Parameters& parameters, bool pairs, std::size_t in_bytes,
              std::size_t out_bytes);
   double finish(std::size_t number);
+  // A picture of `part` at once, so many words a pixel.
+  const std::uint32_t* draw(const Camera& part, const Parameters& told, bool pairs, std::size_t words);
   void release();
 
   const Options options;
@@ -79,7 +82,7 @@ struct Renderer::State {
   VkDescriptorPool descriptors = VK_NULL_HANDLE;
   VkCommandPool commands = VK_NULL_HANDLE;
   VkQueryPool queries = VK_NULL_HANDLE;
-  VkPipeline pipelines[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
+  VkPipeline pipelines[4] = {};
 };
 
 Renderer::State::State(const CompactTree& tree, Span<const Rgb8> palette, const Options& chosen)
@@ -208,12 +211,12 @@ void Renderer::State::make_slot(std::size_t number) {
   require(vkCreateFence(device.get(), &fence, nullptr, &slot.fence), "take commands");
 }
 
-VkPipeline Renderer::State::pipeline(bool pairs) {
-  VkPipeline& made = pipelines[pairs ? 1 : 0];
+VkPipeline Renderer::State::pipeline(bool lit, bool pairs) {
+  VkPipeline& made = pipelines[(lit ? 2 : 0) + (pairs ? 1 : 0)];
   if (made != VK_NULL_HANDLE) {
     return made;
   }
-  const Kernel kernel = kernel_of(pairs);
+  const Kernel kernel = kernel_of(lit, pairs);
   VkShaderModuleCreateInfo module{};
   module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   module.codeSize = 4 * kernel.words;
@@ -261,7 +264,7 @@ void Renderer::State::fit(Slot* slot, std::size_t bytes) {
 void Renderer::State::start(std::size_t number, const Parameters& told, bool pairs, std::size_t in_bytes,
                             std::size_t out_bytes) {
   Slot& slot = slots[number];
-  VkPipeline kernel = pipeline(pairs);
+  VkPipeline kernel = pipeline(told[kernel::kMode] == kernel::kModeLit, pairs);
   std::memcpy(slot.parameters.words(), told.data(), sizeof told);
   slot.reads_back = out_bytes != 0;
   const auto query = static_cast<std::uint32_t>(2 * number);
@@ -349,9 +352,8 @@ std::size_t Renderer::scene_bytes() const {
   return static_cast<std::size_t>(state_->scene.size());
 }
 
-// Two words a pixel (kWantSteps).
 std::int32_t Renderer::most_rows(std::int32_t width_px) {
-  return static_cast<std::int32_t>(kMostOutputBytes / 8) / std::max(width_px, 1);
+  return static_cast<std::int32_t>(kMostOutputBytes / (4 * kernel::kLitWords)) / std::max(width_px, 1);
 }
 
 void Renderer::begin(int frame, const Camera& camera, const Shading& shading, bool read_back) {
@@ -374,46 +376,132 @@ Frame Renderer::end(int frame) {
   return ended;
 }
 
-Status Renderer::draw(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts) {
+namespace {
+
+// Whether the band may be drawn; `stride` gets the bytes from row to row.
+Status check_band(const Camera& camera, int level, const Band& band, std::size_t* stride) {
   const std::int32_t width = camera.width_px();
-  const std::size_t stride = band.stride_bytes != 0 ? band.stride_bytes : row_bytes(band.format, width);
-  if (width == 0 || camera.level() != state_->level || band.first_row < 0 || band.rows < 0 ||
-      band.rows > camera.height_px() - band.first_row || band.rows > most_rows(width) ||
-      has_pages(band.format) || stride < row_bytes(band.format, width)) {
+  const std::size_t line = row_bytes(band.format, width);
+  *stride = band.stride_bytes != 0 ? band.stride_bytes : line;
+  if (width == 0 || camera.level() != level || band.first_row < 0 || band.rows < 0 ||
+      band.rows > camera.height_px() - band.first_row || band.rows > Renderer::most_rows(width) ||
+      has_pages(band.format) || *stride < line) {
     return Status::kBadArgument;
+  }
+  return band.rows != 0 && line + *stride * static_cast<std::size_t>(band.rows - 1) > band.pixels.size
+             ? Status::kOutOfMemory
+             : Status::kOk;
+}
+
+// Calls store(line, x, y, words) for each pixel of a band, which the kernel has given so many words.
+template <class Store>
+void store_all(const std::uint32_t* from, std::size_t words, std::int32_t width, const Band& band,
+               std::size_t stride, const Store& store) {
+  for (std::int32_t row = 0; row < band.rows; ++row) {
+    std::uint8_t* const line = band.pixels.data + stride * static_cast<std::size_t>(row);
+    std::memset(line, 0, row_bytes(band.format, width));
+    for (std::int32_t x = 0; x < width; ++x, from += words) {
+      store(line, x, band.first_row + row, from);
+    }
+  }
+}
+
+Rgb8 color_of(std::uint32_t word) {
+  return {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
+          static_cast<std::uint8_t>(word >> 16)};
+}
+
+}  // namespace
+
+const std::uint32_t* Renderer::State::draw(const Camera& part, const Parameters& told, bool pairs,
+                                           std::size_t words) {
+  const std::size_t bytes =
+      4 * words * static_cast<std::size_t>(part.width_px()) * static_cast<std::size_t>(part.height_px());
+  fit(slots.data(), bytes);
+  start(0, told, pairs, 0, bytes);
+  finish(0);
+  return slots[0].host.words();
+}
+
+Status Renderer::draw(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts) {
+  std::size_t stride = 0;
+  const Status status = check_band(camera, state_->level, band, &stride);
+  if (status != Status::kOk || band.rows == 0) {
+    return status;
+  }
+  const Camera part = camera.window(0, band.first_row, camera.width_px(), band.rows);
+  Parameters parameters = state_->parameters;
+  set_frame(part, shading, &parameters);
+  parameters[kernel::kWantSteps] = 1;
+  const std::uint32_t* const drawn =
+      state_->draw(part, parameters, needs_pairs(state_->level, largest_direction(part)), 2);
+  RenderCounts all;
+  all.rays = static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(band.rows);
+  store_all(drawn, 2, camera.width_px(), band, stride,
+            [&](std::uint8_t* line, std::int32_t x, std::int32_t y, const std::uint32_t* words) {
+              store_pixel(line, x, y, band.format, color_of(words[0]));
+              all.hits += words[1] & 1U;
+              all.node_visits += words[1] >> 1;
+            });
+  if (counts != nullptr) {
+    counts->rays += all.rays;
+    counts->hits += all.hits;
+    counts->node_visits += all.node_visits;
+  }
+  return Status::kOk;
+}
+
+Status Renderer::draw_lit(const LitFrame& frame, const Band& band, Bytes shares, LitCounts* counts) {
+  std::size_t stride = 0;
+  const Status status = check_band(frame.camera, state_->level, band, &stride);
+  if ((frame.effects & ~kEffectsInKernels) != 0 || status != Status::kOk) {
+    return status != Status::kOk ? status : Status::kBadArgument;
+  }
+  if (frame.scene.lights.size > kMaxLights || frame.scene.surfaces.size > kMaxSurfaces) {
+    return Status::kOutOfRange;
+  }
+  const std::int32_t width = frame.camera.width_px();
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(band.rows);
+  if (frame.backdrop != nullptr && shares.size < pixels) {
+    return Status::kOutOfMemory;
   }
   if (band.rows == 0) {
     return Status::kOk;
   }
-  if (row_bytes(band.format, width) + stride * static_cast<std::size_t>(band.rows - 1) > band.pixels.size) {
-    return Status::kOutOfMemory;
-  }
-  const Camera part = camera.window(0, band.first_row, width, band.rows);
+  const Camera part = frame.camera.window(0, band.first_row, width, band.rows);
+  const LitFrame drawn{frame.effects, part, frame.shading, frame.scene, frame.backdrop};
   Parameters parameters = state_->parameters;
-  set_frame(part, shading, &parameters);
-  parameters[kernel::kWantSteps] = 1;
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(band.rows);
-  Slot& slot = state_->slots[0];
-  state_->fit(&slot, 8 * pixels);
-  state_->start(0, parameters, needs_pairs(state_->level, largest_direction(part)), 0, 8 * pixels);
-  state_->finish(0);
-  const std::uint32_t* from = slot.host.words();
-  RenderCounts drawn;
-  for (std::int32_t y = 0; y < band.rows; ++y) {
-    std::uint8_t* row = band.pixels.data + stride * static_cast<std::size_t>(y);
-    std::memset(row, 0, row_bytes(band.format, width));
-    for (std::int32_t x = 0; x < width; ++x, from += 2) {
-      const Rgb8 color{static_cast<std::uint8_t>(from[0]), static_cast<std::uint8_t>(from[0] >> 8),
-                       static_cast<std::uint8_t>(from[0] >> 16)};
-      store_pixel(row, x, band.first_row + y, band.format, color);
-      drawn.hits += from[1] & 1U;
-      drawn.node_visits += from[1] >> 1;
-    }
-  }
+  set_frame(part, frame.shading, &parameters);
+  set_light(drawn, &parameters);
+  // Who counts nothing gets a word a pixel, in 8 bits a channel.
+  const bool is_short = counts == nullptr && band.format == PixelFormat::kRgb888;
+  const std::size_t each = is_short ? 1 : kernel::kLitWords;
+  parameters[kernel::kWantSteps] = is_short ? 0 : 1;
+  const std::uint32_t* const from =
+      state_->draw(part, parameters, needs_pairs(state_->level, largest_direction(drawn)), each);
+  LitCounts all;
+  const LitOptions options;
+  const CompactTree none;
+  const lit::Frame to{none, frame.camera, frame.shading, frame.scene, options, frame.effects};
+  std::uint8_t* share = frame.backdrop != nullptr ? shares.data : nullptr;
+  store_all(from, each, width, band, stride,
+            [&](std::uint8_t* line, std::int32_t x, std::int32_t y, const std::uint32_t* words) {
+              if (share != nullptr) {
+                *share++ = static_cast<std::uint8_t>(words[is_short ? 0 : 1] >> 24);
+              }
+              if (is_short) {
+                store_pixel(line, x, y, band.format, color_of(words[0]));
+                return;
+              }
+              lit::store(to, band, line, x, y, {{words[0] & 65535U, words[0] >> 16, words[1] & 65535U}});
+              all.node_visits[0] += words[2];
+              for (int kind = 0; kind < kernel::kCountedRays; ++kind) {
+                all.rays[kind] += words[3 + kind] & 65535U;
+                all.hits[kind] += words[3 + kind] >> 16;
+              }
+            });
   if (counts != nullptr) {
-    counts->rays += pixels;
-    counts->hits += drawn.hits;
-    counts->node_visits += drawn.node_visits;
+    lit::add_counts(all, counts);
   }
   return Status::kOk;
 }

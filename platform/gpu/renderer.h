@@ -2,7 +2,8 @@
 /// the same picture, byte for byte, and the same hits. Vulkan 1.1; it needs no 64-bit integers and no floats of the
 /// device.
 ///
-/// What it draws: depth, normal, colour and mono of both cameras, one ray a pixel, and lists of rays. Not light.
+/// What it draws: depth, normal, colour and mono of both cameras, one ray a pixel; lit pictures with the effects
+/// `kEffectsInKernels`; and lists of rays.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "gpu/scene_words.h"
+#include "thimble/light/render.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::gpu {
@@ -54,11 +56,15 @@ class Renderer {
   const DeviceInfo& device() const;
   std::size_t scene_bytes() const;
 
-  /// Most rows of a band for `draw`, of pictures of that width.
+  /// Most rows of a band for `draw` and `draw_lit`, of pictures of that width.
   static std::int32_t most_rows(std::int32_t width_px);
   /// As `render_band`, but `node_visits` are steps of the kernel, and formats whose rows share bytes are a
   /// kBadArgument. The palette is that of the constructor. Throws DeviceError.
   Status draw(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts = nullptr);
+  /// As `render_lit_band`, with the same exceptions, and the surfaces are those of the frame. With a backdrop `shares`
+  /// gets a byte a pixel. kBadArgument for effects that are not in `kEffectsInKernels`. All visits are counted as those
+  /// of primary rays.
+  Status draw_lit(const LitFrame& frame, const Band& band, Bytes shares = {}, LitCounts* counts = nullptr);
   /// As `closest_hit` for each ray; `visits` are steps of the kernel. Throws DeviceError.
   Status trace(Span<const Ray> rays, Span<Hit> hits);
 

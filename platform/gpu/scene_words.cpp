@@ -4,12 +4,23 @@
 #include <cstdlib>
 
 #include "gpu/kernel/cpp.h"
+#include "thimble/light/host/asked.h"
+#include "thimble/light/host/optics.h"
 
 namespace thimble::gpu {
 namespace {
 
 using namespace kernel;
 static_assert(kParameterWords == kWordsOfParameters);
+static_assert(kDirectLight == Effect::kDirectLight && kShadows == Effect::kShadows &&
+              kAmbientOcclusion == Effect::kAmbientOcclusion && kEmission == Effect::kEmission &&
+              kSkyEffect == Effect::kSky);
+static_assert(kEmits == static_cast<std::uint32_t>(SurfaceKind::kEmit));
+static_assert(kPrimaryRay == static_cast<int>(LitRayKind::kPrimary) &&
+              kShadowRay == static_cast<int>(LitRayKind::kShadow) &&
+              kOcclusionRay == static_cast<int>(LitRayKind::kOcclusion));
+static_assert(kSurfaces + kSurfaceWords * int{kMaxSurfaces} == kLights &&
+              kLights + kLightWords * int{kMaxLights} == kParameterWords);
 
 std::uint32_t packed(Rgb8 color) {
   return std::uint32_t{color.r} | std::uint32_t{color.g} << 8 | std::uint32_t{color.b} << 16;
@@ -115,6 +126,97 @@ void set_frame(const Camera& camera, const Shading& shading, Parameters* paramet
   to[kPaletteSize] = static_cast<std::uint32_t>(std::min<std::size_t>(shading.palette.size, kSceneTree));
 }
 
+namespace {
+
+std::uint32_t packed(int x, int y, int z) {
+  return packed(
+      Rgb8{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(z)});
+}
+
+void set_vector(const Vec3i& vector, std::uint32_t* words) {
+  for (int axis = 0; axis < 3; ++axis) {
+    words[axis] = static_cast<std::uint32_t>(vector[axis]);
+  }
+}
+
+// What a face gets without lights.
+void set_shares(const LitFrame& frame, Parameters* parameters) {
+  Parameters& to = *parameters;
+  const bool is_lit = (frame.effects & Effect::kDirectLight) != 0;
+  LitScene even;  // whose faces get their shares of a brightness of 1
+  even.ambient_q8[0] = 256;
+  const lit::Frame of{{}, frame.camera, frame.shading, even, {}, frame.effects};
+  for (int face = 0; face < 6; ++face) {
+    lit::Spot spot;
+    spot.face = {face / 2, face % 2 == 0};
+    lit::Color light;
+    lit::ambient_light(of, spot, &light);
+    to[kShare + static_cast<std::size_t>(face)] =
+        is_lit ? light.c[0] / (lit::kFullLight / 256) : frame.shading.face_light[face];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    to[kStrength + i] = is_lit ? frame.scene.ambient_q8[i] : 256;
+  }
+}
+
+void set_surfaces(const LitFrame& frame, std::uint32_t* words) {
+  const Shading& shading = frame.shading;
+  for (std::size_t material = 0; material < kMaxSurfaces; ++material, words += kSurfaceWords) {
+    Surface surface;
+    surface.albedo = material < shading.palette.size ? shading.palette[material] : shading.default_color;
+    surface = material < frame.scene.surfaces.size ? frame.scene.surfaces[material] : surface;
+    words[0] = packed(surface.albedo) | static_cast<std::uint32_t>(surface.kind) << 24;
+    words[1] = surface.emission_q8;
+  }
+}
+
+void set_lights(const LitScene& scene, std::uint32_t* words) {
+  for (const Light& light : scene.lights) {
+    set_vector(light.is_point ? Vec3i(light.place) : shorten(light.place), words);
+    std::copy_n(light.color_q8, 3, words + 3);
+    words[6] = light.is_point ? std::uint32_t{light.reach} : kDistant;
+    words += kLightWords;
+  }
+}
+
+void set_backdrop(const Backdrop& backdrop, Parameters* parameters) {
+  Parameters& to = *parameters;
+  to[kBackdrop] = backdrop.has_ground ? 2 : 1;
+  to[kGround] = static_cast<std::uint32_t>(backdrop.ground_z);
+  to[kGroundReach] = backdrop.reach;
+  set_vector(backdrop.toward_sun, &to[kSun]);
+  for (std::size_t i = 0; i < kAroundRays && backdrop.around != nullptr; ++i) {
+    const Vec3i& direction = backdrop.around[i];
+    to[kAround + i] = packed(direction.x, direction.y, direction.z);
+  }
+}
+
+}  // namespace
+
+void set_light(const LitFrame& frame, Parameters* parameters) {
+  Parameters& to = *parameters;
+  to[kMode] = kModeLit;
+  to[kEffects] = frame.effects;
+  set_shares(frame, parameters);
+  to[kSky] = packed(frame.scene.sky.zenith);
+  to[kSky + 1] = packed(frame.scene.sky.horizon);
+  to[kSky + 2] = packed(frame.scene.sky.ground);
+  const Occlusion& occlusion = frame.scene.occlusion;
+  to[kOcclusionRays] =
+      occlusion.reach == 0 ? 0 : std::min<std::uint32_t>(occlusion.rays, kOcclusionDirections);
+  to[kOcclusionStrength] = occlusion.strength;
+  to[kOcclusionReach] = occlusion.reach;
+  for (std::size_t i = 0; i < kOcclusionDirections; ++i) {
+    to[kPattern + i] = packed(kOcclusionPattern[i].x, kOcclusionPattern[i].y, kOcclusionPattern[i].z);
+  }
+  set_surfaces(frame, &to[kSurfaces]);
+  to[kLightCount] = static_cast<std::uint32_t>(frame.scene.lights.size);
+  set_lights(frame.scene, &to[kLights]);
+  if (frame.backdrop != nullptr) {
+    set_backdrop(*frame.backdrop, parameters);
+  }
+}
+
 void set_rays(std::uint32_t count, std::uint32_t width, Parameters* parameters) {
   Parameters& to = *parameters;
   to[kMode] = kModeRays;
@@ -163,6 +265,20 @@ Vec3i largest_direction(Span<const Ray> rays) {
   for (std::size_t i = 0; i < rays.size; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       set_direction(rays[i].direction[axis], &largest[axis]);
+    }
+  }
+  return largest;
+}
+
+Vec3i largest_direction(const LitFrame& frame) {
+  Vec3i largest = largest_direction(frame.camera);
+  for (int axis = 0; axis < 3; ++axis) {
+    set_direction(kOcclusionLength, &largest[axis]);  // no other direction of a pattern is longer
+    if (frame.backdrop != nullptr) {
+      set_direction(frame.backdrop->toward_sun[axis], &largest[axis]);
+    }
+    for (const Light& light : frame.scene.lights) {
+      set_direction(light.is_point ? kMaxShort : shorten(light.place)[axis], &largest[axis]);
     }
   }
   return largest;

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Who may include whom. layering.sh ROOT
 #   include, src     <stdint.h>, <stddef.h>, and headers of their own room or of a room below it; a public header
-#                    none of src; only src and public headers those of a folder `detail`, and only they, platform/wide,
+#                    none of src; only src and public headers those of a folder `detail`, and only they, platform/wide, gpu,
 #                    tools/instruments (which measure it) and tests those of a folder `host`, which no caller needs
 #   drivers          of panels: rooms up to the picture, and thimble_c.h for their face for C; no room sees them
 #   src/c            all rooms but drivers, and thimble/thimble_c.h, which only they see
@@ -89,8 +89,8 @@ complain "a public header finds the others from where it stands, so that the fol
   "$(includes include | grep '"thimble/' || true)"
 complain "what lies in a folder detail is the core's own" \
   "$(includes tools platform tests | grep -E '"thimble/[a-z0-9_/]*detail/' || true)"
-complain "what lies in a folder host is for the host's own renderer, platform/wide, not for callers" \
-  "$(includes tools platform | grep -E '"thimble/[a-z0-9_/]*host/' | grep -vE '^(platform/wide|tools/instruments)/' || true)"
+complain "what lies in a folder host is for the host's own renderers, platform/wide and gpu, not for callers" \
+  "$(includes tools platform | grep -E '"thimble/[a-z0-9_/]*host/' | grep -vE '^(platform/(wide|gpu)|tools/instruments)/' || true)"
 complain "a public header for callers includes none of a folder host" \
   "$(includes include | grep -v '^include/thimble/[a-z]*/host/' | grep -E '"[a-z0-9_./]*host/' || true)"
 for room in output readers scene particles instruments viewer web; do

@@ -72,10 +72,36 @@ TEST_CASE("gpu command: render and trace -> the pictures and hits of ray64") {
   }
 }
 
+TEST_CASE("gpu command: lit pictures, with their backgrounds, samples and parts -> the bytes of auto") {
+  if (!command_has_device()) {
+    return;
+  }
+  const TemporaryFolder folder;
+  const std::vector<Words> pictures{{"castle"},
+                                    {"fox", "--background", "none", "--projection", "orthographic"},
+                                    {"oled", "--samples", "9"},
+                                    {"spheres", "--ground", "off", "--normals", "face"},
+                                    {"castle", "--effects", "direct-light,shadows,sky"},
+                                    {"house", "--effects", "direct-light,shadows,emission,sky"}};
+  for (const Words& picture : pictures) {
+    CAPTURE(picture.front());
+    for (const std::string engine : {"gpu", "auto"}) {
+      const CommandResult drawn =
+          run_command(joined(joined({"render"}, picture),
+                             {"--engine", engine, "--size", "60x45", "--quiet", "-o",
+                              folder.path(engine + ".png"), "--stats", folder.path(engine + ".json")}));
+      REQUIRE_MESSAGE(drawn.status == 0, drawn.describe());
+    }
+    CHECK(read_text(folder.path("gpu.png")) == read_text(folder.path("auto.png")));
+    CHECK(read_text(folder.path("gpu.json")).find("\"gpu\"") != std::string::npos);
+  }
+}
+
 TEST_CASE("gpu command: what it does not draw -> status 2, a sentence, no file") {
   const TemporaryFolder folder;
   const std::vector<Words> refused{{"lagoon"},
-                                   {"spheres", "--samples", "4"},
+                                   {"points:3000"},
+                                   {"spheres", "--shade", "depth", "--samples", "4"},
                                    {"spheres", "--samples", "auto"},
                                    {"spheres", "--cutoff", "3"},
                                    {"spheres", "--memory", "8M"},

@@ -1,6 +1,9 @@
 #include "support/gpu_kernels.h"
 
+#include <cstring>
+
 #include "gpu/kernel/cpp.h"
+#include "thimble/light/host/asked.h"
 
 namespace thimble::tests {
 namespace {
@@ -10,6 +13,7 @@ using namespace gpu::kernel;
 // Each kernel is a class, whose members the text's functions become.
 #define FN
 #define OUT(T) T&
+#define INOUT(T) T&
 #define P(i) buffers.parameters[static_cast<std::size_t>(i)]
 #define S(i) buffers.scene_word(i)
 #define R(i) buffers.output_word(i)
@@ -22,6 +26,8 @@ struct OctreeKernel {
 #include "gpu/kernel/picture.inc"
 #include "gpu/kernel/octree.inc"
 #include "gpu/kernel/invocation.inc"
+#include "gpu/kernel/optics.inc"
+#include "gpu/kernel/light.inc"
 };
 #undef State
 #define PAIRS
@@ -31,6 +37,8 @@ struct OctreePairsKernel {
 #include "gpu/kernel/picture.inc"
 #include "gpu/kernel/octree.inc"
 #include "gpu/kernel/invocation.inc"
+#include "gpu/kernel/optics.inc"
+#include "gpu/kernel/light.inc"
 };
 // clang-format on
 
@@ -39,7 +47,7 @@ void run_all(const Buffers& buffers) {
   Kernel kernel{buffers};
   for (uint y = 0; y < buffers.parameters[kHeight]; ++y) {
     for (uint x = 0; x < buffers.parameters[kWidth]; ++x) {
-      kernel.invocation(x, y);
+      buffers.parameters[kMode] == kModeLit ? kernel.lit_invocation(x, y) : kernel.invocation(x, y);
     }
   }
 }
@@ -90,6 +98,43 @@ std::vector<std::uint8_t> draw_by_kernel(const gpu::SceneWords& scene, const Cam
     }
   }
   return bytes;
+}
+
+LitDrawn draw_lit_by_kernel(const gpu::SceneWords& scene, const FrameCase& frame, const LitCase& lit,
+                            const gpu::Backdrop* backdrop, std::vector<std::uint8_t>* shares, Pairs pairs,
+                            std::uint64_t* outside) {
+  const Band& band = frame.band;
+  const std::int32_t width = frame.camera.width_px();
+  const Camera part = frame.camera.window(0, band.first_row, width, band.rows);
+  gpu::Parameters parameters = scene.parameters;
+  gpu::set_frame(part, frame.shading, &parameters);
+  const gpu::LitFrame light{lit.effects, part, frame.shading, lit.scene, backdrop};
+  gpu::set_light(light, &parameters);
+  parameters[kWantSteps] = 1;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(band.rows);
+  const KernelRun run =
+      run_kernel(scene, parameters, takes_pairs(scene, gpu::largest_direction(light), pairs),
+                 std::vector<std::uint32_t>(kLitWords * pixels));
+  *outside += run.outside;
+  LitDrawn drawn{std::vector<std::uint8_t>(band_size(frame), 0xA5), {}};
+  const CompactTree none;
+  const lit::Frame to{none, frame.camera, frame.shading, lit.scene, lit.options, lit.effects};
+  const std::size_t line = row_bytes(band.format, width);
+  const std::size_t stride = band.stride_bytes == 0 ? line : band.stride_bytes;
+  const std::uint32_t* from = run.output.data();
+  for (std::int32_t y = 0; y < band.rows; ++y) {
+    std::uint8_t* const row = drawn.pixels.data() + stride * static_cast<std::size_t>(y);
+    std::memset(row, 0, line);
+    for (std::int32_t x = 0; x < width; ++x, from += kLitWords) {
+      lit::store(to, band, row, x, band.first_row + y, {{from[0] & 65535U, from[0] >> 16, from[1] & 65535U}});
+      shares->push_back(static_cast<std::uint8_t>(from[1] >> 24));
+      for (int kind = 0; kind < kCountedRays; ++kind) {
+        drawn.counts.rays[kind] += from[3 + kind] & 65535U;
+        drawn.counts.hits[kind] += from[3 + kind] >> 16;
+      }
+    }
+  }
+  return drawn;
 }
 
 std::vector<Hit> trace_by_kernel(const gpu::SceneWords& scene, Span<const Ray> rays, Pairs pairs,

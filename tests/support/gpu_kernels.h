@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gpu/scene_words.h"
+#include "support/lit_cases.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::tests {
@@ -27,6 +28,10 @@ KernelRun run_kernel(const gpu::SceneWords& scene, const gpu::Parameters& parame
 std::vector<std::uint8_t> draw_by_kernel(const gpu::SceneWords& scene, const Camera& camera,
                                          const Shading& shading, const Band& band, Pairs pairs,
                                          std::uint64_t* outside);
+/// The same as `render_lit_band`, with the rays and hits of each kind, and the light behind.
+LitDrawn draw_lit_by_kernel(const gpu::SceneWords& scene, const FrameCase& frame, const LitCase& lit,
+                            const gpu::Backdrop* backdrop, std::vector<std::uint8_t>* shares, Pairs pairs,
+                            std::uint64_t* outside);
 /// As `closest_hit`, but for the visits.
 std::vector<Hit> trace_by_kernel(const gpu::SceneWords& scene, Span<const Ray> rays, Pairs pairs,
                                  std::uint64_t* outside);

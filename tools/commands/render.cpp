@@ -47,16 +47,17 @@ void check_look(const RenderCommand& command) {
   if (command.look.given && !look) {
     refuse_usage(
         "--background and --ground are for pictures in the scene's own look, without --shade, --effects, "
-        "--structure, --engine, --cutoff, --max-depth and --board");
+        "--structure, --cutoff, --max-depth and --board, by --engine auto and gpu");
   }
   command.output.check(command.look.wishes.background.kind == BackgroundKind::kNone);
   if (command.output.is_film() &&
       (!look || !command.output.hits_path.empty() || !command.output.depth_path.empty() ||
        (command.output.turntable != 0 && command.view.eye))) {
-    refuse_usage(std::string(command.output.film_option()) +
-                 " shows the scene's own look, without --shade, --effects, --structure, --engine, --cutoff, "
-                 "--max-depth, --board, --hits and --depth-image" +
-                 (command.output.turntable != 0 ? ", and from all sides, without --eye" : ""));
+    refuse_usage(
+        std::string(command.output.film_option()) +
+        " shows the scene's own look, without --shade, --effects, --structure, --cutoff, --max-depth, "
+        "--board, --hits and --depth-image, by --engine auto and gpu" +
+        (command.output.turntable != 0 ? ", and from all sides, without --eye" : ""));
   }
   if (names_page(command.output.path)) {
     check_page(command);
@@ -70,7 +71,9 @@ void check_look(const RenderCommand& command) {
 // What contradicts itself whatever the scene is.
 void check_usage(const RenderCommand& command) {
   check_look(command);
-  command.engine.check(command.quality.plain(), command.effects.named() || command.effects.bounces);
+  command.engine.check(command.quality.plain(),
+                       takes_look(command) || command.effects.named() || command.effects.bounces,
+                       command.quality.at_edges);
   if (command.quality.cuts() && command.scene.structure != StructureKind::kCompact) {
     refuse_usage("--cutoff and --max-depth want --structure compact");
   }
@@ -102,8 +105,8 @@ void check_lit(const RenderCommand& command, EffectSet effects) {
   if (command.scene.structure != StructureKind::kCompact) {
     refuse("wants --structure compact");
   }
-  if (command.engine.name != "auto" && command.engine.name != "ray64") {
-    refuse("takes no --engine but auto and ray64");
+  if (command.engine.name == "wide" || command.engine.name == "ray32") {
+    refuse("takes no --engine but auto, gpu and ray64");
   }
   if (command.quality.cuts()) {
     refuse("takes no --cutoff and no --max-depth");
@@ -241,7 +244,7 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
   return painting;
 }
 
-Painting paint_lit(const Subject& subject, const Light& light, const Progress& progress) {
+Painting paint_lit(const Subject& subject, const Light& light, GpuEngine* gpu, const Progress& progress) {
   LitPicture picture;
   picture.effects = light.effects;
   picture.scene = light.scene();
@@ -249,10 +252,10 @@ Painting paint_lit(const Subject& subject, const Light& light, const Progress& p
   const EngineOptions& engine = subject.command.engine;
   const bool at_edges = subject.command.quality.at_edges;
   // With --board nothing of the host's stands in the board's RAM.
-  const auto streams = subject.command.scene.board == nullptr
+  const auto streams = subject.command.scene.board == nullptr && gpu == nullptr
                            ? engine.lit_streams(&subject.built, picture.effects, picture.scene)
                            : nullptr;
-  picture.streams = streams.get();
+  picture.streams = gpu != nullptr ? gpu : streams.get();
   picture.threads = engine.lit_threads(&subject.built, picture.effects);
   Painting painting;
   const auto painter =
@@ -262,7 +265,7 @@ Painting paint_lit(const Subject& subject, const Light& light, const Progress& p
   if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
     throw InputError("its lights or surfaces are beyond the limits of a lit picture");
   }
-  painting.preparation_seconds = streams != nullptr ? streams->seconds() : 0;
+  painting.preparation_seconds = picture.streams != nullptr ? picture.streams->seconds() : 0;
   return painting;
 }
 
@@ -383,10 +386,10 @@ void draw(RenderCommand& command, const SceneSource& source, OutputSet& outputs)
   const QualityFrame frame(built, command.quality, subject.camera(), subject.fine, subject.shading, colors);
   ProgressBar bar("tracing", command.scene.quiet);
   const auto progress = [&](double done) { bar.update(done); };
-  const auto gpu = command.engine.gpu(built);
+  const auto gpu = command.engine.gpu(built, light.effects);
   Painting painting = light.effects == Effect::kNone
                           ? paint_without_effects(subject, frame, gpu.get(), progress)
-                          : paint_lit(subject, light, progress);
+                          : paint_lit(subject, light, gpu.get(), progress);
   if (command.look.is_ink()) {
     painting.image = inked(subject, painting.image, display, progress);
   }
@@ -496,8 +499,9 @@ void write_picture(const RenderCommand& command, ImageKind kind, const Image& im
 
 bool takes_look(const RenderCommand& command) {
   return command.look.shade_name.empty() && !command.effects.given &&
-         command.scene.structure == StructureKind::kCompact && command.engine.name == "auto" &&
-         !command.quality.cuts() && command.scene.board == nullptr;
+         command.scene.structure == StructureKind::kCompact &&
+         (command.engine.name == "auto" || command.engine.name == "gpu") && !command.quality.cuts() &&
+         command.scene.board == nullptr;
 }
 
 std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std::int32_t most) {

@@ -46,6 +46,9 @@ class LookStudio {
     framing_ = framing;
     look_ = default_look(facts_, wishes_, framing_);
     const bool is_lit = look_.kind == LookKind::kLit;
+    if (!is_lit && command_.engine.name == "gpu") {
+      refuse_usage("--engine gpu does not draw points as stars; with --shade it draws their voxels");
+    }
     if (is_lit && streams_ == nullptr) {
       streams_ = command_.engine.lit_streams(&built_, look_.effects, look_.lit_scene());
     }

@@ -272,7 +272,8 @@ void EngineOptions::add_to(CLI::App& app, bool all_cores) {
   add_engine(
       app, &name, {"auto", "wide", "gpu", "ray64", "ray32"}, "draws",
       "wide: object order, with vectors and threads, for --structure compact where there is room; gpu: the "
-      "best Vulkan device, without light, for --structure compact, without --memory and --board; ray64, "
+      "best Vulkan device, without glass, water and mirrors, for --structure compact, without --memory and "
+      "--board; ray64, "
       "ray32: ray by ray with products of that width; the answers are the same, but ray32 refuses rays that "
       "need more; auto: wide where it can be, but not with --board, else ray64");
   threads = all_cores ? tools::all_cores() : 1;
@@ -291,18 +292,26 @@ void EngineOptions::add_ray_engines_to(CLI::App& app) {
       "(then nodes are its steps, else those of the tree), else ray64");
 }
 
-std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built) const {
-  return name == "gpu" ? std::make_unique<GpuEngine>(built) : nullptr;
+std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built, EffectSet effects) const {
+  const EffectSet missing = effects & ~GpuEngine::effects();
+  if (name == "gpu" && missing != Effect::kNone) {
+    refuse_usage("--engine gpu does not draw the effects " + effects_text(missing) + "; --engine auto does");
+  }
+  const Span<const Rgb8> palette(built.palette().data(), built.palette().size());
+  return name == "gpu" ? std::make_unique<GpuEngine>(built.compact(), palette, threads) : nullptr;
 }
 
-void EngineOptions::check(bool is_plain, bool has_effects) const {
-  const bool draws_plain = name == "wide" || name == "gpu";
+void EngineOptions::check(bool is_plain, bool is_lit, bool at_edges) const {
+  const bool draws_plain = name == "wide" || (name == "gpu" && !is_lit);
   if (draws_plain && !is_plain) {
     refuse_usage("--engine " + name +
                  " draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
   }
-  if (draws_plain && has_effects) {
-    refuse_usage("--engine " + name + " draws without --effects and --bounces");
+  if (name == "wide" && is_lit) {
+    refuse_usage("--engine wide draws without --effects and --bounces");
+  }
+  if (name == "gpu" && at_edges) {
+    refuse_usage("--engine gpu draws the same samples for all pixels, without --samples auto");
   }
 }
 
@@ -328,6 +337,9 @@ std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, st
 
 std::unique_ptr<LitStreams> EngineOptions::lit_streams(BuiltScene* built, EffectSet effects,
                                                        const LitScene& scene) const {
+  if (name == "gpu") {
+    return gpu(*built, effects);
+  }
   return name == "auto" ? LitStreams::make(built->compact(), &built->arena(), effects, scene, threads)
                         : nullptr;
 }

@@ -97,9 +97,10 @@ struct EngineOptions {
   /// For single rays, whatever the engine.
   TraceOptions trace_options() const;
   /// The GPU with the scene on it where it is to draw, else null. Throws InputError when it cannot be had.
-  std::unique_ptr<GpuEngine> gpu(const BuiltScene& built) const;
-  /// Refuses pictures with more samples than one a pixel or with less depth, and with effects, for what draws none.
-  void check(bool is_plain, bool has_effects) const;
+  /// Refuses effects that it does not draw.
+  std::unique_ptr<GpuEngine> gpu(const BuiltScene& built, EffectSet effects = Effect::kNone) const;
+  /// Refuses what does not draw lit pictures, samples (`at_edges`: where edges are) or less depth.
+  void check(bool is_plain, bool is_lit, bool at_edges) const;
   /// Refuses a budget of memory for what does not keep to it.
   void check_budget(bool has_budget) const;
   /// The wide renderer for pictures of that size, where it is to draw and there is room for it within the

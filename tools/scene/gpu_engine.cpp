@@ -1,11 +1,11 @@
 #include "scene/gpu_engine.h"
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 
 #include "gpu/renderer.h"
 #include "readers/source.h"
-#include "scene/built_scene.h"
 
 namespace thimble::tools {
 namespace {
@@ -23,6 +23,8 @@ auto told(Work&& work) {
 }  // namespace
 
 struct GpuEngine::State {
+  Status draw(const gpu::LitFrame& frame, Band band, Bytes shares, LitCounts* counts);
+
   std::mutex mutex;
   gpu::Renderer renderer;
 };
@@ -39,10 +41,13 @@ std::vector<std::string> GpuEngine::devices() {
   return names;
 }
 
-GpuEngine::GpuEngine(const BuiltScene& built) {
+EffectSet GpuEngine::effects() {
+  return gpu::kEffectsInKernels;
+}
+
+GpuEngine::GpuEngine(const CompactTree& tree, Span<const Rgb8> palette, int threads) : threads_(threads) {
   const auto start = std::chrono::steady_clock::now();
-  const Span<const Rgb8> palette(built.palette().data(), built.palette().size());
-  state_ = told([&] { return std::unique_ptr<State>(new State{{}, {built.compact(), palette, {}}}); });
+  state_ = told([&] { return std::unique_ptr<State>(new State{{}, {tree, palette, {}}}); });
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -59,6 +64,34 @@ Status GpuEngine::draw(const Camera& camera, const Shading& shading, const Band&
 Status GpuEngine::trace(Span<const Ray> rays, Span<Hit> hits) {
   const std::lock_guard<std::mutex> lock(state_->mutex);
   return told([&] { return state_->renderer.trace(rays, hits); });
+}
+
+Status GpuEngine::State::draw(const gpu::LitFrame& frame, Band band, Bytes shares, LitCounts* counts) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  const std::int32_t end = band.first_row + band.rows;
+  Status status = Status::kOk;
+  while (status == Status::kOk && band.first_row < end) {
+    band.rows = std::min(most_rows(frame.camera.width_px()), end - band.first_row);
+    status = told([&] { return renderer.draw_lit(frame, band, shares, counts); });
+    const auto rows = static_cast<std::size_t>(band.rows);
+    band.first_row += band.rows;
+    band.pixels = band.pixels.subspan(rows * row_bytes(band.format, frame.camera.width_px()));
+    shares = shares.subspan(std::min(shares.size, rows * static_cast<std::size_t>(frame.camera.width_px())));
+  }
+  return status;
+}
+
+Status GpuEngine::render(EffectSet effects, const Camera& camera, const Shading& shading,
+                         const LitScene& scene, const Band& band, LitCounts* counts) {
+  return state_->draw({effects, camera, shading, scene}, band, {}, counts);
+}
+
+Status GpuEngine::render_before(const Ground& ground, EffectSet effects, const Camera& camera,
+                                const Shading& shading, const LitScene& scene, const Band& band, Bytes shares,
+                                LitCounts* counts) {
+  static_assert(kAroundCount == 32 && kAroundLength == 128);
+  const gpu::Backdrop backdrop{ground.is_there, ground.z, ground.reach, ground.toward_sun, kAround};
+  return state_->draw({effects, camera, shading, scene, &backdrop}, band, shares, counts);
 }
 
 }  // namespace thimble::tools

@@ -1,4 +1,5 @@
-/// The GPU renderer (platform/gpu) over a built scene. A build without it (-DTHIMBLE_GPU=OFF) has gpu_engine_absent.cpp.
+/// The GPU renderer (platform/gpu) over a scene: its pictures without light, with the light that its kernels draw, and
+/// rays. A build without it (-DTHIMBLE_GPU=OFF) has gpu_engine_absent.cpp.
 #pragma once
 
 #include <cstdint>
@@ -6,28 +7,29 @@
 #include <string>
 #include <vector>
 
-#include "thimble/base/memory.h"
-#include "thimble/picture/camera.h"
+#include "scene/lit_streams.h"
 #include "thimble/picture/render.h"
-#include "thimble/picture/shading.h"
-#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 
-class BuiltScene;
-
-class GpuEngine {
+class GpuEngine final : public LitStreams {
  public:
   static bool is_in_build();
   /// The devices of this machine, the one that is used first.
   static std::vector<std::string> devices();
 
-  /// Copies the scene, a compact tree, to the device. Throws InputError: there is none, or the scene is too large.
-  explicit GpuEngine(const BuiltScene& built);
-  ~GpuEngine();
+  /// The effects that its kernels draw.
+  static EffectSet effects();
 
-  /// What that took.
-  double seconds() const { return seconds_; }
+  /// Copies the scene to the device. `threads` finish what it has drawn. Throws InputError: there is none, or the scene
+  /// is too large.
+  GpuEngine(const CompactTree& tree, Span<const Rgb8> palette, int threads);
+  ~GpuEngine() override;
+
+  const char* name() const override { return "gpu"; }
+  int threads() const override { return threads_; }
+  /// What copying took.
+  double seconds() const override { return seconds_; }
   /// Most rows of a band for `draw`.
   static std::int32_t most_rows(std::int32_t width_px);
   /// The pixels of `render_band`. Throws InputError when the device fails.
@@ -36,9 +38,17 @@ class GpuEngine {
   /// device fails.
   Status trace(Span<const Ray> rays, Span<Hit> hits);
 
+  /// These throw InputError when the device fails.
+  Status render(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
+                const Band& band, LitCounts* counts) override;
+  bool finds_shares() const override { return true; }
+  Status render_before(const Ground& ground, EffectSet effects, const Camera& camera, const Shading& shading,
+                       const LitScene& scene, const Band& band, Bytes shares, LitCounts* counts) override;
+
  private:
   struct State;
   std::unique_ptr<State> state_;
+  int threads_;
   double seconds_ = 0;
 };
 

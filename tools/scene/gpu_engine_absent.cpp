@@ -13,7 +13,12 @@ std::vector<std::string> GpuEngine::devices() {
   return {};
 }
 
-GpuEngine::GpuEngine(const BuiltScene& /*built*/) {}
+EffectSet GpuEngine::effects() {
+  return Effect::kNone;
+}
+
+GpuEngine::GpuEngine(const CompactTree& /*tree*/, Span<const Rgb8> /*palette*/, int threads)
+    : threads_(threads) {}
 GpuEngine::~GpuEngine() = default;
 
 std::int32_t GpuEngine::most_rows(std::int32_t /*width_px*/) {
@@ -26,6 +31,17 @@ Status GpuEngine::draw(const Camera& /*camera*/, const Shading& /*shading*/, con
 }
 
 Status GpuEngine::trace(Span<const Ray> /*rays*/, Span<Hit> /*hits*/) {
+  return Status::kBadArgument;
+}
+
+Status GpuEngine::render(EffectSet /*effects*/, const Camera& /*camera*/, const Shading& /*shading*/,
+                         const LitScene& /*scene*/, const Band& /*band*/, LitCounts* /*counts*/) {
+  return Status::kBadArgument;
+}
+
+Status GpuEngine::render_before(const Ground& /*ground*/, EffectSet /*effects*/, const Camera& /*camera*/,
+                                const Shading& /*shading*/, const LitScene& /*scene*/, const Band& /*band*/,
+                                Bytes /*shares*/, LitCounts* /*counts*/) {
   return Status::kBadArgument;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "scene/backdrop.h"
 #include "scene/edge_rows.h"
 #include "thimble/base/memory.h"
 #include "thimble/light/render.h"
@@ -28,6 +29,8 @@ class LitStreams {
   /// What `make` takes at most.
   static std::size_t bytes(const CompactTree& tree, EffectSet effects, const LitScene& scene, int threads);
 
+  /// The engine, as --stats names it.
+  virtual const char* name() const { return "lit"; }
   /// Threads that draw.
   virtual int threads() const = 0;
   /// What making it took.
@@ -36,19 +39,36 @@ class LitStreams {
   /// be null) is added to.
   virtual Status render(EffectSet effects, const Camera& camera, const Shading& shading,
                         const LitScene& scene, const Band& band, LitCounts* counts) = 0;
-  /// The same of single pixels, three bytes each.
-  virtual Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading,
-                               const LitScene& scene, Span<const SamplePlace> places, Bytes rgb,
-                               LitCounts* counts) = 0;
+  // What an engine does not do is a kBadArgument, and then the core's.
 
+  /// As `render` in kRgb888; `shares` gets what `light_behind` (scene/backdrop.h) finds at each pixel. Where it
+  /// `finds_shares`.
+  virtual bool finds_shares() const { return false; }
+  virtual Status render_before(const Ground& /*ground*/, EffectSet /*effects*/, const Camera& /*camera*/,
+                               const Shading& /*shading*/, const LitScene& /*scene*/, const Band& /*band*/,
+                               Bytes /*shares*/, LitCounts* /*counts*/) {
+    return Status::kBadArgument;
+  }
+
+  /// The same of single pixels, three bytes each.
+  virtual Status render_pixels(EffectSet /*effects*/, const Camera& /*camera*/, const Shading& /*shading*/,
+                               const LitScene& /*scene*/, Span<const SamplePlace> /*places*/, Bytes /*rgb*/,
+                               LitCounts* /*counts*/) {
+    return Status::kBadArgument;
+  }
   /// Whether each ray meets anything, 1 or 0, as the core's `any_hit`. This and the next: any number of threads at a
   /// time, each with rays of its own. An error of a ray is the call's; the others are answered.
-  virtual Status any_hit(Span<const Ray> rays, Span<std::uint8_t> hits) const = 0;
+  virtual Status any_hit(Span<const Ray> /*rays*/, Span<std::uint8_t> /*hits*/) const {
+    return Status::kBadArgument;
+  }
   /// Whether no voxel of a box is solid; false where that takes longer to find out.
-  virtual bool is_empty(const VoxelBox& box) const = 0;
+  virtual bool is_empty(const VoxelBox& /*box*/) const { return false; }
   /// Where each ray enters something solid, if before the point `before`: t as in the core's `Hit`; denominator 0 for
   /// a miss.
-  virtual Status first_entry_before(Span<const Ray> rays, RayPoint before, Span<RayPoint> entries) const = 0;
+  virtual Status first_entry_before(Span<const Ray> /*rays*/, RayPoint /*before*/,
+                                    Span<RayPoint> /*entries*/) const {
+    return Status::kBadArgument;
+  }
 };
 
 }  // namespace thimble::tools

@@ -27,15 +27,21 @@ LookRows::LookRows(const LookCanvas& canvas, const Camera& camera, std::uint32_t
       camera_(camera),
       shading_(shading_of(canvas, camera)),
       scene_(canvas.look->lit_scene()),
-      tone_(tone_table(exposure)) {}
+      tone_(tone_table(exposure)),
+      finds_shares_(canvas.look->has_backdrop && canvas.streams != nullptr &&
+                    canvas.streams->finds_shares()) {}
 
 Status LookRows::trace_colors(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
-                              LitCounts* counts) const {
+                              Bytes shares, LitCounts* counts) const {
   Band band;
   band.pixels = colors;
   band.first_row = first_row;
   band.rows = rows;
   const EffectSet effects = canvas_.look->effects;
+  if (finds_shares_) {
+    return canvas_.streams->render_before(canvas_.look->ground, effects, camera, shading_, scene_, band,
+                                          shares, counts);
+  }
   return canvas_.streams != nullptr
              ? canvas_.streams->render(effects, camera, shading_, scene_, band, counts)
              : render_lit_band(effects, *canvas_.tree, camera, shading_, scene_, band, counts);
@@ -43,6 +49,9 @@ Status LookRows::trace_colors(const Camera& camera, std::int32_t first_row, std:
 
 void LookRows::find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows,
                            Bytes shares) const {
+  if (finds_shares_) {
+    return;
+  }
   thread_local std::vector<Ray> row;
   const auto width = static_cast<std::size_t>(camera.width_px());
   row.resize(width);
@@ -59,7 +68,7 @@ void LookRows::find_shares(const Camera& camera, std::int32_t first_row, std::in
 
 Status LookRows::trace(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
                        Bytes shares, LitCounts* counts) const {
-  const Status status = trace_colors(camera, first_row, rows, colors, counts);
+  const Status status = trace_colors(camera, first_row, rows, colors, shares, counts);
   if (status == Status::kOk) {
     find_shares(camera, first_row, rows, shares);
   }
@@ -72,8 +81,9 @@ Status LookRows::draw(std::int32_t y, std::int32_t rows, Bytes work, Image* imag
   const Bytes all_colors = work.subspan(0, 3 * samples * static_cast<std::size_t>(rows));
   const Bytes all_shares = work.subspan(all_colors.size, samples * static_cast<std::size_t>(rows));
   const bool has_streams = canvas_.streams != nullptr;
-  const Status status =
-      has_streams ? trace_colors(camera_, y * across, rows * across, all_colors, counts) : Status::kOk;
+  const Status status = has_streams
+                            ? trace_colors(camera_, y * across, rows * across, all_colors, all_shares, counts)
+                            : Status::kOk;
   if (status != Status::kOk) {
     return status;
   }
@@ -83,7 +93,7 @@ Status LookRows::draw(std::int32_t y, std::int32_t rows, Bytes work, Image* imag
     const Bytes colors = all_colors.subspan(3 * samples * static_cast<std::size_t>(row), 3 * samples);
     const Bytes shares = all_shares.subspan(samples * static_cast<std::size_t>(row), samples);
     const Status traced =
-        has_streams ? Status::kOk : trace_colors(camera_, first, across, colors, counts + thread);
+        has_streams ? Status::kOk : trace_colors(camera_, first, across, colors, shares, counts + thread);
     find_shares(camera_, first, across, shares);
     for (std::int32_t x = 0; traced == Status::kOk && x < image->width_px; ++x) {
       finish(x, y + row, colors, shares, image);
@@ -177,7 +187,7 @@ Status LookRows::trace_places(const Camera& camera, Span<const SamplePlace> plac
                           [&](std::int32_t place, std::size_t /*thread*/) {
                             const auto i = static_cast<std::size_t>(place);
                             return trace_colors(camera.window(places.data[i].x, places.data[i].y, 1, 1), 0, 1,
-                                                colors.subspan(3 * i, 3), nullptr);
+                                                colors.subspan(3 * i, 3), {}, nullptr);
                           });
 }
 
@@ -338,7 +348,7 @@ Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progre
   if (look.kind == LookKind::kStars) {
     status = paint_stars(canvas, progress, painting);
   } else {
-    painting->engine = "lit";
+    painting->engine = canvas.streams != nullptr ? canvas.streams->name() : "lit";
     painting->threads = canvas.streams != nullptr ? canvas.streams->threads() : canvas.threads;
     status = look.at_edges ? paint_at_edges(canvas, exposure, progress, painting)
                            : paint_whole(canvas, exposure, progress, painting);

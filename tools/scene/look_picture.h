@@ -76,8 +76,9 @@ class LookRows {
  private:
   Status trace(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
                LitCounts* counts) const;
+  // Also the shares, if `finds_shares_`.
   Status trace_colors(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
-                      LitCounts* counts) const;
+                      Bytes shares, LitCounts* counts) const;
   Status trace_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
                       LitCounts* counts) const;
   void find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes shares) const;
@@ -90,6 +91,7 @@ class LookRows {
   Shading shading_;
   LitScene scene_;
   ToneTable tone_;
+  bool finds_shares_;  // with the colours
 };
 
 /// What the rays of every so manyth pixel, at most 96 x 96 of them, say of this picture.

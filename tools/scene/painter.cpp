@@ -258,7 +258,8 @@ BandPainter gpu_painter(GpuEngine* engine, const Camera& camera, const Shading& 
 BandPainter lit_painter(const BuiltScene& built, const Camera& camera, const Shading& shading,
                         PixelFormat format, const LitPicture& picture) {
   const auto painter = std::make_shared<LitPainter>(built, camera, shading, format, picture);
-  return painter_of("lit", painter->threads(), painter->work(), painter);
+  return painter_of(picture.streams != nullptr ? picture.streams->name() : "lit", painter->threads(),
+                    painter->work(), painter);
 }
 
 BandPainter lit_edge_painter(const BuiltScene& built, const Camera& camera, const Camera& fine,

@@ -2,6 +2,7 @@
 // it is 0, as robust buffer access allows, and counted.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
@@ -37,6 +38,8 @@ inline int bitCount(uint v) {
   return std::popcount(v);
 }  // NOLINT: GLSL's name
 using std::abs;
+using std::max;
+using std::min;
 
 #include "parameters.inc"
 
