@@ -91,6 +91,9 @@ complain "what lies in a folder detail is the core's own" \
   "$(includes tools platform tests | grep -E '"thimble/[a-z0-9_/]*detail/' || true)"
 complain "what lies in a folder host is for the host's own renderers, platform/wide and gpu, not for callers" \
   "$(includes tools platform | grep -E '"thimble/[a-z0-9_/]*host/' | grep -vE '^(platform/(wide|gpu)|tools/instruments)/' || true)"
+installed=$(sed -n 's/^ *foreach(header \(.*\))$/\1/p' platform/wide/CMakeLists.txt 2>/dev/null | tr ' ' '|')
+complain "of platform/wide the command sees what is installed for others" \
+  "$(includes tools | grep -E '"wide/' | grep -vE "\"wide/($installed)\.h\"" || true)"
 complain "a public header for callers includes none of a folder host" \
   "$(includes include | grep -v '^include/thimble/[a-z]*/host/' | grep -E '"[a-z0-9_./]*host/' || true)"
 for room in output readers scene particles instruments viewer web; do

@@ -201,6 +201,7 @@ mkdir -p "$tree/include/thimble/base/host"
 add include/thimble/base/host/more.h ''
 add include/thimble/base/sum.h '#include "host/more.h"'
 catches layering 'for callers includes none of a folder host'
+fault layering 'sees what is installed' tools/tool.cpp '#include "wide/rays/job.h"'
 fault layering 'never src' tools/tool.cpp '#include "../src/base/sum.h"'
 mkdir -p "$tree/tools/commands" "$tree/tools/instruments"
 add tools/commands/stats.cpp '#include "instruments/study.h"'
