@@ -1,5 +1,4 @@
 // Edits of worlds of level 9 and 10, in which nothing moves but the children of one node and the voxels of one brick.
-#ifdef THIMBLE_DEEP_WORLDS
 #include "deep_world.h"
 
 #include "../base/bits.h"
@@ -473,4 +472,3 @@ Status DeepWorld::make_map(EditedWorld* world, uint8_t* ranks) {
 }
 
 }  // namespace thimble
-#endif

@@ -41,7 +41,7 @@ size_t bytes_of(int level, const EditRoom& room) {
   }
   return packed_world_bytes(level, room);
 }
-bool is_deep(const CompactTree& tree) {
+[[gnu::always_inline]] inline bool is_deep(const CompactTree& tree) {
   return DeepMap::is_deep(tree.level());
 }
 
@@ -145,12 +145,10 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
   }
   EditedWorld made;
   made.room_ = room;
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree)) {
-      const Status status = DeepWorld::make(tree, bytes.data, &made);
-      *world = status == Status::kOk ? made : *world;
-      return status;
-    }
+  if (is_deep(tree)) {
+    const Status status = DeepWorld::make(tree, bytes.data, &made);
+    *world = status == Status::kOk ? made : *world;
+    return status;
   }
   const size_t blocks = (size_t{room.nodes} >> kDefaultRankShift) + 1;
   const uint32_t cells = uint32_t{1} << (3 * (tree.level() - 2));
@@ -228,10 +226,8 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
 }
 
 EditRoom EditedWorld::free_room() const {
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree_) && header_ != nullptr) {
-      return DeepWorld::free_room(*this);
-    }
+  if (is_deep(tree_) && header_ != nullptr) {
+    return DeepWorld::free_room(*this);
   }
   EditRoom room;
   room.nodes = room_.nodes - tree_.node_count_;
@@ -310,13 +306,11 @@ Status EditedWorld::check_room(const Vec3i& voxel, int material, bool* changes) 
     leaves = material >= 0 && !is_solid ? 1 : 0;
   }
   *changes = true;
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree_)) {
-      const int opened = !found                    ? place.level - (tree_.empty() ? 0 : 1)
-                         : masks_[place.node] == 0 ? place.level
-                                                   : 0;
-      return DeepWorld::has_room(*this, voxel, opened) ? Status::kOk : Status::kOutOfMemory;
-    }
+  if (is_deep(tree_)) {
+    const int opened = !found                    ? place.level - (tree_.empty() ? 0 : 1)
+                       : masks_[place.node] == 0 ? place.level
+                                                 : 0;
+    return DeepWorld::has_room(*this, voxel, opened) ? Status::kOk : Status::kOutOfMemory;
   }
   const EditRoom left = free_room();
   const uint32_t number = bits::load16(cell_of(voxel));
@@ -408,11 +402,8 @@ void EditedWorld::count_from(uint32_t node) {
 }
 
 void EditedWorld::add_root(uint8_t material) {
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree_)) {
-      DeepWorld::add_root(this, material);
-      return;
-    }
+  if (is_deep(tree_)) {
+    return DeepWorld::add_root(this, material);
   }
   insert_nodes(0, 1);
   count_from(0);
@@ -433,11 +424,8 @@ void EditedWorld::remove_root() {
 
 // The solid block `node` gets children of its material, those of `mask`.
 void EditedWorld::open_block(uint32_t node, int level, unsigned mask) {
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree_)) {
-      DeepWorld::open_block(this, node, level, mask);
-      return;
-    }
+  if (is_deep(tree_)) {
+    return DeepWorld::open_block(this, node, level, mask);
   }
   const uint32_t own = tree_.blocks_before(node);
   const uint8_t material = leaves_[own];
@@ -457,11 +445,8 @@ void EditedWorld::open_block(uint32_t node, int level, unsigned mask) {
 
 // The children of `node`, leaves of one material, become one: a solid block.
 void EditedWorld::close_node(uint32_t node, int level) {
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree_)) {
-      DeepWorld::close_node(this, node, level);
-      return;
-    }
+  if (is_deep(tree_)) {
+    return DeepWorld::close_node(this, node, level);
   }
   const uint32_t child = tree_.first_child(node);
   const uint32_t count = bits::popcount8(masks_[node]);
@@ -482,11 +467,8 @@ void EditedWorld::close_node(uint32_t node, int level) {
 }
 
 void EditedWorld::add_child(uint32_t node, int level, unsigned octant, uint8_t material) {
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree_)) {
-      DeepWorld::add_child(this, node, level, octant, material);
-      return;
-    }
+  if (is_deep(tree_)) {
+    return DeepWorld::add_child(this, node, level, octant, material);
   }
   const uint32_t child = child_of(node, octant);
   masks_[node] = static_cast<uint8_t>(masks_[node] | 1U << octant);
@@ -502,11 +484,8 @@ void EditedWorld::add_child(uint32_t node, int level, unsigned octant, uint8_t m
 
 // A leaf that is not its parent's only child.
 void EditedWorld::remove_child(uint32_t node, int level, unsigned octant) {
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree_)) {
-      DeepWorld::remove_child(this, node, level, octant);
-      return;
-    }
+  if (is_deep(tree_)) {
+    return DeepWorld::remove_child(this, node, level, octant);
   }
   const uint32_t child = child_of(node, octant);
   if (level == 1) {
@@ -537,10 +516,8 @@ uint32_t EditedWorld::kind_of(uint8_t material) const {
 
 // The brick round `voxel` becomes what the tree has there. Fails only where check_room was not asked.
 Status EditedWorld::update_cell(const Vec3i& voxel) {
-  if constexpr (kDeepWorlds) {
-    if (is_deep(tree_)) {
-      return DeepWorld::update_cell(this, voxel);
-    }
+  if (is_deep(tree_)) {
+    return DeepWorld::update_cell(this, voxel);
   }
   uint8_t* const cell = cell_of(voxel);
   const uint32_t old = bits::load16(cell);
