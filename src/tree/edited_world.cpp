@@ -226,10 +226,11 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
 }
 
 EditRoom EditedWorld::free_room() const {
-  if (is_deep(tree_) && header_ != nullptr) {
-    return DeepWorld::free_room(*this);
-  }
   EditRoom room;
+  if (is_deep(tree_)) {
+    room = DeepWorld::free_room(*this);
+    return room;
+  }
   room.nodes = room_.nodes - tree_.node_count_;
   room.leaves = room_.leaves - tree_.solid_blocks_ - tree_.voxel_bits_;
   room.bricks = free_bricks_;
