@@ -6,7 +6,7 @@
 #include "support/wide_cases.h"
 #include "thimble/light/host/optics.h"
 #include "thimble/trace/secondary_ray.h"
-#include "wide/lit/open_space.h"
+#include "wide/lit/face_lights.h"
 
 namespace thimble::tests {
 namespace {

@@ -13,9 +13,6 @@ inline constexpr size_t kMostLightLanes = 8;
 /// horizon's colour: of the zenith's where z is not below 0, else of the ground's.
 void find_sky_shares(const int32_t* x, const int32_t* y, const int32_t* z, size_t count, int32_t* shares);
 
-/// Camera::rounded of `first`, `first` + `step` and so on: a component of a row's rays.
-void round_along_row(int64_t first, int64_t step, size_t count, int32_t* rounded);
-
 /// A lamp, and points on faces that look the same way. Of three axes the faces' own comes first.
 struct LampRays {
   int32_t place[3];       ///< the lamp's, in 1/256 voxel

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 
-#include "wide/lit/opaque_stream.h"
 #include "wide/lit/pixel_queue.h"
 #include "wide/lit/stream.h"
 

@@ -7,7 +7,6 @@
 #include "wide/lit/array_arena.h"
 #include "wide/lit/kernels.h"
 #include "wide/lit/pixel_queue.h"
-#include "wide/lit/row_spans.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -15,7 +14,7 @@ namespace thimble::wide {
 /// Components of rays' directions, then shares of the sky; with room for kMostLightLanes more.
 struct SkyColumns {
   void lay_out(uint32_t count, ArrayArena* arena);
-  void put(uint32_t number, const Vec3i& direction) {
+  void put(uint32_t number, const Vec3i& direction) const {
     for (int axis = 0; axis < 3; ++axis) {
       of[axis][number] = direction[axis];
     }
@@ -23,6 +22,14 @@ struct SkyColumns {
 
   int32_t* of[4];
 };
+
+/// Some pixels of a picture.
+struct PixelBox {
+  int32_t x0, y0, x1, y1;
+};
+
+/// The pixels of which rays may touch a box, its faces included; no ray of another pixel does.
+PixelBox pixels_that_show(const Camera& camera, const VoxelBox& box);
 
 class MissShader {
  public:
@@ -40,8 +47,7 @@ class MissShader {
   void show_row(const PixelReader& pixels, int32_t first, int32_t end) const;
 
   const lit::Frame& frame_;
-  bool has_spans_;
-  RowSpans spans_;
+  PixelBox shown_;
   SkyColumns columns_;
   uint32_t most_;
   lit::Color background_;

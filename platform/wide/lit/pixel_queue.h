@@ -9,7 +9,6 @@
 
 #include "thimble/light/host/asked.h"
 #include "wide/lit/lit_renderer.h"
-#include "wide/lit/row_spans.h"
 
 namespace thimble::wide {
 
@@ -65,6 +64,12 @@ class PixelQueue {
   std::atomic<size_t> next_{0};
 };
 
+/// Some columns of a row.
+struct PixelColumns {
+  int32_t first;
+  int32_t end;
+};
+
 /// Where a pixel is stored. In place of a row of the band `row` may be the number of a place.
 struct PixelSlot {
   int32_t x;
@@ -111,7 +116,7 @@ class PixelReader {
   int32_t row() const { return static_cast<int32_t>(at_); }
   int32_t camera_row() const { return queue_.band_.first_row + row(); }
   /// The columns of a row that are left to be taken.
-  RowSpans::Columns columns() const { return {x_, end_x_}; }
+  PixelColumns columns() const { return {x_, end_x_}; }
   /// Leaves only columns `first` to `end` - 1 of a row that was begun to be taken.
   void narrow(int32_t first, int32_t end) {
     x_ = first;
