@@ -12,7 +12,7 @@ const script = ['baker.js', 'look.js', 'crew.js', 'orbit.js', 'share.js'].map((n
   .replace(/^'use strict';\n/m, '')
   .replace(/\nif \(typeof module !== 'undefined'\) \{[^]*?\n\}\n/, '\n')
   .replace(/^\s*\/\/.*\n/gm, '')).join('\n');
-const packed = ['scene', 'share'].map((name) => {
+const packed = ['look', 'share'].map((name) => {
   const file = execFileSync('zopfli', ['-c', '--zlib', path.join(modules, `${name}.wasm`)]);
   return `<script type="application/octet-stream" id="module-${name}">${file.toString('base64')}</script>`;
 });

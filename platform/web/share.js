@@ -1,5 +1,5 @@
-// The page of one scene (`thimble render SCENE -o F.html`): its poster at once, then the same scene, turned by hand. Modules
-// and scenes lie in it; share.html has the elements.
+// The page of one scene (`thimble render SCENE -o F.html`): its poster at once, then the same scene, turned by hand; or of a
+// sheet (`thimble sheet FOLDER -o F.html`), whose pictures open so. Modules and scenes lie in it; share.html has the elements.
 'use strict';
 
 const FIRST_EXPOSURE = 320;
@@ -42,7 +42,7 @@ class Share {
   }
   // For the window as it is now, in its own pixels.
   open() {
-    this.crew?.end();
+    this.end();
     const scale = devicePixelRatio || 1;
     const [width, height] = [innerWidth, innerHeight].map((size) => Math.max(1, Math.min(8192, Math.round(size * scale))));
     Object.assign(this, {width, height, step: 1});
@@ -63,6 +63,12 @@ class Share {
       },
     });
     this.phase = 'moved';
+  }
+  end() {
+    this.crew?.end();
+    cancelAnimationFrame(this.asked);
+    this.asked = null;
+    this.phase = 'ended';
   }
   // Where the window is narrower than the poster its camera stands farther away, so that all of the picture stays in it.
   fit() {
@@ -192,7 +198,8 @@ class Share {
 
 // ---- hands
 
-function listen(share) {
+function listen(share, signal) {
+  const on = (target, name, does, options) => target.addEventListener(name, does, {signal, ...options});
   const pointers = new Map();
   let awake = !embedded;  // in somebody's page the wheel is that page's until the picture is clicked
   const wakeUp = (is) => {
@@ -213,12 +220,12 @@ function listen(share) {
     tell();
   };
   const {orbit} = share;
-  canvas.addEventListener('pointerdown', (event) => {
+  on(canvas, 'pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, {x: event.clientX, y: event.clientY});
     wakeUp(true);
   });
-  canvas.addEventListener('pointermove', (event) => {
+  on(canvas, 'pointermove', (event) => {
     const pointer = pointers.get(event.pointerId);
     if (pointer === undefined) return;
     const [dx, dy] = [event.clientX - pointer.x, event.clientY - pointer.y];
@@ -240,27 +247,27 @@ function listen(share) {
       }
     });
   });
-  for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, ({pointerId}) => pointers.delete(pointerId));
-  canvas.addEventListener('contextmenu', (event) => event.preventDefault());
-  canvas.addEventListener('wheel', (event) => {
+  for (const end of ['pointerup', 'pointercancel']) on(canvas, end, ({pointerId}) => pointers.delete(pointerId));
+  on(canvas, 'contextmenu', (event) => event.preventDefault());
+  on(canvas, 'wheel', (event) => {
     if (!awake) return;
     event.preventDefault();
     const notches = event.deltaY / [100, 3, 1][event.deltaMode];
     move(() => orbit.approach(1.1 ** Math.max(-10, Math.min(10, notches))));
   }, {passive: false});
-  canvas.addEventListener('dblclick', ({offsetX, offsetY}) => {
+  on(canvas, 'dblclick', ({offsetX, offsetY}) => {
     const scale = share.width / canvas.clientWidth;
     const hit = share.look.pick(Math.floor(offsetX * scale), Math.floor(offsetY * scale));
     if (hit !== null) move(() => orbit.lookAt(hit.point));
   });
-  addEventListener('blur', () => wakeUp(false));
+  on(window, 'blur', () => wakeUp(false));
   const keys = {
     ArrowLeft: () => orbit.turn(-KEY_TURN, 0), ArrowRight: () => orbit.turn(KEY_TURN, 0),
     ArrowUp: () => orbit.turn(0, KEY_TURN), ArrowDown: () => orbit.turn(0, -KEY_TURN),
     '+': () => orbit.approach(1 / 1.1), '=': () => orbit.approach(1 / 1.1), '-': () => orbit.approach(1.1),
     0: () => share.fit(),
   };
-  addEventListener('keydown', (event) => {
+  on(window, 'keydown', (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     if (event.key === 'f') fullScreen();
     else if (event.key === ' ' && share.canPlay() && event.target.tagName !== 'BUTTON') play();
@@ -270,34 +277,78 @@ function listen(share) {
   });
   const fullScreen = () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.());
   $('full').hidden = !document.fullscreenEnabled;
-  $('full').addEventListener('click', fullScreen);
+  on($('full'), 'click', fullScreen);
   $('play').hidden = !share.canPlay();
-  $('play').addEventListener('click', play);
+  on($('play'), 'click', play);
   $('buttons').hidden = false;
   tell();
   let timer = 0;
-  addEventListener('resize', () => {
+  on(window, 'resize', () => {
     clearTimeout(timer);
-    timer = setTimeout(() => share.resize(), 150);
+    timer = setTimeout(() => signal.aborted || share.resize(), 150);
   });
-  document.addEventListener('visibilitychange', () => share.wake());
-  calm.addEventListener('change', () => share.play(false));
+  on(document, 'visibilitychange', () => share.wake());
+  on(calm, 'change', () => share.play(false));
 }
 
-async function begin() {
-  const [drawing, looking, ...scenes] = await Promise.all(
-    [$('module-scene'), $('module-share'), ...document.querySelectorAll('[data-scene]')].map(unpack));
-  const poster = $('poster');
-  const {turn, ...wishes} = document.body.dataset;
-  const share = new Share({scenes, turn, wishes, aspect: poster.naturalWidth / poster.naturalHeight,
-    drawing: await WebAssembly.compile(drawing), looking: await WebAssembly.compile(looking)});
-  canvas.hidden = false;
-  share.drawFast(performance.now());
-  listen(share);
-  share.move();
-  window.shared = share;
+// ---- one scene, or a sheet whose address says which of its pictures is open
+
+const poster = $('poster');
+const figures = [...document.querySelectorAll('figure[data-name]')];
+const {title} = document;
+let modules = null;
+let gone = new AbortController();  // of what is open
+
+async function open(name, packed) {
+  const {signal} = gone;
+  try {
+    modules ??= Promise.all(['look', 'share'].map((module) => unpack($(`module-${module}`)).then(WebAssembly.compile)));
+    const [[drawing, looking], ...scenes] = await Promise.all([modules, ...[...packed].map(unpack), poster.decode()]);
+    if (signal.aborted) return;
+    const {turn, ...wishes} = document.body.dataset;
+    const share = new Share({scenes: scenes.slice(0, -1), turn, wishes, drawing, looking,
+      aspect: poster.naturalWidth / poster.naturalHeight});
+    canvas.hidden = false;
+    canvas.setAttribute('aria-label',
+      `${name}. Arrows turn it, plus and minus come nearer and go away, 0 is the first view, F the full screen.`);
+    share.drawFast(performance.now());
+    listen(share, signal);
+    share.move();
+    window.shared = share;
+  } catch (error) {  // the poster stays where scripts may run and WebAssembly may not
+    if (!signal.aborted) $('said').textContent = `It cannot be turned here: ${error.message}`;
+  }
 }
-// The poster stays where scripts may run and WebAssembly may not.
-$('poster').decode().then(begin).catch((error) => {
-  $('said').textContent = `It cannot be turned here: ${error.message}`;
-});
+function close() {
+  gone.abort();
+  gone = new AbortController();
+  window.shared?.end();
+  for (const hidden of [poster, canvas, $('buttons')]) hidden.hidden = true;
+  for (const name of ['phase', 'picture']) delete document.body.dataset[name];
+  $('said').textContent = '';
+}
+function turnTo() {
+  const before = document.title;
+  const figure = figures.find(({dataset}) => `#${encodeURIComponent(dataset.name)}` === location.hash);
+  close();
+  document.title = figure?.dataset.name ?? title;
+  document.body.classList.toggle('open', figure !== undefined);
+  document.body.style.background = figure ? `linear-gradient(${figure.dataset.colors})` : '';
+  if (figure === undefined) {
+    figures.find(({dataset}) => dataset.name === before)?.querySelector('a').focus();
+    return;
+  }
+  Object.assign(poster, {hidden: false, src: figure.querySelector('img').src, alt: document.title});
+  $('close').hidden = false;
+  open(document.title, figure.querySelectorAll('script'));
+}
+if (document.querySelector('main') === null) {
+  open(title, document.querySelectorAll('[data-scene]'));
+} else {
+  for (const {dataset, firstChild} of figures) firstChild.href = `#${encodeURIComponent(dataset.name)}`;
+  const leave = () => (location.hash = '');
+  $('close').addEventListener('click', leave);
+  addEventListener('keydown', ({key}) => key === 'Escape' && leave());
+  addEventListener('hashchange', turnTo);
+  turnTo();
+}

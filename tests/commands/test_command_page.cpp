@@ -15,8 +15,8 @@ namespace {
 using namespace thimble::tests;
 
 constexpr const char* kTemplate =
-    "<title>{{title}}</title>\n{{description}}\n{{version}}\n{{top}}\n{{bottom}}\n{{turn}}\n{{background}}\n"
-    "{{ground}}\n{{preview}}\n{{poster}}\n{{scenes}}{{title}}\n";
+    "<title>{{title}}</title>\n{{description}}\n{{version}}\n{{colors}}\n{{turn}}\n{{background}}\n"
+    "{{ground}}\n{{preview}}\n{{scenes}}end\n";
 
 std::string from_base64(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -55,7 +55,7 @@ TEST_CASE(
   check_refused({"render", "castle", "-o", page}, 1, {"make web", folder.path("none")});
   ::setenv("THIMBLE_WEB", folder.path().c_str(), 1);
   folder.write("share.html", "no place for anything");
-  check_refused({"render", "castle", "-o", page}, 1, {"{{title}}", "make web"});
+  check_refused({"render", "castle", "-o", page}, 1, {"{{scenes}}", "make web"});
   folder.write("share.html", kTemplate);
   const std::string scene =
       folder.write("two & <three> {{scenes}}.xyz", "2 2 2 255 0 0\n2 3 3 0 0 255\n3 3 3 0 255 0\n");
@@ -64,20 +64,24 @@ TEST_CASE(
   check_done(words + more);
   const std::string first = read_text(page);
   const Words lines = lines_of(first);
-  REQUIRE(lines.size() == 12);
-  CHECK(lines[0] == "<title>two &amp; &lt;three> &#123;&#123;scenes}}</title>");
+  REQUIRE(lines.size() == 11);
+  CHECK(lines[0] == "<title>two &amp; &lt;three&gt; {{scenes}}</title>");
   CHECK(lines[1].starts_with("3 voxels"));
-  CHECK(lines[3] == "#0a0b0c");
-  CHECK(lines[4] == "#0a0b0c");
-  CHECK(lines[5] == "6");
-  CHECK(lines[6] == std::to_string(2 + 0x0a0b0c));
-  CHECK(lines[7] == "0");
-  const std::string poster = from_base64(lines[9]);
+  CHECK(lines[3] == "#0a0b0c, #0a0b0c");
+  CHECK(lines[4] == "6");
+  CHECK(lines[5] == std::to_string(2 + 0x0a0b0c));
+  CHECK(lines[6] == "0");
+  CHECK(lines[7].starts_with("data:image/jpeg;base64,"));
+  const std::string picture = "<img id=\"poster\" alt=\"" + lines[0].substr(7, lines[0].size() - 15) +
+                              "\" src=\"data:image/jpeg;base64,";
+  REQUIRE(lines[8].starts_with(picture));
+  const std::string poster =
+      from_base64(lines[8].substr(picture.size(), lines[8].size() - picture.size() - 2));
   CHECK(poster.starts_with("\xFF\xD8\xFF"));
   CHECK(poster.size() <= 60000);
   const std::string before = "<script type=\"application/octet-stream\" data-scene>";
-  REQUIRE(lines[10].starts_with(before));
-  const std::string packed = lines[10].substr(before.size(), lines[10].find("</script>") - before.size());
+  REQUIRE(lines[9].starts_with(before));
+  const std::string packed = lines[9].substr(before.size(), lines[9].find("</script>") - before.size());
   const std::string baked = folder.write("baked.oct", inflated(from_base64(packed)));
   check_done({"render", baked, "--size", "64x48", "-o", folder.path("baked.ppm")});
   check_done({"render", scene, "--size", "64x48", "-o", folder.path("scene.ppm")});

@@ -1,8 +1,10 @@
-// `thimble sheet` and `thimble thumbnail`: small pictures of files that nobody vouches for.
+// `thimble sheet` and `thimble thumbnail`: small pictures of files that nobody vouches for. tests/web/test_share.js looks at
+// the page of a sheet.
 #include <doctest/doctest.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -108,4 +110,42 @@ TEST_CASE("sheet: a folder -> a tile for each scene in it, what cannot be drawn 
   check_refused({"sheet", folder.path(), "-o", out.path("s.gif")}, 2, {".png"});
   check_refused({"sheet", folder.path("none"), "-o", out.path("s.png")}, 1, {"none", "No such file"});
   CHECK(out.names() == Words{"s.ppm"});
+}
+
+TEST_CASE(
+    "sheet: an .html -> a tile for each scene in order, with what is said or what opens; the same bytes "
+    "again") {
+  const TemporaryFolder folder;
+  const TemporaryFolder out;
+  ::setenv("THIMBLE_WEB", out.path().c_str(), 1);
+  folder.write("a&b.xyz", kCube);
+  folder.write("broken.vox", "VOX ?");
+  const std::string page = out.path("s.html");
+  const Words words{"sheet", folder.path(), "-o", page, "--size", "96"};
+  check_refused(words, 1, {"make web"});
+  out.write("share.html",
+            "{{title}}|{{description}}|{{version}}{{colors}}{{turn}}{{background}}{{ground}}|{{preview}}|{{"
+            "scenes}}|");
+  CHECK(check_done(words).err == "2 scenes, 1 of them could not be drawn\n");
+  const std::string first = read_text(page);
+  const Words parts = split(first, '|');
+  REQUIRE(parts.size() == 6);
+  CHECK(parts[1].starts_with("2 scenes"));
+  CHECK(parts[3] == "data:,");
+  const Words lines = lines_of(parts[4]);
+  REQUIRE(lines.size() == 6);
+  CHECK(lines[0] == "<main>");
+  CHECK(lines[1].starts_with("<figure data-name=\"a&amp;b.xyz\" data-colors=\"#"));
+  CHECK(lines[1].find("<a><img alt=\"a&amp;b.xyz\" src=\"data:image/jpeg;base64,") != std::string::npos);
+  CHECK(lines[1].find("<figcaption>a&amp;b.xyz<br>3 voxels<br>") != std::string::npos);
+  CHECK(lines[1].find("data-scene>") != std::string::npos);
+  CHECK(lines[3].starts_with("<figure><p>"));
+  CHECK(lines[3].find("truncated") != std::string::npos);
+  CHECK(lines[3].find("data-scene>") == std::string::npos);
+  CHECK(lines[4] == "</main>");
+  check_done(words + Words{"--threads", "1", "--columns", "3", "--quiet"});
+  const std::string wide = read_text(page);
+  CHECK(wide.find("<main style=\"grid-template-columns: repeat(3, 1fr)\">") != std::string::npos);
+  CHECK(wide.substr(wide.find("<figure")) == first.substr(first.find("<figure")));
+  ::unsetenv("THIMBLE_WEB");
 }

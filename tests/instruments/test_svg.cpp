@@ -10,7 +10,7 @@ namespace thimble::tools {
 namespace {
 
 TEST_CASE("svg words: markup is written otherwise, UTF-8 stays, what is neither becomes U+FFFD") {
-  CHECK(xml_text("a<b & c>d") == "a&lt;b &amp; c&gt;d");
+  CHECK(xml_text("a<b & \"c\">d") == "a&lt;b &amp; &quot;c&quot;&gt;d");
   CHECK(xml_text("H\xC3\xB6he \xE2\x82\xAC \xF0\x9F\x98\x80") == "H\xC3\xB6he \xE2\x82\xAC \xF0\x9F\x98\x80");
   const std::string other = "\xEF\xBF\xBD";
   CHECK(xml_text("\xFF.scene") == other + ".scene");

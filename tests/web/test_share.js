@@ -3,6 +3,7 @@
 const {spawnSync} = require('child_process');
 const fs = require('fs');
 const path = require('path');
+const zlib = require('zlib');
 const {Chromium} = require('./chromium.js');
 const {test, is, holds, end} = require('./check.js');
 const made = require('./files.js');
@@ -152,6 +153,49 @@ async function main() {
       await browser.wheel('iframe', 50);
       await new Promise((done) => setTimeout(done, 500));
       is('scrolled', await browser.eval('scrollY'), before);
+    });
+  });
+  await test('a sheet: a tile for each file; one opens as its own page does, by its address, too', async () => {
+    const folder = path.join(work, 'sheet');
+    fs.rmSync(folder, {recursive: true, force: true});
+    fs.mkdirSync(folder);
+    for (const name of ['cas & tle.vox', 'other.vox']) fs.copyFileSync('tools/gallery/scenes/castle.vox', path.join(folder, name));
+    fs.writeFileSync(path.join(folder, 'broken.vox'), 'VOX ?');
+    const file = path.join(work, 'sheet.html');
+    run('sheet', folder, '-o', file, '--size', '96');
+    const bytes = fs.readFileSync(file);
+    run('sheet', folder, '-o', file, '--size', '96', '--threads', '1');
+    holds('the same bytes', bytes.equals(fs.readFileSync(file)));
+    const baked = path.join(work, 'sheet.oct');
+    fs.writeFileSync(baked, zlib.inflateSync(Buffer.from(bytes.toString().match(/data-scene>([^<]*)/)[1], 'base64')));
+    const crc = async (browser) => crcOf(baked, '--size', `${WIDTH}x${HEIGHT}`,
+      ...await browser.eval('shared.view.camera.own') ? [] : await placed(browser));
+    const tile = 'figure[data-name="cas & tle.vox"] a';
+    await shown(file, {}, async (browser) => {
+      is('the title', await browser.eval('document.title'), 'sheet');
+      is('the tiles', await browser.eval('[...document.querySelectorAll("figcaption")].map((one) => one.innerText.split("\\n")[0]).join()'),
+        'broken.vox,cas & tle.vox,other.vox');
+      holds('the sentence', await browser.eval('/truncated/.test(document.querySelector("figure p").textContent)'));
+      await browser.click(tile);
+      await browser.until(REST, 100);
+      is('opened', await browser.canvasCrc(), await crc(browser));
+      is('its title', await browser.eval('document.title'), 'cas & tle.vox');
+      await browser.drag('#canvas', 30, -10);
+      await browser.until(REST, 100);
+      is('turned', await browser.canvasCrc(), await crc(browser));
+      await browser.key('Escape');
+      await browser.until('canvas.hidden && document.title === "sheet"');
+      is('what has the focus', await browser.eval(`document.activeElement === document.querySelector('${tile}')`), true);
+      await browser.eval('history.back()');
+      await browser.until(REST, 100);
+      await browser.click('#close');
+      await browser.until('canvas.hidden');
+      await browser.key('Enter');
+      await browser.until('!canvas.hidden');
+    });
+    await shown(`${file}#other.vox`, {mobile: true, width: 60, height: 120}, async (browser) => {
+      await browser.until(REST, 100);
+      is('its title', await browser.eval('document.title'), 'other.vox');
     });
   });
   await Chromium.quit();

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <new>
 
+#include "commands/page.h"
 #include "commands/render_command.h"
 #include "output/output_file.h"
 #include "scene/scene_source.h"
@@ -50,12 +51,15 @@ void limit_this_process(const PictureLimits& limits) {
 struct LimitedPicture::Shared {
   bool is_done;
   std::uint64_t voxels;
+  std::size_t scene_bytes;
   std::array<char, kMostErrorBytes> error;
 
   std::uint8_t* pixels() { return reinterpret_cast<std::uint8_t*>(this + 1); }
   void fail(std::string_view sentence) {
-    sentence.copy(error.data(), error.size() - 1);
-    is_done = true;
+    if (!is_done) {
+      sentence.copy(error.data(), error.size() - 1);
+      is_done = true;
+    }
   }
   void draw(const std::string& path, std::int32_t side_px, const PictureLimits& limits) {
     try {
@@ -76,8 +80,15 @@ struct LimitedPicture::Shared {
       }
       const LookPicture look = draw_look(command, *source);
       voxels = look.stats.voxels;
-      std::copy(look.image.pixels.begin(), look.image.pixels.end(), pixels());
-      is_done = true;
+      std::uint8_t* const behind = std::copy(look.image.pixels.begin(), look.image.pixels.end(), pixels());
+      is_done = true;  // also where the scene takes too much
+      if (limits.scene_bytes != 0) {
+        const std::vector<std::uint8_t> scene = page_scene(command, *source, look.camera, limits.scene_bytes);
+        if (scene.size() <= limits.scene_bytes) {
+          std::copy(scene.begin(), scene.end(), behind);
+          scene_bytes = scene.size();
+        }
+      }
     } catch (const std::bad_alloc&) {
       fail("takes more memory than a small picture may");
     } catch (const std::exception& wrong) {
@@ -89,7 +100,8 @@ struct LimitedPicture::Shared {
 LimitedPicture::LimitedPicture(const std::string& path, std::int32_t side_px, const PictureLimits& limits)
     : side_px_(side_px),
       limits_(limits),
-      bytes_(sizeof(Shared) + 3 * static_cast<std::size_t>(side_px) * static_cast<std::size_t>(side_px)) {
+      picture_bytes_(3 * static_cast<std::size_t>(side_px) * static_cast<std::size_t>(side_px)),
+      bytes_(sizeof(Shared) + picture_bytes_ + limits.scene_bytes) {
   void* const memory = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   const int parent = ::getpid();
   process_ = memory == MAP_FAILED ? -1 : ::fork();
@@ -126,7 +138,7 @@ bool LimitedPicture::take(SmallPicture* picture, bool waits) {
     return false;
   }
   process_ = -1;
-  if (WIFSIGNALED(status) || !shared_->is_done) {
+  if (!shared_->is_done) {
     const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     const bool took_long = number == SIGXCPU || number == SIGKILL || number == SIGALRM;
     shared_->fail(took_long ? "takes longer than the " + std::to_string(limits_.seconds) +
@@ -137,7 +149,9 @@ bool LimitedPicture::take(SmallPicture* picture, bool waits) {
   picture->voxels = shared_->voxels;
   if (picture->error.empty()) {
     const std::uint8_t* const first = shared_->pixels();
-    picture->image = {side_px_, side_px_, PixelFormat::kRgb888, {first, first + (bytes_ - sizeof(Shared))}};
+    const std::uint8_t* const behind = first + picture_bytes_;
+    picture->image = {side_px_, side_px_, PixelFormat::kRgb888, {first, behind}};
+    picture->scene.assign(behind, behind + shared_->scene_bytes);
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "output/image.h"
 
@@ -14,6 +15,7 @@ struct PictureLimits {
   int seconds = 1;                 ///< of processor time; the process waits 19 s more at most
   std::uint64_t memory_bytes = 0;  ///< all of the process: program, file, voxels and picture
   bool coarse = false;             ///< a mesh has no more voxels a side than the picture has pixels
+  std::size_t scene_bytes = 0;     ///< of the scene for a page, which is merged to keep that; 0 for none
 };
 
 /// A square picture in the scene's own look, or why there is none.
@@ -21,6 +23,7 @@ struct SmallPicture {
   std::string error;  ///< a sentence without its subject; empty where there is a picture
   std::uint64_t voxels = 0;
   Image image;
+  std::vector<std::uint8_t> scene;  ///< for a page (page.h); empty where it cannot be had
 };
 
 class LimitedPicture {
@@ -40,8 +43,9 @@ class LimitedPicture {
 
   std::int32_t side_px_;
   PictureLimits limits_;
+  std::size_t picture_bytes_;
   std::size_t bytes_;
-  Shared* shared_;  ///< what both processes see: facts, and the pixels behind them
+  Shared* shared_;  ///< what both processes see: facts, behind them pixels, then the scene
   int process_ = -1;
 };
 

@@ -1,4 +1,4 @@
-// thimble sheet: every scene of a folder on one picture.
+// thimble sheet: every scene of a folder on one picture, or on one page.
 #include <unistd.h>
 
 #include <algorithm>
@@ -7,18 +7,24 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/limited_picture.h"
+#include "commands/page.h"
 #include "commands/scene_options.h"
 #include "host/canvas.h"
 #include "output/output_set.h"
+#include "output/plot.h"
 #include "output/progress.h"
 #include "output/units.h"
+#include "output/version.h"
 #include "readers/file_bytes.h"
 #include "readers/read_any.h"
 
@@ -30,10 +36,13 @@ constexpr std::uint64_t kMemoryBytes = std::uint64_t{480} << 20;  // of all proc
 constexpr int kMostProcesses = 4;                                 // so that each has enough of it for a scene
 constexpr int kSeconds = 10;                                      // for one scene
 constexpr int kPollMicroseconds = 2000;
+constexpr std::size_t kMostWaiting = 32;                       // pictures that are there, for an earlier one
+constexpr std::size_t kMostSceneBytes = std::size_t{4} << 20;  // of one in a page
 
 constexpr Rgb8 kSheet{32, 34, 38};
 constexpr Rgb8 kNoPicture{48, 50, 56};  // where there is no picture
 constexpr Rgb8 kCaption{206, 210, 216};
+constexpr Rgb8 kFolder{130, 134, 142};
 constexpr Rgb8 kWarning{240, 160, 112};
 constexpr std::int32_t kGapPx = 12;
 constexpr std::int32_t kCaptionPx = 3 * host::kGlyphHeightPx + 8;
@@ -47,11 +56,6 @@ struct SheetCommand {
   bool quiet = false;
 };
 
-struct Tile {
-  std::string name;  ///< in the folder
-  SmallPicture picture{};
-};
-
 // By its name or its first bytes; what is packed, by its name.
 bool is_scene_file(const std::filesystem::path& path) {
   std::array<char, kFirstLookBytes> first{};
@@ -62,9 +66,9 @@ bool is_scene_file(const std::filesystem::path& path) {
 }
 
 // The scenes of the folder and of those in it, by name; nothing hidden, and no link to a folder.
-std::vector<Tile> find_scenes(const std::string& folder) {
+std::vector<std::string> find_scenes(const std::string& folder) {
   namespace fs = std::filesystem;
-  std::vector<Tile> tiles;
+  std::vector<std::string> names;
   std::error_code error;
   fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error);
   for (; !error && at != fs::recursive_directory_iterator(); at.increment(error)) {
@@ -72,47 +76,75 @@ std::vector<Tile> find_scenes(const std::string& folder) {
     if (at->path().filename().string().starts_with('.')) {
       at.disable_recursion_pending();
     } else if (at->is_regular_file(gone) && is_scene_file(at->path())) {
-      tiles.push_back({at->path().lexically_relative(folder).string()});
+      names.push_back(at->path().lexically_relative(folder).string());
     }
   }
   if (error) {
     throw InputError("cannot be listed: " + error.message());
   }
-  if (tiles.empty()) {
+  if (names.empty()) {
     throw InputError("no file in it is a scene");
   }
-  if (tiles.size() > kMostTiles) {
-    throw InputError("holds " + grouped(tiles.size()) + " scenes, and a sheet has room for " +
+  if (names.size() > kMostTiles) {
+    throw InputError("holds " + grouped(names.size()) + " scenes, and a sheet has room for " +
                      grouped(kMostTiles) + "; name a folder in it");
   }
-  std::sort(tiles.begin(), tiles.end(), [](const Tile& a, const Tile& b) { return a.name < b.name; });
-  return tiles;
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
-// Draws them all, several at a time.
-void draw_tiles(const SheetCommand& command, std::vector<Tile>* tiles) {
+// A scene of the folder, and what came of it.
+struct Tile {
+  Tile(const std::string& name, SmallPicture drawn)
+      : picture(std::move(drawn)), file(name.substr(name.rfind('/') + 1)) {
+    folder = name.substr(0, std::max<std::size_t>(name.size() - file.size(), 1) - 1);
+    count = picture.error.empty() ? voxels_text(picture.voxels) : "cannot be drawn";
+  }
+
+  SmallPicture picture;
+  std::string file;
+  std::string folder;  // in that folder; empty: in itself
+  std::string count;   // of voxels
+};
+
+std::string scenes_text(std::size_t count) {
+  return grouped(count) + (count == 1 ? " scene" : " scenes");
+}
+
+// Draws them all, several at a time, and hands each on, in their order. How many could not be drawn.
+std::size_t draw_tiles(const SheetCommand& command, const std::vector<std::string>& names,
+                       std::size_t scene_bytes, const std::function<void(const Tile&)>& hand_on) {
   ProgressBar bar("drawing", command.quiet);
   struct Work {
     std::unique_ptr<LimitedPicture> drawing{};
-    Tile* tile = nullptr;
+    std::size_t index = 0;
   };
   std::vector<Work> works(static_cast<std::size_t>(std::min(command.processes, kMostProcesses)));
-  const PictureLimits limits{kSeconds, kMemoryBytes / works.size()};
-  std::size_t next = 0;
-  for (std::size_t done = 0; done < tiles->size(); ::usleep(kPollMicroseconds)) {
+  const PictureLimits limits{kSeconds, kMemoryBytes / works.size(), false, scene_bytes};
+  std::vector<std::optional<SmallPicture>> drawn(names.size());
+  std::size_t failed = 0;
+  for (std::size_t next = 0, at = 0; at < names.size(); ::usleep(kPollMicroseconds)) {
     for (Work& work : works) {
-      if (work.drawing != nullptr && work.drawing->take(&work.tile->picture)) {
+      SmallPicture picture;
+      if (work.drawing != nullptr && work.drawing->take(&picture)) {
         work.drawing.reset();
-        ++done;
+        drawn[work.index] = std::move(picture);
       }
-      if (work.drawing == nullptr && next < tiles->size()) {
-        work.tile = &(*tiles)[next++];
-        work.drawing =
-            std::make_unique<LimitedPicture>(command.folder + "/" + work.tile->name, command.side_px, limits);
+      if (work.drawing == nullptr && next < std::min(names.size(), at + kMostWaiting)) {
+        work.index = next++;
+        work.drawing = std::make_unique<LimitedPicture>(command.folder + "/" + names[work.index],
+                                                        command.side_px, limits);
       }
     }
-    bar.update(static_cast<double>(done) / static_cast<double>(tiles->size()));
+    for (; at < names.size() && drawn[at]; ++at) {
+      const Tile tile(names[at], std::move(*drawn[at]));
+      drawn[at].reset();
+      failed += tile.picture.error.empty() ? 0U : 1U;
+      hand_on(tile);
+    }
+    bar.update(static_cast<double>(at) / static_cast<double>(names.size()));
   }
+  return failed;
 }
 
 // The end of a name counts more than its beginning.
@@ -143,22 +175,17 @@ void draw_tile(const Tile& tile, std::int32_t side_px, std::int32_t x, std::int3
     }
     host::draw_text(canvas, x + kMarginPx, y + kMarginPx, 1, kWarning, why);
   }
-  const std::int32_t below = y + side_px + 4;
-  const std::size_t slash = tile.name.rfind('/');
-  const std::string file = printable(slash == std::string::npos ? tile.name : tile.name.substr(slash + 1));
-  host::draw_text(canvas, x, below, 1, kCaption, cut_to(file, columns));
-  host::draw_text(canvas, x, below + host::kGlyphHeightPx, 1, kCaption,
-                  !picture.error.empty() ? "cannot be drawn"
-                  : picture.voxels == 1  ? "1 voxel"
-                                         : grouped(picture.voxels) + " voxels");
-  if (slash != std::string::npos) {
-    host::draw_text(canvas, x, below + 2 * host::kGlyphHeightPx, 1, {130, 134, 142},
-                    cut_to(printable(tile.name.substr(0, slash)), columns));
-  }
+  const auto write = [&](int line, Rgb8 color, const std::string& text) {
+    host::draw_text(canvas, x, y + side_px + 4 + line * host::kGlyphHeightPx, 1, color, text);
+  };
+  write(0, kCaption, cut_to(printable(tile.file), columns));
+  write(1, kCaption, tile.count);
+  write(2, kFolder, cut_to(printable(tile.folder), columns));
 }
 
-Image sheet_of(const SheetCommand& command, const std::vector<Tile>& tiles) {
-  const auto count = static_cast<std::int32_t>(tiles.size());
+std::size_t write_sheet(const SheetCommand& command, const std::vector<std::string>& names,
+                        OutputFile* file) {
+  const auto count = static_cast<std::int32_t>(names.size());
   // A little wider than high, as tiles are a little higher than wide.
   const auto usual = static_cast<std::int32_t>(std::ceil(std::sqrt(1.5 * count)));
   const std::int32_t columns = std::min(count, command.columns == 0 ? usual : command.columns);
@@ -168,27 +195,70 @@ Image sheet_of(const SheetCommand& command, const std::vector<Tile>& tiles) {
   host::Canvas canvas;
   canvas.resize(columns * across + kGapPx, rows * down + kGapPx);
   canvas.fill(0, 0, canvas.width_px, canvas.height_px, kSheet);
-  for (std::int32_t i = 0; i < count; ++i) {
-    draw_tile(tiles[static_cast<std::size_t>(i)], command.side_px, kGapPx + i % columns * across,
-              kGapPx + i / columns * down, &canvas);
-  }
+  std::int32_t i = 0;
+  const std::size_t failed = draw_tiles(command, names, 0, [&](const Tile& tile) {
+    draw_tile(tile, command.side_px, kGapPx + i % columns * across, kGapPx + i / columns * down, &canvas);
+    ++i;
+  });
   const auto* const first = reinterpret_cast<const std::uint8_t*>(canvas.pixels.data());
   static_assert(sizeof(Rgb8) == 3);
-  return {canvas.width_px, canvas.height_px, PixelFormat::kRgb888, {first, first + 3 * canvas.pixels.size()}};
+  write_picture(
+      file, command.output,
+      {canvas.width_px, canvas.height_px, PixelFormat::kRgb888, {first, first + 3 * canvas.pixels.size()}});
+  return failed;
+}
+
+// Of a page: what share.js of platform/web opens by a click.
+std::string figure_of(const Tile& tile, const std::string& path) {
+  const std::string name = xml_text(path);
+  const bool opens = !tile.picture.scene.empty();
+  std::string text = "<figure>";
+  std::string shown = "<p>" + xml_text(tile.picture.error) + "</p>";
+  if (tile.picture.error.empty()) {
+    shown = "<img alt=\"" + name + "\" src=\"" + poster_url(tile.picture.image, kMostPosterBytes) + "\">";
+  }
+  if (opens) {
+    text = "<figure data-name=\"" + name + "\" data-colors=\"" + edge_colors(tile.picture.image) + "\">";
+    shown = "<a>" + shown + "</a>";
+  }
+  return text + shown + "<figcaption>" + xml_text(tile.file) + "<br>" + tile.count + "<br><small>" +
+         xml_text(tile.folder) + "</small></figcaption>" + (opens ? scene_element(tile.picture.scene) : "") +
+         "</figure>\n";
+}
+
+// A page whose pictures open as pages of one scene do.
+std::size_t write_page(const SheetCommand& command, const std::vector<std::string>& names, OutputFile* file) {
+  const auto [before, behind] = around_scenes(
+      load_page(),
+      {{"description", scenes_text(names.size()) + ", ray traced by Thimble. Click one to turn it."},
+       {"version", version_number()},
+       {"colors", "#202226, #202226"},
+       {"turn", "0"},
+       {"background", "0"},
+       {"ground", "-1"},
+       {"preview", "data:,"},
+       {"title", xml_text(std::filesystem::canonical(command.folder).filename().string())}});
+  file->write(before + "<main");
+  if (command.columns != 0) {
+    file->write(" style=\"grid-template-columns: repeat(" + std::to_string(command.columns) + ", 1fr)\"");
+  }
+  file->write(">\n");
+  std::size_t at = 0;
+  const std::size_t failed = draw_tiles(command, names, kMostSceneBytes,
+                                        [&](const Tile& tile) { file->write(figure_of(tile, names[at++])); });
+  file->write("</main>\n<img id=\"poster\" alt=\"\" hidden>\n" + behind);
+  return failed;
 }
 
 void run(const SheetCommand& command) {
   OutputSet outputs({command.output}, {});
-  std::vector<Tile> tiles = find_scenes(command.folder);
-  draw_tiles(command, &tiles);
-  write_picture(outputs[0], command.output, sheet_of(command, tiles));
+  const std::vector<std::string> names = find_scenes(command.folder);
+  const std::size_t failed = names_page(command.output) ? write_page(command, names, outputs[0])
+                                                        : write_sheet(command, names, outputs[0]);
   outputs.commit();
   if (!command.quiet) {
-    const auto failed = std::count_if(tiles.begin(), tiles.end(),
-                                      [](const Tile& tile) { return !tile.picture.error.empty(); });
-    std::fprintf(stderr, "%s %s", grouped(tiles.size()).c_str(), tiles.size() == 1 ? "scene" : "scenes");
-    std::fprintf(stderr, failed == 0 ? "\n" : ", %s of them could not be drawn\n",
-                 grouped(static_cast<std::uint64_t>(failed)).c_str());
+    std::fprintf(stderr, "%s", scenes_text(names.size()).c_str());
+    std::fprintf(stderr, failed == 0 ? "\n" : ", %s of them could not be drawn\n", grouped(failed).c_str());
   }
 }
 
@@ -196,14 +266,19 @@ void run(const SheetCommand& command) {
 
 void add_sheet(CLI::App& app) {
   auto command = std::make_shared<SheetCommand>();
-  CLI::App* sub = add_command(app, "sheet",
-                              "Draw every scene of a folder, and of the folders in it, on one picture. What "
-                              "cannot be drawn is said on its tile.");
+  CLI::App* sub =
+      add_command(app, "sheet",
+                  "Draw every scene of a folder, and of the folders in it, on one picture, or on a page "
+                  "whose pictures open and turn. What cannot be drawn is said on its tile.");
   sub->add_option("scene", command->folder, "the folder")->type_name("FOLDER")->required();
   add_output_option(
       *sub, "-o,--output", "FILE", &command->output,
-      [](const std::string& path) { return path != "-" && image_kind(path).has_value(); }, kImageEndings,
-      std::string("the sheet, ") + kImageEndings)
+      [](const std::string& path) {
+        return names_page(path) || (path != "-" && image_kind(path).has_value());
+      },
+      std::string(kImageEndings) + ", or .html",
+      std::string("the sheet, ") + kImageEndings +
+          "; or .html, one file, whose scenes take 4 MiB each at most")
       ->required();
   add_whole_option(*sub, "--size", "N", 96, 1024, &command->side_px, "pixels a side of each picture")
       ->default_str("240");

@@ -454,7 +454,11 @@ std::string number(double value) {
 std::string xml_text(const std::string& plain) {
   std::string text;
   for (const char c : utf8_text(plain, true)) {
-    text += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+    text += c == '&'   ? "&amp;"
+            : c == '<' ? "&lt;"
+            : c == '>' ? "&gt;"
+            : c == '"' ? "&quot;"
+                       : std::string(1, c);
   }
   return text;
 }

@@ -38,6 +38,7 @@ struct Viewer {
   MovingPool pool;
   Bytes pool_bytes;  // of the pool
   bool rains;
+  bool has_looked_for_map;
   WebCamera seen;
   int32_t width_px;
   int32_t height_px;
@@ -65,6 +66,16 @@ Bytes reserve(size_t bytes) {
   }
   viewer.next = from + bytes;
   return {at(from), bytes};
+}
+
+// The brick map by which frames are fast, where none was baked in; who draws at rest alone needs none.
+void make_map() {
+  apps::ShownScene& shown = viewer.shown;
+  viewer.has_looked_for_map = true;
+  const Bytes room = reserve(most_brick_map_bytes(shown.scene.tree()));
+  size_t written = 0;
+  shown.has_map = BrickMap::make(shown.scene.tree(), room, &shown.map, &written) == Status::kOk;
+  viewer.next -= room.size - (shown.has_map ? written : 0);
 }
 
 Bytes row_of_picture(int32_t y) {
@@ -275,6 +286,7 @@ extern "C" {
   if (!scene.section(SectionKind::kBrickMap).empty()) {
     apps::open_map(&viewer.shown, &none);
   }
+  viewer.has_looked_for_map = viewer.shown.has_map;
   if (!scene.has_camera()) {
     return "the scene has no camera";
   }
@@ -447,6 +459,9 @@ extern "C" {
 [[clang::export_name("draw")]] bool thimble_draw(int32_t first, int32_t rows, int32_t step, bool lit) {
   using namespace thimble;
   using namespace thimble::tools;
+  if (!lit && !viewer.has_looked_for_map) {
+    make_map();
+  }
   if (step == 1 && !lit) {
     const size_t stride = kPixelBytes * static_cast<size_t>(viewer.width_px);
     const Bytes to =

@@ -1,0 +1,130 @@
+#include "commands/page.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <new>
+
+#include "output/output_file.h"
+#include "output/png.h"
+#include "output/units.h"
+#include "readers/file_bytes.h"
+#include "scene/baking.h"
+#include "scene/named_scenes.h"
+
+namespace thimble::tools {
+namespace {
+
+constexpr std::uint64_t kMostTemplateBytes = std::uint64_t{4} << 20;
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t left = std::min<std::size_t>(3, bytes.size() - at);
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      word = word << 8 | (i < left ? bytes[at + i] : 0U);
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      text += i <= left ? kDigits[word >> (18 - 6 * i) & 63U] : '=';
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string load_page() {
+  const char* const named = std::getenv("THIMBLE_WEB");
+  const std::string folder = named != nullptr ? named : folder_beside_program("web");
+  const std::string path = folder + "/share.html";
+  std::error_code error;
+  if (folder.empty() || !std::filesystem::exists(path, error)) {
+    throw OutputError("there is no page to put the scene in" + (folder.empty() ? "" : " in " + folder) +
+                      "; make web builds it, $THIMBLE_WEB says where it is");
+  }
+  return std::string(load_file(path, kMostTemplateBytes).text());
+}
+
+std::pair<std::string, std::string> around_scenes(
+    const std::string& page, std::initializer_list<std::pair<std::string_view, std::string>> values) {
+  const auto place_of = [](const std::string& text, const std::string& key) {
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) {
+      throw OutputError("the page to put the scene in has no place for " + key + "; make web builds it anew");
+    }
+    return at;
+  };
+  const std::string scenes = "{{scenes}}";
+  const std::size_t end = place_of(page, scenes);
+  std::string before = page.substr(0, end);
+  for (const auto& [name, value] : values) {
+    const std::string key = "{{" + std::string(name) + "}}";
+    for (std::size_t at = place_of(before, key); at != std::string::npos;
+         at = before.find(key, at + value.size())) {
+      before.replace(at, key.size(), value);
+    }
+  }
+  return {std::move(before), page.substr(end + scenes.size())};
+}
+
+std::string voxels_text(std::uint64_t voxels) {
+  return voxels == 1 ? "1 voxel" : grouped(voxels) + " voxels";
+}
+
+std::string poster_url(const Image& image, std::size_t most_bytes) {
+  std::vector<unsigned char> file;
+  for (int quality = 90; quality >= 10; quality -= 10) {
+    file = jpeg_file(image.width_px, image.height_px, image.pixels, quality);
+    if (file.size() <= most_bytes) {
+      return "data:image/jpeg;base64," + base64(file);
+    }
+  }
+  throw InputError("its picture takes " + grouped(file.size()) + " bytes, and the poster of a page has " +
+                   grouped(most_bytes) + "; choose a smaller --size");
+}
+
+std::string edge_colors(const Image& image) {
+  const std::uint8_t* const top = image.pixels.data();
+  const std::uint8_t* const bottom = top + image.pixels.size() - 3 * static_cast<std::size_t>(image.width_px);
+  std::string text;
+  for (const std::uint8_t* const pixel : {top, bottom}) {
+    text += text.empty() ? "#" : ", #";
+    for (int channel = 0; channel < 3; ++channel) {
+      constexpr std::string_view kDigits = "0123456789abcdef";
+      text += kDigits[pixel[channel] >> 4];
+      text += kDigits[pixel[channel] & 15U];
+    }
+  }
+  return text;
+}
+
+std::vector<std::uint8_t> page_scene(const RenderCommand& command, const SceneSource& source,
+                                     const SceneCamera& camera, std::optional<std::uint64_t> most_bytes) {
+  BakingOptions options;
+  options.name = scene_name(command.scene.arguments.scene);
+  options.limit_bytes = most_bytes;
+  options.coarsen = most_bytes.has_value();
+  options.default_look = source.baked() == nullptr;
+  options.keeps_look = options.default_look;
+  options.display = DisplayFacts{PixelFormat::kRgb888, command.view.width_px, command.view.height_px};
+  options.camera = [&](const CompactTree&) { return camera; };
+  const std::vector<std::uint8_t> bytes = bake_scene(source, options).bytes;
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::vector<std::uint8_t> packed(size);
+  if (compress2(packed.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), 9) != Z_OK) {
+    throw std::bad_alloc();
+  }
+  packed.resize(size);
+  return packed;
+}
+
+std::string scene_element(std::span<const std::uint8_t> packed) {
+  return "<script type=\"application/octet-stream\" data-scene>" + base64(packed) + "</script>\n";
+}
+
+}  // namespace thimble::tools
