@@ -5,6 +5,7 @@ const fs = require('fs');
 const path = require('path');
 const zlib = require('zlib');
 const {Chromium} = require('./chromium.js');
+const {Firefox, hasFirefox} = require('./firefox.js');
 const {test, is, holds, end} = require('./check.js');
 const made = require('./files.js');
 
@@ -199,6 +200,21 @@ async function main() {
     });
   });
   await Chromium.quit();
+  if (hasFirefox) {
+    await test('in Firefox, on a desktop and a telephone: the pixels of render', async () => {
+      const file = share('castle', '--size', `${WIDTH}x${HEIGHT}`);
+      for (const [width, height, ratio] of [[WIDTH, HEIGHT, 1], [60, 120, 2]]) {
+        const browser = await Firefox.open(`file://${file}`, {width, height, ratio});
+        browser.before = CRC32.replace('globalThis.crc32', 'const crc32');
+        await browser.until(REST, 100);
+        is(`${width} x ${height}`, await browser.canvasCrc(),
+          crcOf('castle', '--size', `${width * ratio}x${height * ratio}`, ...(ratio === 1 ? [] : await placed(browser))));
+        await browser.close();
+      }
+    });
+  } else {
+    console.log('test-web: without Firefox: neither firefox-esr nor firefox is installed');
+  }
   end('the page of one scene');
 }
 main();
