@@ -12,8 +12,11 @@
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/light/render.h"
+#include "thimble/picture/cutoff.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/edited_world.h"
+#include "wide/raster/voxel_lists.h"
+#include "wide/rays/ray_map.h"
 
 namespace thimble::tests::edited_deep {
 namespace {
@@ -219,6 +222,27 @@ TEST_CASE("edited deep worlds: emptied and begun again; room that bytes hold") {
   CHECK(same_bytes(packed(world), tree));
   CHECK(world.free_room().nodes == free.nodes);
   CHECK(world.free_room().bricks == free.bricks);
+}
+
+TEST_CASE("edited deep worlds: what reads nodes in order -> refused; of what is packed, made") {
+  const DeepPair pair(9, {100, 0, 5, 3});
+  const HeapBytes bytes = packed(pair.world);
+  const CompactTree in_order = open_or_throw(bytes);
+  std::vector<std::uint64_t> words(std::size_t{1} << 20);
+  const Bytes memory(reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size());
+  for (const bool is_packed : {false, true}) {
+    CAPTURE(is_packed);
+    const CompactTree& tree = is_packed ? in_order : pair.world.tree();
+    const Status wanted = is_packed ? Status::kOk : Status::kDamaged;
+    CHECK(tree.nodes_in_order() == is_packed);
+    Arena arena(memory);
+    wide::VoxelLists lists;
+    CHECK(wide::VoxelLists::make(tree, &arena, &lists) == wanted);
+    wide::RayMap map;
+    CHECK(wide::RayMap::make(tree, &arena, &map) == wanted);
+    NodeColors colors;
+    CHECK(NodeColors::make(tree, {}, {}, memory, &colors) == wanted);
+  }
 }
 
 }  // namespace
