@@ -295,18 +295,6 @@ TEST_CASE("baked scene: a wrong header or list -> the phrase that says so") {
   CHECK(place == 8);
 }
 
-TEST_CASE("baked scene: less than a header, a bare header, other bytes -> the phrase and place 0") {
-  std::uint8_t bare[kBakedHeaderBytes] = {};
-  const auto at_of = [&](std::size_t size, const char* phrase) {
-    std::uint32_t place = 77;
-    CHECK(std::string(BakedScene::validate({bare, size}, &place)) == phrase);
-    return place;
-  };
-  CHECK(at_of(0, "shorter than a header") == 0);
-  CHECK(at_of(kBakedHeaderBytes - 1, "shorter than a header") == 0);
-  CHECK(at_of(kBakedHeaderBytes, "not a baked scene") == 0);
-}
-
 TEST_CASE("baked scene: a part that fills the last section -> no byte behind the scene is written") {
   const HeapBytes tree = small_tree();
   const std::uint8_t words[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};

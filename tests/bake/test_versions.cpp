@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "support/baked_damage.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
 #include "thimble/tree/brick_map.h"
@@ -20,7 +20,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 
 constexpr std::size_t kVersionOffset = 3;
 constexpr std::size_t kMostBytes = 8192;
@@ -66,9 +65,7 @@ std::string frame_crc32(const TemporaryFolder& folder, const std::string& scene,
   if (std::none_of(words.begin(), words.end(), is_how)) {
     words.insert(words.end(), {"--effects", "auto"});  // as it was baked, not the default picture
   }
-  const CommandResult result = run_command(words);
-  CAPTURE(result.describe());
-  REQUIRE(result.status == 0);
+  check_done(words);
   return nlohmann::json::parse(read_text(folder.path("s.json")))["frame_crc32"];
 }
 
@@ -78,12 +75,7 @@ void check_refused(const TemporaryFolder& folder, const std::string& path, const
   const std::string out = folder.path("out.oct");
   for (const Words& words :
        {Words{"info", path}, {"render", path, "-o", folder.path("p.ppm")}, {"bake", path, "-o", out}}) {
-    const CommandResult result = run_command(words);
-    CAPTURE(result.describe());
-    CHECK(result.status == 1);
-    CHECK(result.out.empty());
-    CHECK(result.err == line);
-    CHECK(is_one_sentence(result.err));
+    tests::check_refused(words, 1, {line});
   }
   CHECK(folder.names() == Words{std::filesystem::path(path).filename().string()});
   std::filesystem::remove(path);
@@ -132,11 +124,8 @@ TEST_CASE(
     "versions: the scenes of those files, baked today -> the same bytes, so no new section is in them") {
   const TemporaryFolder folder;
   for (const char* name : {"plain", "lit"}) {
-    const CommandResult result =
-        run_command({"bake", kept(std::string(name) + ".scene"), "-o", folder.path("s.oct"), "--board",
-                     "lm3s6965evb", "--effects", "auto", "--quiet"});
-    CAPTURE(result.describe());
-    REQUIRE(result.status == 0);
+    check_done({"bake", kept(std::string(name) + ".scene"), "-o", folder.path("s.oct"), "--board",
+                "lm3s6965evb", "--effects", "auto", "--quiet"});
     CHECK(read_text(folder.path("s.oct")) == read_text(kept("version1-" + std::string(name) + ".oct")));
   }
 }

@@ -46,19 +46,6 @@ TEST_CASE("command: --help -> exit 0, on standard output, what machines read nam
   }
 }
 
-TEST_CASE("command: nothing asked for -> eight lines that say where to begin, status 0") {
-  const CommandResult result = run_command({});
-  CHECK(result.status == 0);
-  CHECK(result.err.empty());
-  const auto lines = lines_of(result.out);
-  CHECK(lines.size() == 8);
-  for (const std::string& line : lines) {
-    CHECK(line.size() <= 100);
-  }
-  CHECK(result.out.find("thimble FILE") != std::string::npos);
-  CHECK(result.out.find("thimble render FILE -o picture.png") != std::string::npos);
-}
-
 TEST_CASE("command: wrong usage -> status 2 and a sentence that quotes what is wrong") {
   check_refused({"paint"}, 2, {"\"paint\"", "neither a subcommand nor a file"});
   check_refused({"rendr"}, 2, {"\"rendr\"", "(did you mean render?)"});
@@ -208,9 +195,7 @@ TEST_CASE("command: cameras that cannot be -> status 1 and what to change") {
 
 TEST_CASE("command: --eye with leading minus, point or plus in --up -> understood") {
   for (const char* eye : {"-30,2,3", "-.5,-70,3", "1e1,-7e1,.5"}) {
-    const CommandResult result = run_command({"render", "spheres", "--size", "4x3", "-o", "-", "--eye", eye});
-    CAPTURE(result.describe());
-    CHECK(result.status == 0);
+    check_done({"render", "spheres", "--size", "4x3", "-o", "-", "--eye", eye});
   }
 }
 
@@ -268,12 +253,7 @@ TEST_CASE("command: a failure -> a file of the output's name keeps its bytes") {
   // A disk that is full, or the like: the limit on a file's size ends the write in its middle.
   CommandLimits small;
   small.file_size_bytes = 20000;
-  const CommandResult result =
-      run_command({"render", "spheres", "--quiet", "-o", picture, "--size", "200x100"}, small);
-  CAPTURE(result.describe());
-  CHECK(result.status == 1);
-  CHECK(is_one_sentence(result.err));
-  CHECK(result.err.find(picture) != std::string::npos);
+  check_refused({"render", "spheres", "--quiet", "-o", picture, "--size", "200x100"}, 1, {picture}, small);
   CHECK(read_text(picture) == "old picture");
   CHECK(folder.names() == Words{"bad.csv", "h.csv", "p.ppm"});
 }
@@ -305,9 +285,7 @@ TEST_CASE("command: a link that leads to nothing yet -> stays, and what it leads
         2);  // the ending is what is typed
   CHECK(folder.names() == Words{"first", "round", "there"});
   std::filesystem::rename(folder.path("first"), folder.path("first.ppm"));
-  const CommandResult result =
-      run_command({"render", "spheres", "--size", "4x3", "-o", folder.path("first.ppm"), "--quiet"});
-  CHECK_MESSAGE(result.status == 0, result.describe());
+  check_done({"render", "spheres", "--size", "4x3", "-o", folder.path("first.ppm"), "--quiet"});
   CHECK(std::filesystem::is_symlink(folder.path("first.ppm")));
   CHECK(std::filesystem::is_symlink(folder.path("there/second")));
   CHECK(read_text(folder.path("there/p.ppm")).size() == std::string("P6\n4 3\n255\n").size() + 36);
@@ -364,9 +342,9 @@ TEST_CASE(
 TEST_CASE("command: a pipe as scene, a device as output -> both work") {
   const TemporaryFolder folder;
   const std::string rays = folder.write("rays.csv", "0,0,0,1,1,1\n");
-  CHECK(run_command({"trace", "spheres", "--rays", rays, "-o", "/dev/null"}).status == 0);
-  CHECK(run_command({"info", "points:0"}).status == 0);
-  CHECK(run_command({"info", "points:1", "--depth", "1"}).status == 0);
+  check_done({"trace", "spheres", "--rays", rays, "-o", "/dev/null"});
+  check_done({"info", "points:0"});
+  check_done({"info", "points:1", "--depth", "1"});
   // Standard input is empty here.
   check_refused({"info", "/dev/stdin"}, 1, {"/dev/stdin"});
 }

@@ -537,9 +537,7 @@ TEST_CASE("baked scenes: damaged -> status 1 and a sentence, for every command")
   check_refused({"info", folder.write("short.oct", "TMS")}, 1, {"damaged at 0", "shorter than a header"});
   check_refused({"info", folder.write("empty.oct", "")}, 1, {"empty"});
   for (std::size_t size = 1; size < good.size(); size += 97) {
-    const CommandResult result = run_command({"info", folder.write("cut.oct", good.substr(0, size))});
-    CHECK(result.status == 1);
-    CHECK(is_one_sentence(result.err));
+    check_refused({"info", folder.write("cut.oct", good.substr(0, size))}, 1, {});
   }
 }
 
@@ -571,11 +569,7 @@ TEST_CASE("bake: bad usage and outputs that cannot be written -> a sentence, and
   folder.write("s.oct", "old");
   CommandLimits small;
   small.file_size_bytes = 4096;
-  const CommandResult result =
-      run_command({"bake", "spheres", "-o", oct, "--stats", folder.path("s.json")}, small);
-  CAPTURE(result.describe());
-  CHECK(result.status == 1);
-  CHECK(is_one_sentence(result.err));
+  check_refused({"bake", "spheres", "-o", oct, "--stats", folder.path("s.json")}, 1, {}, small);
   CHECK(read_text(oct) == "old");
   CHECK(folder.names() == Words{"nan.xyz", "s.oct"});
   check_refused({"bake", oct, "-o", oct}, 1, {"input"});

@@ -116,14 +116,13 @@ TEST_CASE("boards: with a scene -> what fits is what bake and render say") {
           doctest::Approx(board.core_mhz * 1e6 * (row["scene_frame_instructions"] == 0 ? 0 : 1)));
   }
   // The pool is what an octree of the scene takes.
-  CHECK(run_command({"info", "spheres", "--structure", "pool", "--memory", rows[0]["pool_bytes"].dump()})
-            .status == 0);
+  check_done({"info", "spheres", "--structure", "pool", "--memory", rows[0]["pool_bytes"].dump()});
 }
 
 TEST_CASE("boards: a scene of one depth, a baked one, points -> the deepest depth of each") {
   const TemporaryFolder folder;
   const std::string oct = folder.path("s.oct");
-  REQUIRE(run_command({"bake", "points:30000,depth=8", "-o", oct, "--quiet"}).status == 0);
+  check_done({"bake", "points:30000,depth=8", "-o", oct, "--quiet"});
   const std::string json_path = folder.path("b.json");
   const std::string text = table({oct, "--json", json_path});
   CHECK(text.find("one depth only") != std::string::npos);

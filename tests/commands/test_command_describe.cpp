@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 #include <string>
-#include <vector>
 
 #include "support/check_command.h"
 
@@ -19,9 +17,7 @@ Words completed(const Words& words) {
   for (const std::string& word : words) {
     line += "\n" + word;
   }
-  const CommandResult result = run_command({"complete", line});
-  CAPTURE(result.describe());
-  CHECK(result.status == 0);
+  const CommandResult result = check_done({"complete", line});
   CHECK(result.err.empty());
   Words out;
   for (const std::string& each : lines_of(result.out)) {
@@ -151,8 +147,8 @@ TEST_CASE("command: completion -> every subcommand and option of --help, and val
   CHECK(completed({"render", "castle", "--quiet", ""}).size() > 1);  // a flag takes no value
   CHECK_FALSE(holds(completed({"render", "--quiet", "--"}), "--quiet"));
   CHECK(completed({"paint", "--"}) == completed({"--"}));
-  CHECK(run_command({"complete", ""}).status == 0);
-  CHECK(run_command({"complete", "\n\n\n="}).status == 0);
+  check_done({"complete", ""});
+  check_done({"complete", "\n\n\n="});
   check_refused({"complete"}, 2, {"words is required"});
 }
 
@@ -162,9 +158,7 @@ TEST_CASE("command: a scene by its name -> the one that comes along, unless a fi
   here.directory = folder.path();
   for (const char* name : {"castle", "fox", "house", "lagoon", "ship"}) {
     CAPTURE(name);
-    const CommandResult result = run_command({"info", name}, here);
-    CAPTURE(result.describe());
-    CHECK(result.status == 0);
+    const CommandResult result = check_done({"info", name}, here);
     CHECK(result.out.find("compact tree         sound") != std::string::npos);
   }
   check_refused({"info", "castel"}, 1, {"castel: ", "castle, ", "fox, ", "house, ", "lagoon, ", "ship"});
@@ -204,13 +198,12 @@ TEST_CASE(
   refused("xP5\n2 1\n255\nab", "no picture");
   const std::string log =
       folder.write("log", "demo on microbit\nP5\n3 1\n255\nP5\nP5\n2 2\n255\nabcd\nmore\n");
-  CHECK(run_command({"uart-picture", log, "-o", folder.path("a.pgm")}).status == 0);
+  check_done({"uart-picture", log, "-o", folder.path("a.pgm")});
   CHECK(read_text(folder.path("a.pgm")) == "P5\n3 1\n255\nP5\n");
   // In colour: red, then blue.
   const std::string colors = "P6\n2 1\n255\n" + std::string("\xFF\x00\x00\x00\x00\xFF", 6);
-  CHECK(run_command({"uart-picture", folder.write("log", "frame 1\n" + colors + "\nP5\n"), "-o",
-                     folder.path("a.ppm")})
-            .status == 0);
+  check_done(
+      {"uart-picture", folder.write("log", "frame 1\n" + colors + "\nP5\n"), "-o", folder.path("a.ppm")});
   CHECK(read_text(folder.path("a.ppm")) == colors);
   check_refused({"uart-picture", log, "-o", "x.bmp"}, 2, {"--output", ".png"});
   check_refused({"uart-picture", folder.path("none"), "-o", "x.png"}, 1, {"No such file"});

@@ -1,19 +1,14 @@
-// `thimble effects`: every effect a row, its figures those of two counting runs, its files well formed.
+// `thimble effects`: every effect a row, its figures those of two pictures, its files well formed.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "boards/effect_flash.h"
-#include "scene/built_scene.h"
 #include "scene/lit_description.h"
-#include "scene/scene_source.h"
 #include "support/check_command.h"
 #include "thimble/light/render.h"
-#include "thimble/picture/camera.h"
 
 namespace {
 
@@ -52,44 +47,14 @@ json rows_of(const std::string& scene, const Words& more = {}) {
   return rows;
 }
 
-// A scene with a camera of its own, drawn by the core with a set of effects.
-class CountingRun {
- public:
-  explicit CountingRun(const std::string& scene)
-      : source_(open(scene)), built_(*source_, {}), lit_(source_->lighting()) {
-    used_ = tools::used_materials(built_.compact());
-    lit_.find_glow(built_.compact());
-    REQUIRE(thimble::set_camera(*source_->camera(), 48, 36, built_.level(), &camera_) ==
-            thimble::Status::kOk);
-    shading_.palette = {built_.palette().data(), built_.palette().size()};
-  }
-
-  EffectSet called_for() const { return tools::called_for(lit_, used_); }
-  thimble::LitCounts counts(EffectSet effects) const {
-    std::vector<std::uint8_t> pixels(thimble::band_bytes(thimble::PixelFormat::kRgb888, 48, 36));
-    thimble::Band band;
-    band.pixels = {pixels.data(), pixels.size()};
-    band.rows = 36;
-    thimble::LitCounts counts;
-    REQUIRE(thimble::render_lit_band(effects, built_.compact(), camera_, shading_, lit_.drawn(effects), band,
-                                     &counts) == thimble::Status::kOk);
-    return counts;
-  }
-
- private:
-  static std::unique_ptr<tools::SceneSource> open(const std::string& scene) {
-    tools::SceneArguments arguments;
-    arguments.scene = scene;
-    return tools::open_scene(arguments);
-  }
-
-  std::unique_ptr<tools::SceneSource> source_;
-  tools::BuiltScene built_;
-  tools::LitDescription lit_;
-  tools::UsedMaterials used_;
-  thimble::Camera camera_;
-  thimble::Shading shading_;
-};
+// What `thimble render` counts of the same picture with a set of effects.
+json counts_of(const std::string& scene, EffectSet effects) {
+  const TemporaryFolder folder;
+  check_done({"render", scene, "--size", "48x36", "--shade", "color", "--engine", "ray64", "--effects",
+              tools::effects_text(effects), "--quiet", "-o", folder.path("a.ppm"), "--stats",
+              folder.path("a.json")});
+  return json::parse(read_text(folder.path("a.json")));
+}
 
 void check_nothing(const json& row) {
   CAPTURE(row.dump());
@@ -121,32 +86,34 @@ TEST_CASE("effects: what is not called for -> exactly 0 rays, nodes, time, RAM a
   CHECK(none == 9);
 }
 
-TEST_CASE("effects: rays of each kind and nodes -> those of two counting runs by the core") {
+TEST_CASE("effects: rays of each kind and nodes -> those of two pictures by render") {
   const TemporaryFolder folder;
   for (const std::string& scene : {std::string("water"), folder.write("a.scene", kRoom)}) {
     CAPTURE(scene);
-    const CountingRun run(scene);
-    const EffectSet all = run.called_for();
-    for (const json& row : rows_of(scene)) {
+    const json rows = rows_of(scene);
+    EffectSet all = 0;
+    for (int bit = 0; bit < thimble::Effect::kCount; ++bit) {
+      all |= rows[static_cast<std::size_t>(bit)]["called_for"] == 1 ? EffectSet{1} << bit : 0U;
+    }
+    for (const json& row : rows) {
       if (row["called_for"] == 0) {
         continue;
       }
       CAPTURE(row.dump());
       const EffectSet effect = tools::parse_effects(row["effect"].get<std::string>())->effects;
-      CHECK((all & effect) != 0);
       const EffectSet with = effect == thimble::Effect::kDirectLight ? all & ~thimble::Effect::kShadows : all;
-      const thimble::LitCounts more = run.counts(with);
-      const thimble::LitCounts less = run.counts(with & ~effect);
+      const json more = counts_of(scene, with);
+      const json less = counts_of(scene, with & ~effect);
+      const auto difference = [&](const char* of, const std::string& kind) {
+        return more[of][kind].get<std::int64_t>() - less[of][kind].get<std::int64_t>();
+      };
       std::int64_t rays = 0;
       std::int64_t visits = 0;
       for (int kind = 0; kind < thimble::kLitRayKinds; ++kind) {
-        const std::int64_t expected =
-            static_cast<std::int64_t>(more.rays[kind]) - static_cast<std::int64_t>(less.rays[kind]);
         const std::string name = tools::ray_kind_name(static_cast<thimble::LitRayKind>(kind));
-        CHECK(row[name + "_rays"] == expected);
-        rays += expected;
-        visits += static_cast<std::int64_t>(more.node_visits[kind]) -
-                  static_cast<std::int64_t>(less.node_visits[kind]);
+        CHECK(row[name + "_rays"] == difference("rays_by_kind", name));
+        rays += difference("rays_by_kind", name);
+        visits += difference("node_visits_by_kind", name);
       }
       CHECK(row["rays"] == rays);
       CHECK(row["node_visits"] == visits);

@@ -11,6 +11,7 @@
 #include "commands/camera_path.h"
 #include "readers/texture.h"
 #include "support/check_command.h"
+#include "support/file_bytes.h"
 #include "viewer/finished_picture.h"
 #include "viewer/open_scene.h"
 
@@ -18,18 +19,6 @@ namespace {
 
 using namespace thimble::tests;
 using namespace thimble::tools;
-
-std::string u32(std::size_t number) {
-  std::string bytes;
-  for (int i = 0; i < 4; ++i) {
-    bytes += static_cast<char>(number >> (8 * i) & 255U);
-  }
-  return bytes;
-}
-
-std::string chunk(const std::string& id, const std::string& content) {
-  return id + u32(content.size()) + u32(0) + content;
-}
 
 // A .vox of models of 32 voxels a side, a frame each, without a scene graph: a red cube near the lowest corner that
 // stands still, and a green one that goes up from frame to frame.
@@ -43,11 +32,12 @@ std::string animation(int frames) {
       voxels += {static_cast<char>(28 + at(0)), static_cast<char>(28 + at(2)),
                  static_cast<char>(9 * frame + at(4)), 2};
     }
-    chunks += chunk("SIZE", u32(32) + u32(32) + u32(32)) + chunk("XYZI", u32(128) + voxels);
+    chunks += vox_chunk("SIZE", little(32, 4) + little(32, 4) + little(32, 4)) +
+              vox_chunk("XYZI", little(128, 4) + voxels);
   }
-  chunks += chunk("RGBA",
-                  std::string("\xff\0\0\xff", 4) + std::string("\0\xff\0\xff", 4) + std::string(1016, '\1'));
-  return std::string("VOX ") + u32(150) + "MAIN" + u32(0) + u32(chunks.size()) + chunks;
+  chunks += vox_chunk(
+      "RGBA", std::string("\xff\0\0\xff", 4) + std::string("\0\xff\0\xff", 4) + std::string(1016, '\1'));
+  return "VOX " + little(150, 4) + vox_chunk("MAIN", "", chunks);
 }
 
 const Words kSmall{"--size", "48x36", "--quiet"};
@@ -205,16 +195,16 @@ TEST_CASE(
 TEST_CASE("render: an animation whose later frame is broken -> said before the first picture is written") {
   const TemporaryFolder folder;
   const auto model = [](std::size_t number, char frame) {
-    return u32(number) + u32(1) + u32(2) + "_f" + u32(1) + frame;
+    return little(number, 4) + little(1, 4) + little(2, 4) + "_f" + little(1, 4) + frame;
   };
-  const std::string one =
-      chunk("SIZE", u32(2) + u32(2) + u32(2)) + chunk("XYZI", u32(1) + std::string("\0\0\0\1", 4));
-  const std::string graph = chunk("nTRN", u32(0) + u32(0) + u32(1) + u32(~std::size_t{0}) +
-                                              u32(~std::size_t{0}) + u32(1) + u32(0)) +
-                            chunk("nSHP", u32(1) + u32(0) + u32(2) + model(0, '0') + model(9, '2'));
+  const std::string one = vox_chunk("SIZE", little(2, 4) + little(2, 4) + little(2, 4)) +
+                          vox_chunk("XYZI", little(1, 4) + std::string("\0\0\0\1", 4));
+  const std::string graph =
+      vox_chunk("nTRN", little(0, 4) + little(0, 4) + little(1, 4) + little(~std::size_t{0}, 4) +
+                            little(~std::size_t{0}, 4) + little(1, 4) + little(0, 4)) +
+      vox_chunk("nSHP", little(1, 4) + little(0, 4) + little(2, 4) + model(0, '0') + model(9, '2'));
   const std::string chunks = one + graph;
-  const std::string file =
-      folder.write("b.vox", std::string("VOX ") + u32(150) + "MAIN" + u32(0) + u32(chunks.size()) + chunks);
+  const std::string file = folder.write("b.vox", "VOX " + little(150, 4) + vox_chunk("MAIN", "", chunks));
   const Words render = Words{"render", file, "-o", folder.path("f%d.png")} + kSmall;
   check_refused(render + Words{"--frames", "0:2"}, 1, {"b.vox", "frame 2", "model 9"});
   CHECK(folder.names() == Words{"b.vox"});

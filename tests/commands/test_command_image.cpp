@@ -38,10 +38,9 @@ class Programs {
     REQUIRE(gzwrite(file, elf.data(), static_cast<unsigned>(elf.size())) == static_cast<int>(elf.size()));
     REQUIRE(gzclose(file) == Z_OK);
   }
-  CommandResult image(const Words& words) const {
-    return run_command(
-        Words{"image"} + words +
-        Words{"--board", "microbit", "--images", folder_.path(""), "-o", folder_.path("o.bin")});
+  Words image(const Words& words) const {
+    return Words{"image"} + words +
+           Words{"--board", "microbit", "--images", folder_.path(""), "-o", folder_.path("o.bin")};
   }
   // What lies behind the program; whose room is that.
   std::string behind(std::uint32_t room) const {
@@ -52,13 +51,6 @@ class Programs {
  private:
   const TemporaryFolder& folder_;
 };
-
-void check_refused(const CommandResult& result, int status, const std::string& what) {
-  INFO(result.describe());
-  CHECK(result.status == status);
-  CHECK(is_one_sentence(result.err));
-  CHECK(result.err.find(what) != std::string::npos);
-}
 
 }  // namespace
 
@@ -81,13 +73,11 @@ TEST_CASE("image: a scene -> the bytes of bake behind the smallest program that 
         std::pair{Words{"spheres,depth=4", "--effects", "direct-light,shadows"}, 0x10000U},
         std::pair{Words{scene}, 0x8000U},
         std::pair{Words{scene, "--effects", "direct-light,shadows"}, 0x10000U}}) {
-    const CommandResult result = programs.image(words);
-    INFO(result.describe());
-    CHECK(result.status == 0);
+    check_done(programs.image(words));
     CHECK(programs.behind(room) == baked(words));
   }
   check_refused(programs.image({scene, "--effects", "direct-light"}), 1,
-                "which no image for microbit draws together");
+                {"which no image for microbit draws together"});
 }
 
 TEST_CASE("image: light that no program draws -> left out where nobody asked for it, else a sentence") {
@@ -95,30 +85,26 @@ TEST_CASE("image: light that no program draws -> left out where nobody asked for
   Programs programs(folder);
   programs.add("microbit-demo-plain", 0, 0x20000);
   const std::string vox = folder.write("dot.xyz", "0 0 0\n1 2 3\n4 1 2\n");
-  const CommandResult result = programs.image({"castle"});
-  INFO(result.describe());
-  CHECK(result.status == 0);
-  CHECK(result.err.find("without light") != std::string::npos);
-  check_refused(programs.image({vox, "--effects", "glass"}), 1, "calls for glass, which no image");
+  CHECK(check_done(programs.image({"castle"})).err.find("without light") != std::string::npos);
+  check_refused(programs.image({vox, "--effects", "glass"}), 1, {"calls for glass, which no image"});
   // What shows no light takes a scene with any.
   programs.add("microbit-dig-plain", 0, 0x20000);
-  CHECK(programs.image({vox, "--effects", "glass", "--app", "dig"}).status == 0);
+  check_done(programs.image({vox, "--effects", "glass", "--app", "dig"}));
   programs.add("microbit-water-all", 0x7fff, 0x20000);
-  check_refused(programs.image({vox, "--app", "water"}), 1, "no `water` statement");
+  check_refused(programs.image({vox, "--app", "water"}), 1, {"no `water` statement"});
 }
 
 TEST_CASE("image: a scene too large -> how many bytes fit and what makes it fit; with that it does") {
   const TemporaryFolder folder;
   Programs programs(folder);
   programs.add("microbit-demo-plain", 0, 2048);
-  const CommandResult result = programs.image({"spheres,depth=6", "--effects", "none"});
-  check_refused(result, 1, "microbit has 2,048 bytes of flash for a scene behind the image");
-  CHECK(result.err.find("--coarsen makes the finest tree that fits") != std::string::npos);
-  CHECK(result.err.find("BAKE") == std::string::npos);
-  CHECK(programs.image({"spheres,depth=6", "--effects", "none", "--coarsen"}).status == 0);
+  const Words plain = programs.image({"spheres,depth=6", "--effects", "none"});
+  check_refused(plain, 1,
+                {"microbit has 2,048 bytes of flash for a scene behind the image",
+                 "--coarsen makes the finest tree that fits"});
+  check_done(plain + Words{"--coarsen"});
   CHECK(programs.behind(2048).size() <= 2048);
-  CHECK(programs.image({"spheres,depth=6", "--effects", "none", "--coarsen", "--memory", "1000"}).status ==
-        0);
+  check_done(plain + Words{"--coarsen", "--memory", "1000"});
   CHECK(programs.behind(2048).size() <= 1000);
 }
 
@@ -126,14 +112,13 @@ TEST_CASE("image: no programs, another board's, no program, another ending -> a 
   const TemporaryFolder folder;
   Programs programs(folder);
   const Words scene{"spheres,depth=4", "--effects", "none"};
-  check_refused(programs.image(scene), 1, "make images builds them");
-  check_refused(programs.image(scene + Words{"--app", "none"}), 2, "--app");
+  check_refused(programs.image(scene), 1, {"make images builds them"});
+  check_refused(programs.image(scene + Words{"--app", "none"}), 2, {"--app"});
   programs.add("microbit-demo-plain", 0, 0x20000, "gba");
-  check_refused(programs.image(scene), 1, "another board");
+  check_refused(programs.image(scene), 1, {"another board"});
   folder.write("microbit-demo-plain.elf.gz", "text");
-  check_refused(programs.image(scene), 1, "microbit-demo-plain.elf.gz");
+  check_refused(programs.image(scene), 1, {"microbit-demo-plain.elf.gz"});
   CHECK_FALSE(std::filesystem::exists(folder.path("o.bin")));
-  check_refused(run_command({"image", "spheres", "--board", "microbit", "-o", folder.path("o.uf2")}), 2,
-                "--output");
-  check_refused(run_command({"image", "spheres", "-o", folder.path("o.bin")}), 2, "--board");
+  check_refused({"image", "spheres", "--board", "microbit", "-o", folder.path("o.uf2")}, 2, {"--output"});
+  check_refused({"image", "spheres", "-o", folder.path("o.bin")}, 2, {"--board"});
 }

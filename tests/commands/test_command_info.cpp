@@ -4,23 +4,17 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
+#include "support/check_command.h"
 #include "support/file_bytes.h"
-#include "support/run_command.h"
 
 namespace {
 
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 
 // label -> value, from columns of blanks.
 std::map<std::string, std::string> info(const Words& words) {
-  Words all{"info"};
-  all.insert(all.end(), words.begin(), words.end());
-  const CommandResult result = run_command(all);
-  CAPTURE(result.describe());
-  REQUIRE(result.status == 0);
+  const CommandResult result = check_done(Words{"info"} + words);
   CHECK(result.err.empty());
   std::map<std::string, std::string> rows;
   for (const std::string& line : lines_of(result.out)) {
@@ -58,10 +52,7 @@ TEST_CASE("info: points far out, or outside of --clip -> a note, and rendering s
   }
   const std::string path = folder.write("far.xyz", text + "1000000 0 0\n");
   const auto note = [&](const Words& more) {
-    Words words{"info", path};
-    words.insert(words.end(), more.begin(), more.end());
-    const CommandResult result = run_command(words);
-    CHECK(result.status == 0);
+    const CommandResult result = check_done(Words{"info", path} + more);
     CHECK((result.out.find("solid voxels         400") != std::string::npos) == more.empty());
     return result.out + result.err;
   };
@@ -88,10 +79,7 @@ TEST_CASE("info: a .vox of two voxels and two materials -> its own indices, the 
   CHECK(rows["solid voxels"] == "2");
   CHECK(rows["occupied box"] == "0,1,2 to 20,5,9 (exclusive)");
   CHECK(rows["materials"] == "2: 2 diffuse");
-  const CommandResult small = run_command({"info", path, "--depth", "4"});
-  CHECK(small.status == 1);
-  CHECK(small.err.find("20 voxels") != std::string::npos);
-  CHECK(small.err.find("--depth 5") != std::string::npos);
+  check_refused({"info", path, "--depth", "4"}, 1, {"20 voxels", "--depth 5"});
 }
 
 TEST_CASE("info: a mesh -> voxelised, y up turned to z up unless --z-up") {

@@ -33,14 +33,7 @@ box lamp from 10 6 8 to 12 8 10
 
 // Fails with that status and a sentence that holds all of `named`, and leaves no output.
 void check_fails(const Words& words, int status, const Words& named, const std::string& output) {
-  const CommandResult result = run_command(words);
-  INFO(result.describe());
-  CHECK(result.status == status);
-  CHECK(is_one_sentence(result.err));
-  for (const std::string& word : named) {
-    CAPTURE(word);
-    CHECK(result.err.find(word) != std::string::npos);
-  }
+  check_refused(words, status, named);
   CHECK_FALSE(std::filesystem::exists(output));
 }
 
@@ -286,7 +279,7 @@ TEST_CASE("join: a film of 48 frames by four processes, one killed and drawn aga
   }
   CommandLimits shell;
   shell.program = "/bin/sh";
-  REQUIRE(run_command({"-c", script + "wait"}, shell).status == 0);
+  check_done({"-c", script + "wait"}, shell);
   Words parts;
   for (const int first : {0, 12, 24, 36}) {
     parts.push_back(folder.path(std::to_string(first) + ".part"));
@@ -362,35 +355,34 @@ TEST_CASE("render: camera paths that are none -> status 1, file and line named")
 TEST_CASE("render: --rows, --part and --camera-path asked for wrongly -> status 2, and no file") {
   const TemporaryFolder folder;
   const std::string path = folder.write("path.csv", "0,-90,30,32,32,32,40\n");
-  const auto check_refused = [&](const Words& options, const Words& named,
-                                 const std::string& name = "a.part") {
+  const auto check_bad = [&](const Words& options, const Words& named, const std::string& name = "a.part") {
     const std::string out = folder.path(name);
     check_fails(Words{"render", "spheres", "--size", "20x15", "-o", out} + options, 2, named, out);
   };
-  check_refused({"--rows", "0:16"}, {"0:16", "15 rows"});
-  check_refused({"--rows", "15:1"}, {"15:1", "14"});
-  check_refused({"--rows", "0:0"}, {"\"0:0\""});
-  check_refused({"--rows", "-1:2"}, {"\"-1:2\""});
-  check_refused({"--rows", "3"}, {"\"3\""});
-  check_refused({"--rows", "1:2:3"}, {"\"1:2:3\""});
-  check_refused({"--rows", "0:99999999999999999999"}, {"--rows"});
-  check_refused({"--rows", "0:2147483647"}, {"15 rows"});
-  check_refused({"--rows", "0:2"}, {"F.part"}, "a.png");
-  check_refused({"--rows", "0:2", "--hits", folder.path("h.csv")}, {"--hits"});
-  check_refused({"--rows", "0:2", "--depth-image", folder.path("d.pfm")}, {"--depth-image"});
-  check_refused({"--rows", "0:2", "--turntable", "4"}, {"--part"});
-  check_refused({"--rows", "0:2", "--background", "none"}, {".pbm"}, "a.pbm.part");
-  check_refused({"--part", "0:2"}, {"--turntable"});
-  check_refused({"--part", "3:2", "--turntable", "4"}, {"4 frames", "3"});
-  check_refused({"--part", "0:1", "--turntable", "4"}, {"F.part"}, "a.gif");
-  check_refused({"--part", "1:1", "--camera-path", path}, {"1 frames"});
-  check_refused({"--camera-path", path, "--fov", "30"}, {"--fov"}, "a.gif");
-  check_refused({"--camera-path", path, "--projection", "orthographic"}, {"perspective"}, "a.gif");
-  check_refused({"--camera-path", path, "--turntable", "3"}, {"--camera-path"}, "a.gif");
-  check_refused({"--camera-path", path, "--eye", "1,2,3"}, {"--eye"}, "a.gif");
-  check_refused({"--camera-path", path, "--shade", "depth"}, {"--shade"}, "a.gif");
-  check_refused({"--camera-path", path}, {".gif"}, "a.png");
-  check_refused({}, {"does not end in"}, "a.part");
+  check_bad({"--rows", "0:16"}, {"0:16", "15 rows"});
+  check_bad({"--rows", "15:1"}, {"15:1", "14"});
+  check_bad({"--rows", "0:0"}, {"\"0:0\""});
+  check_bad({"--rows", "-1:2"}, {"\"-1:2\""});
+  check_bad({"--rows", "3"}, {"\"3\""});
+  check_bad({"--rows", "1:2:3"}, {"\"1:2:3\""});
+  check_bad({"--rows", "0:99999999999999999999"}, {"--rows"});
+  check_bad({"--rows", "0:2147483647"}, {"15 rows"});
+  check_bad({"--rows", "0:2"}, {"F.part"}, "a.png");
+  check_bad({"--rows", "0:2", "--hits", folder.path("h.csv")}, {"--hits"});
+  check_bad({"--rows", "0:2", "--depth-image", folder.path("d.pfm")}, {"--depth-image"});
+  check_bad({"--rows", "0:2", "--turntable", "4"}, {"--part"});
+  check_bad({"--rows", "0:2", "--background", "none"}, {".pbm"}, "a.pbm.part");
+  check_bad({"--part", "0:2"}, {"--turntable"});
+  check_bad({"--part", "3:2", "--turntable", "4"}, {"4 frames", "3"});
+  check_bad({"--part", "0:1", "--turntable", "4"}, {"F.part"}, "a.gif");
+  check_bad({"--part", "1:1", "--camera-path", path}, {"1 frames"});
+  check_bad({"--camera-path", path, "--fov", "30"}, {"--fov"}, "a.gif");
+  check_bad({"--camera-path", path, "--projection", "orthographic"}, {"perspective"}, "a.gif");
+  check_bad({"--camera-path", path, "--turntable", "3"}, {"--camera-path"}, "a.gif");
+  check_bad({"--camera-path", path, "--eye", "1,2,3"}, {"--eye"}, "a.gif");
+  check_bad({"--camera-path", path, "--shade", "depth"}, {"--shade"}, "a.gif");
+  check_bad({"--camera-path", path}, {".gif"}, "a.png");
+  check_bad({}, {"does not end in"}, "a.part");
   check_fails({"join", "-o", folder.path("o.png")}, 2, {"--help"}, folder.path("o.png"));
   check_fails({"join", folder.path("a.part")}, 2, {"--output"}, folder.path("o.png"));
   check_fails({"join", folder.path("a.part"), "-o", folder.path("o.bmp")}, 2, {"o.bmp"},
@@ -398,9 +390,7 @@ TEST_CASE("render: --rows, --part and --camera-path asked for wrongly -> status 
 }
 
 TEST_CASE("command: a mistyped scene -> the nearest one is named") {
-  const CommandResult alone = run_command({"castl"});
-  CHECK(alone.status == 2);
-  CHECK(alone.err.find("did you mean castle?") != std::string::npos);
+  check_refused({"castl"}, 2, {"did you mean castle?"});
   const TemporaryFolder folder;
   check_fails({"render", "lagon", "-o", folder.path("a.png")}, 1, {"did you mean lagoon?"},
               folder.path("a.png"));

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <string>
 
+#include "support/check_command.h"
 #include "support/counts.h"
 #include "support/file_bytes.h"
-#include "support/run_command.h"
 
 namespace thimble::tests {
 namespace {
@@ -69,10 +69,8 @@ TEST_CASE("command on a scene larger than its memory: drawn from the file, as wi
   shell.program = "/bin/sh";
   shell.seconds = 300;
   const std::string limit = "ulimit -d " + std::to_string(kLimitKiB) + " && ";
-  const CommandResult within = run_command({"-c", limit + draw + folder.path("a.pgm")}, shell);
-  CHECK_MESSAGE(within.status == 0, within.describe());
-  const CommandResult free = run_command({"-c", draw + folder.path("b.pgm")}, shell);
-  CHECK_MESSAGE(free.status == 0, free.describe());
+  check_done({"-c", limit + draw + folder.path("a.pgm")}, shell);
+  check_done({"-c", draw + folder.path("b.pgm")}, shell);
   const std::string picture = read_text(folder.path("a.pgm"));
   CHECK(picture == read_text(folder.path("b.pgm")));
   CHECK(picture.find_first_not_of(picture.back(), 20) != std::string::npos);

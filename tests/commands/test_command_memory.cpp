@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
@@ -14,6 +13,7 @@
 #include "output/units.h"
 #include "scene/board_fit.h"
 #include "support/check_command.h"
+#include "support/hit_rows.h"
 #include "support/subtree_count.h"
 #include "support/xml_elements.h"
 
@@ -33,18 +33,9 @@ CommandResult memory(const Words& words) {
   return result;
 }
 
-Json rows_of(const TemporaryFolder& folder, Words words) {
-  words.insert(words.end(), {"--json", folder.path("m.json")});
-  memory(words);
+Json rows_of(const TemporaryFolder& folder, const Words& words) {
+  memory(words + Words{"--json", folder.path("m.json")});
   return Json::parse(read_text(folder.path("m.json")));
-}
-
-std::string text_of_voxels(const std::vector<reference::Voxel>& voxels) {
-  std::string text;
-  for (const reference::Voxel& voxel : voxels) {
-    text += std::to_string(voxel[0]) + " " + std::to_string(voxel[1]) + " " + std::to_string(voxel[2]) + "\n";
-  }
-  return text;
 }
 
 // Some blocks, some single voxels, in a world of 16.
@@ -74,7 +65,7 @@ TEST_CASE("memory: small scenes -> every figure is what counting by hand gives")
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     CAPTURE(seed);
     const std::vector<reference::Voxel> voxels = small_scene(seed);
-    const std::string path = folder.write("s.xyz", text_of_voxels(voxels));
+    const std::string path = folder.write("s.xyz", as_xyz(voxels));
     const Json rows = rows_of(folder, {path, "--as-voxels", "--size", "40x30", "--frames", "1"});
     REQUIRE(rows.size() == 4 + 12);
     std::uint64_t last_silhouette = UINT64_MAX;
@@ -191,7 +182,7 @@ TEST_CASE("memory: the boards of a depth -> those whose flash boards says it fit
   const TemporaryFolder folder;
   const Json rows = rows_of(folder, {"points:100000,depth=9", "--size", "40x30", "--frames", "0"});
   const std::string json = folder.path("b.json");
-  REQUIRE(run_command({"boards", "points:100000,depth=9", "--quiet", "--json", json}).status == 0);
+  check_done({"boards", "points:100000,depth=9", "--quiet", "--json", json});
   const std::string fits = ";" + rows[8]["compact_boards"].get<std::string>() + ";";
   int boards = 0;
   for (const Json& board : Json::parse(read_text(json))) {
@@ -221,10 +212,8 @@ TEST_CASE("memory: --budget-sweep -> the deepest depth that fits each budget, an
   const TemporaryFolder folder;
   const Words scene{"spheres", "--size", "80x60", "--frames", "0"};
   const Json depths = rows_of(folder, scene);
-  Words sweep = scene;
-  sweep.insert(sweep.end(), {"--budget-sweep", "--memory", "5000", "--csv", folder.path("m.csv"), "--plot",
-                             folder.path("m.svg")});
-  const Json rows = rows_of(folder, sweep);
+  const Json rows = rows_of(folder, scene + Words{"--budget-sweep", "--memory", "5000", "--csv",
+                                                  folder.path("m.csv"), "--plot", folder.path("m.svg")});
   REQUIRE(rows.size() == 7);
   const std::vector<std::uint64_t> budgets{1024, 2048, 4096, 5000, 8192, 16384, 32768};
   std::uint64_t last_added = UINT64_MAX;

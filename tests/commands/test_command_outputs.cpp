@@ -46,8 +46,7 @@ void write_triangle(const TemporaryFolder& folder) {
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
   }
   folder.write("box.bin", bytes);
-  REQUIRE(run_command({"render", "spheres", "--size", "4x4", "--quiet", "-o", folder.path("texture.png")})
-              .status == 0);
+  check_done({"render", "spheres", "--size", "4x4", "--quiet", "-o", folder.path("texture.png")});
 }
 
 }  // namespace
@@ -62,14 +61,12 @@ TEST_CASE(
   folder.write("castle.scene", "model castle.oct\nmodel inner.scene at 70 0 0\n");
   CommandLimits here;
   here.directory = folder.path();
-  REQUIRE(run_command({"bake", "spheres", "-o", "castle.oct", "--quiet"}, here).status == 0);
+  check_done({"bake", "spheres", "-o", "castle.oct", "--quiet"}, here);
   folder.write("path.csv", "-9,-9,9,0,0,0\n-9,-8,9,0,0,0\n");
   folder.write("keys.txt", "0: end\n");
   folder.write("bodies.txt", "1\n100\n0 0 0 0 1 255 0 0\n");
   folder.write("log", "P5\n1 1\n255\nx");
-  REQUIRE(
-      run_command({"render", "spheres", "--size", "8x8", "--rows", "0:8", "-o", "a.part", "--quiet"}, here)
-          .status == 0);
+  check_done({"render", "spheres", "--size", "8x8", "--rows", "0:8", "-o", "a.part", "--quiet"}, here);
   const Words small{"--size", "16x12", "--quiet"};
   struct Line {
     Words words;  // but for the output, which follows
@@ -129,10 +126,7 @@ TEST_CASE(
     } else {
       fs::create_symlink(input, folder.path(name));
     }
-    const CommandResult result = run_command(line.words + Words{name}, here);
-    CHECK_MESSAGE(result.status == 1, result.describe());
-    CHECK_MESSAGE(result.err.find(name + ": is an input and would be overwritten") != std::string::npos,
-                  result.describe());
+    check_refused(line.words + Words{name}, 1, {name + ": is an input and would be overwritten"}, here);
     CHECK(read_text(folder.path(input)) == bytes);
     fs::remove(folder.path(name));
     CHECK(folder.names() == before);
@@ -242,10 +236,8 @@ TEST_CASE(
     CAPTURE(first);
     CAPTURE(second);
     for (const char* option : {"--hits", "--depth-image", "--stats"}) {
-      const CommandResult result =
-          run_command({"render", "spheres", "--quiet", "--size", "8x8", "-o", first, option, second}, here);
-      CHECK_MESSAGE(result.status == 1, result.describe());
-      CHECK_MESSAGE(result.err.find("two outputs cannot share it") != std::string::npos, result.describe());
+      check_refused({"render", "spheres", "--quiet", "--size", "8x8", "-o", first, option, second}, 1,
+                    {"two outputs cannot share it"}, here);
       CHECK(folder.names() == before);
     }
   }
@@ -260,11 +252,9 @@ TEST_CASE(
   // Different ones that look alike, and a device as often as one likes.
   for (const auto& [first, second] : {std::pair{"a.ppm", "dir/a.ppm"}, std::pair{"b.ppm", "way/b.ppm"},
                                       std::pair{"/dev/null", "/dev/null"}}) {
-    const CommandResult result =
-        run_command({"trace", "spheres", "--quiet", "--rays", folder.write("rays.csv", kRays), "-o", first,
-                     "--stats", second},
-                    here);
-    CHECK_MESSAGE(result.status == 0, result.describe());
+    check_done({"trace", "spheres", "--quiet", "--rays", folder.write("rays.csv", kRays), "-o", first,
+                "--stats", second},
+               here);
   }
 }
 
@@ -318,11 +308,9 @@ TEST_CASE(
     folder.write("d/h.csv", "old");
     CommandLimits limits;
     limits.refused = refused;
-    const CommandResult result =
-        run_command({"render", "spheres", "--quiet", "--size", "8x8", "-o", folder.path("d/p.ppm"), "--hits",
-                     folder.path("d/h.csv"), "--stats", folder.path("d/s.json")},
-                    limits);
-    CHECK_MESSAGE(result.status == 0, result.describe());
+    check_done({"render", "spheres", "--quiet", "--size", "8x8", "-o", folder.path("d/p.ppm"), "--hits",
+                folder.path("d/h.csv"), "--stats", folder.path("d/s.json")},
+               limits);
     CHECK(names() == Words{"h.csv", "p.ppm", "s.json"});
     CHECK(read_text(folder.path("d/p.ppm")).size() > 190);
     CHECK(read_text(folder.path("d/h.csv")).size() > 190);
@@ -397,7 +385,7 @@ TEST_CASE(
   for (const Words& words : lines) {
     CAPTURE(words[1]);
     fs::remove(picture);
-    REQUIRE(run_command(words).status == 0);
+    check_done(words);
     const std::string whole = fs::exists(picture) ? read_text(picture) : "";
     for (std::uint64_t most = 3; most < 14; ++most) {
       CAPTURE(most);
@@ -447,12 +435,10 @@ TEST_CASE("outputs: no threads -> the command draws with one, the same picture, 
   for (const Words& words : lines) {
     CAPTURE(line_of_words(words));
     fs::remove(picture);
-    const CommandResult with = run_command(words);
-    CHECK_MESSAGE(with.status == 0, with.describe());
+    const CommandResult with = check_done(words);
     const std::string whole = fs::exists(picture) ? read_text(picture) : "";
     fs::remove(picture);
-    const CommandResult without = run_command(words, limits);
-    CHECK_MESSAGE(without.status == 0, without.describe());
+    const CommandResult without = check_done(words, limits);
     CHECK((fs::exists(picture) ? read_text(picture) : "") == whole);
     CHECK(lines_of(without.err + "\n").size() == lines_of(with.err + "\n").size());
   }
@@ -473,8 +459,7 @@ TEST_CASE("command: -- -> what follows is no option, whatever it begins with") {
   folder.write("-odd.xyz", kPoints);
   folder.write("--help", kPoints);
   const auto out = [&](const Words& words) {
-    const CommandResult result = run_command(words, here);
-    CHECK_MESSAGE(result.status == 0, result.describe());
+    const CommandResult result = check_done(words, here);
     return result.out;
   };
   const std::string odd = out({"info", "--", "-odd.xyz"});
@@ -493,32 +478,4 @@ TEST_CASE("command: -- -> what follows is no option, whatever it begins with") {
   refused({"info", "--", "-odd.xyz", "--depth", "3"}, 2, "\"--depth\" is one argument too many");
   refused({"info", "--", "-odd.xyz", "--help"}, 2, "\"--help\" is one argument too many");
   refused({"info", "--", "--depth"}, 1, "--depth: no such file");
-}
-
-TEST_CASE("command: help -> no option states two defaults, none states one that is not so") {
-  for (const char* const subcommand :
-       {"view", "render", "join", "trace", "table", "bake", "image", "new", "info", "boards", "memory", "sim",
-        "particles", "accuracy", "effects"}) {
-    CAPTURE(subcommand);
-    const std::string help = run_command({subcommand, "--help"}).out;
-    std::string entry;
-    for (const std::string& line : lines_of(help + "\n  --end\n")) {
-      if (line.starts_with("  -")) {
-        const std::size_t first = entry.find("(default:");
-        CHECK_MESSAGE((first == std::string::npos || entry.find("(default:", first + 1) == std::string::npos),
-                      entry);
-        if (std::string(subcommand) == "render" || std::string(subcommand) == "view") {
-          for (const char* const look : {"--shade ", "--samples ", "--effects "}) {
-            if (entry.find(look) < 8) {
-              CHECK_MESSAGE(entry.find("(default: ") != std::string::npos, entry);
-              CHECK_MESSAGE(entry.find("scene's own look") != std::string::npos, entry);
-            }
-          }
-        }
-        entry.clear();
-      }
-      const std::size_t blank = line.find_first_not_of(' ');
-      entry += (entry.empty() ? "  " : " ") + (blank == std::string::npos ? "" : line.substr(blank));
-    }
-  }
 }

@@ -2,19 +2,16 @@
 // anything else; what depends on the scene or on a budget is status 1.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "support/check_command.h"
 #include "support/counts.h"
-#include "support/run_command.h"
 
 namespace thimble::tests {
 namespace {
-
-using Words = std::vector<std::string>;
 
 // A value, or several, for each option that takes one; "" for those that take none. Files go into the test's folder.
 const std::multimap<std::string, std::string>& values() {
@@ -191,9 +188,7 @@ std::map<int, int> try_pairs(const TemporaryFolder& folder, const Command& comma
       if (options[i][0] == options[j][0] || ++number % (kEach * command.every) != 0) {
         continue;
       }
-      Words words = command.base;
-      words.insert(words.end(), options[i].begin(), options[i].end());
-      words.insert(words.end(), options[j].begin(), options[j].end());
+      Words words = command.base + options[i] + options[j];
       // What draws, draws little, and nowhere but here.
       const auto add = [&](const char* name, const char* value) {
         if (named.count(name) != 0 && options[i][0] != name && options[j][0] != name) {
@@ -262,9 +257,8 @@ TEST_CASE(
   folder.write("bodies.txt", "2\n100\n-20 5 0 0 1 255 0 0\n20 5 0 0 1 0 0 255\n");
   folder.write("input.txt", "1: move 10,10\n");
   folder.write("keys.txt", "1: down right\n2: up right\n");
-  REQUIRE(run_command({"sim", "spheres,depth=4", "--display", "none", "--frames", "1", "--shot",
-                       folder.path("ref.png")})
-              .status == 0);
+  check_done(
+      {"sim", "spheres,depth=4", "--display", "none", "--frames", "1", "--shot", folder.path("ref.png")});
   const std::vector<Command> commands{{"sim", {"sim", "spheres,depth=4"}},
                                       {"particles", {"particles"}},
                                       {"table", {"table"}},
@@ -285,20 +279,14 @@ TEST_CASE(
 TEST_CASE("command: join with the one option that it has -> done; without parts, wrong usage") {
   const TemporaryFolder folder;
   for (const char* const rows : {"0:9", "9:9"}) {
-    REQUIRE(run_command({"render", "spheres,depth=4", "--size", "24x18", "--rows", rows, "-o",
-                         folder.path(std::string(1, rows[0]) + ".part")})
-                .status == 0);
+    check_done({"render", "spheres,depth=4", "--size", "24x18", "--rows", rows, "-o",
+                folder.path(std::string(1, rows[0]) + ".part")});
   }
   CHECK(options_of("join") == std::set<std::string>{"--quiet"});
-  CHECK(run_command(
-            {"join", folder.path("0.part"), folder.path("9.part"), "-o", folder.path("j.png"), "--quiet"})
-            .status == 0);
+  check_done({"join", folder.path("0.part"), folder.path("9.part"), "-o", folder.path("j.png"), "--quiet"});
   for (const Words& words : {Words{"join", "--quiet"}, Words{"join", "--quiet", "-o", folder.path("k.png")},
                              Words{"join", "--quiet", folder.path("0.part"), folder.path("9.part")}}) {
-    const CommandResult result = run_command(words);
-    INFO(result.describe());
-    CHECK(result.status == 2);
-    CHECK(is_one_sentence(result.err));
+    check_refused(words, 2, {});
   }
 }
 
@@ -316,13 +304,7 @@ TEST_CASE("command: what a generator can never take -> wrong usage by every comm
   for (Words words : commands) {
     words.insert(words.begin() + 1, "spheres,depth=4");
     for (const Words& option : {Words{"--as-voxels"}, Words{"--frame", "1"}}) {
-      Words all = words;
-      all.insert(all.end(), option.begin(), option.end());
-      const CommandResult result = run_command(all);
-      INFO(result.describe());
-      CHECK(result.status == 2);
-      CHECK(is_one_sentence(result.err));
-      CHECK(result.err.find(option[0]) != std::string::npos);
+      check_refused(words + option, 2, {option[0]});
     }
   }
 }

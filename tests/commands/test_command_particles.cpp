@@ -4,47 +4,34 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "support/check_command.h"
 #include "support/counts.h"
 #include "support/particle_shadow.h"
-#include "support/run_command.h"
 #include "thimble/plane/particles.h"
 
 namespace {
 
 using namespace thimble;
-using thimble::tests::CommandResult;
-using thimble::tests::is_one_sentence;
-using thimble::tests::lines_of;
-using thimble::tests::read_text;
-using thimble::tests::run_command;
-using thimble::tests::split;
-using thimble::tests::TemporaryFolder;
+using namespace thimble::tests;
 using thimble::tools::in_disc;
-using Words = std::vector<std::string>;
 
 const char* const kSteps = thimble::tests::many_or_few("600", "150");
 
-CommandResult particles(Words words) {
-  words.insert(words.begin(), "particles");
-  return run_command(words);
+CommandResult particles(const Words& words) {
+  return run_command(Words{"particles"} + words);
 }
 
 /// Runs it unseen and returns --stats; fails the test when it does not succeed.
-nlohmann::json stats_of(Words words) {
+nlohmann::json stats_of(const Words& words) {
   const TemporaryFolder folder;
   const std::string path = folder.path("stats.json");
-  words.insert(words.end(), {"--stats", path, "--quiet", "--display", "none"});
-  const CommandResult result = particles(words);
-  CAPTURE(result.describe());
-  REQUIRE(result.status == 0);
-  CHECK(result.err.empty());
+  CHECK(check_done(Words{"particles"} + words + Words{"--stats", path, "--quiet", "--display", "none"})
+            .err.empty());
   return nlohmann::json::parse(read_text(path));
 }
 
@@ -181,9 +168,7 @@ TEST_CASE("particles: every knob -> another state") {
                                  {"--gravity", "0.05,-0.1"}, {"--speed", "1.5"},     {"--substeps", "4"},
                                  {"--subpixel-bits", "4"},   {"--gravity", "0,0.2"}, {"--bounciness", "1"}};
   for (const Words& knob : knobs) {
-    Words all = words;
-    all.insert(all.end(), knob.begin(), knob.end());
-    const std::string crc = crc_of(all);
+    const std::string crc = crc_of(words + knob);
     CAPTURE(knob[0]);
     CHECK(std::find(seen.begin(), seen.end(), crc) == seen.end());
     seen.push_back(crc);
@@ -193,12 +178,9 @@ TEST_CASE("particles: every knob -> another state") {
 TEST_CASE("particles: --state and --field -> the field is the discs and the walls drawn, cell by cell") {
   const TemporaryFolder folder;
   const Words size{"--size", "203x150", "--quiet", "--display", "none"};
-  const auto run = [&](Words words, const std::string& name) {
-    words.insert(words.end(), size.begin(), size.end());
-    words.insert(words.end(), {"--state", folder.path(name + ".csv"), "--field", folder.path(name + ".pbm")});
-    const CommandResult result = particles(words);
-    CAPTURE(result.describe());
-    REQUIRE(result.status == 0);
+  const auto run = [&](const Words& words, const std::string& name) {
+    check_done(Words{"particles"} + words + size +
+               Words{"--state", folder.path(name + ".csv"), "--field", folder.path(name + ".pbm")});
   };
   for (const char* steps : {"0", "1", "37", "400"}) {
     run({"--count", "90", "--steps", steps}, "a");
@@ -242,9 +224,7 @@ TEST_CASE(
       "210: key .\n215: key space\n220: key c\n221: key n\n222: key m\n223: key B\n224: key e\n225: key E\n"
       "230: key 0\n240: key 0\n241: key x\n242: key o\n243: key ]\n244: key [\n245: key g\n250: key down\n");
   const Words words{"--size", "200x150", "--count", "60", "--steps", "300", "--input", script};
-  Words recorded = words;
-  recorded.insert(recorded.end(), {"--record-input", folder.path("one.txt")});
-  const nlohmann::json first = stats_of(recorded);
+  const nlohmann::json first = stats_of(words + Words{"--record-input", folder.path("one.txt")});
   CHECK(first.at("steps") == 300);
   CHECK(first.at("state_crc32") != crc_of({"--size", "200x150", "--count", "60", "--steps", "300"}));
   // The record ends by itself.
@@ -263,10 +243,8 @@ TEST_CASE(
 TEST_CASE("particles: pause, single step, reset -> time stands, advances by one, begins again") {
   const TemporaryFolder folder;
   const Words world{"--size", "200x150", "--count", "60"};
-  const auto with = [&](const std::string& script, Words more) {
-    more.insert(more.end(), world.begin(), world.end());
-    more.insert(more.end(), {"--input", folder.write("script.txt", script)});
-    return stats_of(more);
+  const auto with = [&](const std::string& script, const Words& more) {
+    return stats_of(more + world + Words{"--input", folder.write("script.txt", script)});
   };
   const auto plain = [&](const char* steps) {
     return crc_of({"--size", "200x150", "--count", "60", "--steps", steps});
@@ -401,13 +379,9 @@ TEST_CASE(
       {"1\n1\n5 0 0 0 1 0 0 0\n", "none of the 1 bodies lies in a box"}};
   for (const auto& [text, sentence] : damaged) {
     const std::string path = folder.write("damaged.txt", text);
-    const CommandResult refused =
-        particles({"--bodies", path, "--steps", "1", "--state", folder.path("no.csv")});
     CAPTURE(text);
-    CAPTURE(refused.describe());
-    CHECK(refused.status == 1);
-    CHECK(is_one_sentence(refused.err));
-    CHECK(refused.err.find("damaged.txt: " + sentence) != std::string::npos);
+    check_refused({"particles", "--bodies", path, "--steps", "1", "--state", folder.path("no.csv")}, 1,
+                  {"damaged.txt: " + sentence});
   }
   CHECK(folder.names() == Words{"a.csv", "a.ppm", "b.csv", "bodies.txt", "damaged.txt"});
 }
@@ -461,26 +435,15 @@ TEST_CASE("particles: wrong usage -> status 2 and a sentence that quotes what is
                                  {"--input", ""},
                                  {"--min-size", "5", "--max-size", "4"}};
   for (const Words& words : wrong) {
-    const CommandResult result = particles(words);
-    const std::string tried = words[0] + " " + words[1];
-    CAPTURE(tried);
-    CAPTURE(result.describe());
-    CHECK(result.status == 2);
-    CHECK(is_one_sentence(result.err));
-    CHECK(result.err.find(words[0] == "-o" ? "output" : words[0]) != std::string::npos);
+    check_refused(Words{"particles"} + words, 2, {words[0] == "-o" ? "output" : words[0]});
   }
 }
 
 TEST_CASE("particles: what does not fit, cannot be read or written -> status 1, a sentence, nothing left") {
   const TemporaryFolder folder;
   const std::string state = folder.path("a.csv");
-  const auto refused = [&](Words words, const std::string& sentence) {
-    words.insert(words.end(), {"--steps", "3", "--state", state});
-    const CommandResult result = particles(words);
-    CAPTURE(result.describe());
-    CHECK(result.status == 1);
-    CHECK(is_one_sentence(result.err));
-    CHECK(result.err.find(sentence) != std::string::npos);
+  const auto refused = [&](const Words& words, const std::string& sentence) {
+    check_refused(Words{"particles"} + words + Words{"--steps", "3", "--state", state}, 1, {sentence});
   };
   refused({"--size", "50x40", "--count", "500"},
           "500 balls of 2 to 12 cells do not fit into 50 x 40 cells; ");

@@ -19,22 +19,8 @@
 #include "support/check_command.h"
 #include "support/counts.h"
 #include "support/hit_rows.h"
+#include "support/pictures.h"
 #include "support/ray_cases.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wcast-align"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#define STB_IMAGE_IMPLEMENTATION
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
 
 namespace {
 
@@ -120,18 +106,11 @@ TEST_CASE(
     }
     const auto [png, png_crc] = draw("png", "", 0);
     CHECK(png_crc == ppm_crc);
-    int width = 0;
-    int height = 0;
-    int channels = 0;
-    unsigned char* pixels =
-        stbi_load_from_memory(reinterpret_cast<const unsigned char*>(png.data()),
-                              static_cast<int>(png.size()), &width, &height, &channels, 0);
-    REQUIRE(pixels != nullptr);
-    CHECK(width == 37);
-    CHECK(height == 21);
-    REQUIRE(channels == 3);
-    CHECK(std::memcmp(pixels, ppm.data() + header.size(), 37 * 21 * 3) == 0);
-    stbi_image_free(pixels);
+    const ReadPicture read = read_png(png);
+    CHECK(read.width == 37);
+    CHECK(read.height == 21);
+    CHECK(read.channels == 3);
+    CHECK(read.frames[0] == ppm.substr(header.size()));
     // Something is in the picture, and not everything.
     CHECK(std::set<char>(ppm.begin() + 13, ppm.end()).size() >= 2);
   }
@@ -234,58 +213,34 @@ TEST_CASE("render: one voxel off the middle -> seen up, down, left and right as 
             : x / count > near ? "right"
                                : "");
   };
-  for (const Words& projection :
-       {Words{"--projection", "perspective"}, Words{"--projection", "orthographic", "--span", "20"}}) {
-    const Words along_y = Words{"--eye", "8.5,-15,8.5", "--target", "8.5,8,8.5"} + projection;
-    CHECK(where("8 8 14", along_y) == "up");
-    CHECK(where("8 8 2", along_y) == "down");
-    CHECK(where("14 8 8", along_y) == "right");
-    CHECK(where("2 8 8", along_y) == "left");
-    CHECK(where("14 8 14", along_y) == "upright");
-    CHECK(where("8 8 14", along_y + Words{"--up", "0,0,-3"}) == "down");
-    CHECK(where("14 8 8", along_y + Words{"--up", "0,0,-3"}) == "left");
-    CHECK(where("8 8 14", along_y + Words{"--up", "1,0,0"}) == "left");
-    const Words along_x = Words{"--eye", "-15,8.5,8.5", "--target", "8,8.5,8.5"} + projection;
-    CHECK(where("8 14 8", along_x) == "left");
-    CHECK(where("8 8 14", along_x) == "up");
-    // Along z there is no up by z: y is up.
-    const Words down_z = Words{"--eye", "8.5,8.5,31", "--target", "8.5,8.5,8"} + projection;
-    CHECK(where("8 14 8", down_z) == "up");
-    CHECK(where("14 8 8", down_z) == "right");
-    const Words up_z = Words{"--eye", "8.5,8.5,-15", "--target", "8.5,8.5,8"} + projection;
-    CHECK(where("8 14 8", up_z) == "up");
-    CHECK(where("14 8 8", up_z) == "left");
-  }
-}
-
-TEST_CASE("render: --span -> the picture's width in voxels; a wall of voxels is drawn pixel by pixel") {
-  const TemporaryFolder folder;
-  std::mt19937_64 random(17);
-  std::set<std::pair<int, int>> wall;  // x, z
-  std::vector<reference::Voxel> voxels;
-  for (int x = 0; x < 16; ++x) {
-    for (int z = 0; z < 16; ++z) {
-      if (random() % 2 == 0) {
-        wall.insert({x, z});
-        voxels.push_back({x, 8, z});
-      }
-    }
-  }
-  const std::string scene = folder.write("wall.xyz", as_xyz(voxels));
-  const Rendered all = render_all(
-      folder, {scene, "--as-voxels", "--depth", "4", "--projection", "orthographic", "--eye", "8,-5,8",
-               "--target", "8,0,8", "--span", "16", "--size", "64x48", "--shade", "mono"});
-  for (const HitRow& row : all.hits) {
-    const int x = row.px / 4;
-    const int z = (56 - row.py - 1) / 4;  // 48 rows are 12 voxels: z from 2 to 14
-    REQUIRE(row.hit == wall.contains({x, z}));
-    if (row.hit) {
-      REQUIRE(row.voxel == reference::Voxel{x, 8, z});
-      REQUIRE(row.axis == 1);
-    }
-    const std::size_t at =
-        std::string("P6\n64 48\n255\n").size() + 3 * static_cast<std::size_t>(row.py * 64 + row.px);
-    REQUIRE(static_cast<unsigned char>(all.picture[at]) == (row.hit ? 255 : 0));
+  const Words along_y{"--eye", "8.5,-15,8.5", "--target", "8.5,8,8.5"};
+  const Words along_x{"--eye", "-15,8.5,8.5", "--target", "8,8.5,8.5"};
+  // Along z there is no up by z: y is up.
+  const Words down_z{"--eye", "8.5,8.5,31", "--target", "8.5,8.5,8"};
+  const Words up_z{"--eye", "8.5,8.5,-15", "--target", "8.5,8.5,8"};
+  const struct {
+    const char* voxel;
+    Words view;
+    const char* place;
+  } kRows[] = {{"8 8 14", along_y, "up"},
+               {"8 8 2", along_y, "down"},
+               {"14 8 8", along_y, "right"},
+               {"2 8 8", along_y, "left"},
+               {"14 8 14", along_y, "upright"},
+               {"8 8 14", along_y + Words{"--up", "0,0,-3"}, "down"},
+               {"14 8 8", along_y + Words{"--up", "0,0,-3"}, "left"},
+               {"8 8 14", along_y + Words{"--up", "1,0,0"}, "left"},
+               {"8 14 8", along_x, "left"},
+               {"8 8 14", along_x, "up"},
+               {"8 14 8", down_z, "up"},
+               {"14 8 8", down_z, "right"},
+               {"8 14 8", up_z, "up"},
+               {"14 8 8", up_z, "left"}};
+  for (const auto& row : kRows) {
+    CAPTURE(row.voxel);
+    CAPTURE(line_of_words(row.view));
+    CHECK(where(row.voxel, row.view + Words{"--projection", "perspective"}) == row.place);
+    CHECK(where(row.voxel, row.view + Words{"--projection", "orthographic", "--span", "20"}) == row.place);
   }
 }
 
@@ -336,7 +291,7 @@ TEST_CASE("render: the paper's first tracer, 800 x 600 x 1 -> 60,000 bytes, and 
   const std::uint64_t needed = number_after(refused.err, "needs ");
   CHECK(needed > 60000);
   CHECK(needed < 61000);
-  CHECK(run_command(shaded(Words{"render"} + words) + Words{"--memory", std::to_string(needed)}).status == 0);
+  check_done(shaded(Words{"render"} + words) + Words{"--memory", std::to_string(needed)});
   CHECK(run_command(shaded(Words{"render"} + words) + Words{"--memory", std::to_string(needed - 1)}).status ==
         1);
 }
@@ -473,30 +428,25 @@ TEST_CASE("render: no room for the wide engine's lists -> rays draw the same pic
   CHECK(between["high_water_bytes"] <= 146 * 1024);
   CHECK(between["frame_crc32"] == roomy["frame_crc32"]);
   CHECK(between["hits"] == roomy["hits"]);
-  const CommandResult forced = run_command({"render", "points:5000", "-o", folder.path("p.ppm"), "--size",
-                                            "64x48", "--engine", "wide", "--memory", "64K"});
-  CHECK(forced.status == 1);
-  CHECK(forced.err.find("--engine wide") != std::string::npos);
+  check_refused({"render", "points:5000", "-o", folder.path("p.ppm"), "--size", "64x48", "--engine", "wide",
+                 "--memory", "64K"},
+                1, {"--engine wide"});
 }
 
 TEST_CASE("render: --engine ray32 on rays that need more -> status 1, nothing written") {
   const TemporaryFolder folder;
-  const CommandResult result = run_command({"render", "points:9", "-o", folder.path("p.ppm"), "--engine",
-                                            "ray32", "--direction-bits", "20", "--size", "9x9"});
-  CHECK(result.status == 1);
-  CHECK(is_one_sentence(result.err));
-  CHECK(result.err.find("ray32") != std::string::npos);
+  check_refused({"render", "points:9", "-o", folder.path("p.ppm"), "--engine", "ray32", "--direction-bits",
+                 "20", "--size", "9x9"},
+                1, {"ray32"});
   CHECK(folder.names().empty());
 }
 
 TEST_CASE("render: --coarsen, and the compact tree would fit though the pool does not -> nothing is merged") {
   const TemporaryFolder folder;
   const auto draw = [&](const Words& budget) {
-    const CommandResult result =
-        run_command(Words{"render", "spheres", "--size", "80x60", "--shade", "color", "--quiet", "-o",
-                          folder.path("p.ppm"), "--stats", folder.path("s.json")} +
-                    budget);
-    REQUIRE_MESSAGE(result.status == 0, result.describe());
+    check_done(Words{"render", "spheres", "--size", "80x60", "--shade", "color", "--quiet", "-o",
+                     folder.path("p.ppm"), "--stats", folder.path("s.json")} +
+               budget);
     return json::parse(read_text(folder.path("s.json")));
   };
   const json full = draw({});
@@ -551,7 +501,7 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
         const CommandResult none = run_command(words + Words{"--memory", "0"});
         CHECK(none.status == 1);
         const std::uint64_t needed = number_after(none.err, "needs ");
-        CHECK(run_command(words + Words{"--memory", std::to_string(needed)}).status == 0);
+        check_done(words + Words{"--memory", std::to_string(needed)});
         const json exact = json::parse(read_text(folder.path("s.json")));
         CHECK(exact["budget_bytes"] == needed);
         CHECK(exact["high_water_bytes"] <= needed);
@@ -571,7 +521,7 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
                 ? std::vector<std::uint64_t>{needed + 1, needed * 3}
                 : std::vector<std::uint64_t>{needed + 1, needed + 4000, needed * 3, needed * 100};
         for (const std::uint64_t budget : enough) {
-          CHECK(run_command(words + Words{"--memory", std::to_string(budget)}).status == 0);
+          check_done(words + Words{"--memory", std::to_string(budget)});
           const json stats = json::parse(read_text(folder.path("s.json")));
           CHECK(stats["budget_bytes"] == budget);
           CHECK(stats["high_water_bytes"] <= budget);

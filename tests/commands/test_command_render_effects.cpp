@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "scene/built_scene.h"
 #include "scene/lit_description.h"
@@ -227,17 +226,6 @@ TEST_CASE("render effects: a short budget -> the same picture in bands of fewer 
   CHECK(high < drawn.stats["high_water_bytes"]);
   check_lit_refused(scene, {"--effects", "auto", "--memory", std::to_string(low)}, 1,
                     {std::to_string(high % 1000), "--memory"});
-  // What the effects keep is in the budget: without them it may be smaller by just that.
-  const Picture plain = render(scene, {"--effects", "none", "--engine", "ray64", "--threads", "1"});
-  namespace lit = thimble;
-  constexpr lit::EffectSet kAll = lit::Effect::kAll & ~(lit::Effect::kWater | lit::Effect::kDepthCue);
-  // Two lights, and as many lamps for what glows as there may be.
-  const std::size_t tables = 18 * sizeof(lit::Light) + 5 * sizeof(lit::Surface);
-  const std::size_t more = lit::lit_render_bytes(kAll) + tables - lit::render_bytes();
-  const std::size_t difference =
-      drawn.stats["high_water_bytes"].get<std::size_t>() - plain.stats["high_water_bytes"].get<std::size_t>();
-  CHECK(difference + 7 >= more);
-  CHECK(difference <= more + 7);
 }
 
 TEST_CASE("render effects: what makes no sense, or cannot be honoured -> status 2, a sentence, no file") {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/check_command.h"
+#include "support/pictures.h"
 
 namespace {
 
@@ -52,112 +53,6 @@ void check_look_refused(const std::string& scene, const Words& more, const std::
   const TemporaryFolder folder;
   check_refused(Words{"render", scene, "--size", "16x12", "-o", folder.path(output)} + more, 2, {named});
   CHECK(folder.names().empty());
-}
-
-std::size_t little_16(const std::string& text, std::size_t at) {
-  return byte_at(text, at) + 256U * byte_at(text, at + 1);
-}
-
-// A film as a reader that knows nothing of the writer sees it: CompuServe's GIF89a of 1990.
-struct Gif {
-  std::size_t width = 0, height = 0;
-  std::vector<std::string> frames;  // r, g, b
-  std::vector<std::size_t> delays;
-};
-
-std::vector<std::size_t> decode_lzw(const std::string& data, std::size_t pixels) {
-  std::vector<std::vector<std::size_t>> words;
-  const auto clear = [&] {
-    words.assign(258, {});
-    for (std::size_t i = 0; i < 256; ++i) {
-      words[i] = {i};
-    }
-  };
-  clear();
-  std::vector<std::size_t> out;
-  std::size_t bit = 0;
-  std::size_t bits = 9;
-  std::vector<std::size_t> last;
-  for (;;) {
-    std::size_t code = 0;
-    REQUIRE((bit + bits + 7) / 8 <= data.size());
-    for (std::size_t i = 0; i < bits; ++i, ++bit) {
-      code |= std::size_t{static_cast<unsigned>(byte_at(data, bit / 8)) >> (bit % 8) & 1U} << i;
-    }
-    if (code == 256) {
-      clear();
-      bits = 9;
-      last.clear();
-      continue;
-    }
-    if (code == 257) {
-      break;
-    }
-    std::vector<std::size_t> word;
-    if (code < words.size()) {
-      word = words[code];
-    } else {
-      REQUIRE(code == words.size());
-      REQUIRE_FALSE(last.empty());
-      word = last;
-      word.push_back(last[0]);
-    }
-    if (!last.empty() && words.size() < 4096) {
-      last.push_back(word[0]);
-      words.push_back(last);
-      bits += words.size() == std::size_t{1} << bits && bits < 12 ? 1U : 0U;
-    }
-    out.insert(out.end(), word.begin(), word.end());
-    last = word;
-  }
-  CHECK(out.size() == pixels);
-  return out;
-}
-
-Gif decode(const std::string& file) {
-  Gif gif;
-  REQUIRE(file.substr(0, 6) == "GIF89a");
-  gif.width = little_16(file, 6);
-  gif.height = little_16(file, 8);
-  REQUIRE(byte_at(file, 10) == 0xF7);
-  const std::string palette = file.substr(13, 768);
-  std::size_t at = 13 + 768;
-  for (;;) {
-    const std::uint8_t kind = byte_at(file, at++);
-    if (kind == 0x3B) {
-      break;
-    }
-    if (kind == 0x21) {
-      if (byte_at(file, at) == 0xF9) {
-        gif.delays.push_back(little_16(file, at + 3));
-      }
-      ++at;
-      while (byte_at(file, at) != 0) {
-        at += 1U + byte_at(file, at);
-      }
-      ++at;
-      continue;
-    }
-    REQUIRE(kind == 0x2C);
-    CHECK(little_16(file, at + 4) == gif.width);
-    CHECK(little_16(file, at + 6) == gif.height);
-    CHECK(byte_at(file, at + 8) == 0);
-    REQUIRE(byte_at(file, at + 9) == 8);
-    at += 10;
-    std::string data;
-    while (byte_at(file, at) != 0) {
-      data += file.substr(at + 1, byte_at(file, at));
-      at += 1U + byte_at(file, at);
-    }
-    ++at;
-    std::string pixels;
-    for (const std::size_t index : decode_lzw(data, gif.width * gif.height)) {
-      pixels += palette.substr(3 * index, 3);
-    }
-    gif.frames.push_back(pixels);
-  }
-  CHECK(at == file.size());
-  return gif;
 }
 
 }  // namespace
@@ -272,7 +167,7 @@ TEST_CASE("render look: one colour that a text says -> is drawn in it, baked too
       folder.write("red.scene", "material a color 220 20 20\nbox a from 0 0 0 to 8 8 8\n");
   const auto lit = middle(red);
   CHECK(lit[0] > 3 * lit[1]);
-  REQUIRE(run_command({"bake", red, "-o", folder.path("red.oct"), "--quiet"}).status == 0);
+  check_done({"bake", red, "-o", folder.path("red.oct"), "--quiet"});
   const auto baked = middle(folder.path("red.oct"));
   CHECK(baked[0] > 3 * baked[1]);
   folder.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nf 1 2 3\nf 1 3 4\nf 1 2 4\nf 2 3 4\n");
@@ -291,7 +186,7 @@ TEST_CASE(
   const TemporaryFolder folder;
   const std::string land = folder.write(
       "land.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 1 2\n1 2 4\n2 4 9\n");
-  REQUIRE(run_command({"bake", land, "-o", folder.path("land.oct"), "--quiet"}).status == 0);
+  check_done({"bake", land, "-o", folder.path("land.oct"), "--quiet"});
   const auto with = [&folder](const std::string& name, const std::string& material, const std::string& body) {
     return folder.write(name + ".scene",
                         kLookScene + ("material clear " + material + "\n" + body + "\nsun toward 1 1 1\n"));
@@ -302,7 +197,7 @@ TEST_CASE(
     scenes.emplace_back(with("ball" + radius, "glass", "ball clear at 16 16 16 radius " + radius), true);
   }
   const std::string ball = "ball clear at 16 16 16 radius 6";
-  REQUIRE(run_command({"bake", scenes.back().first, "-o", folder.path("ball.oct"), "--quiet"}).status == 0);
+  check_done({"bake", scenes.back().first, "-o", folder.path("ball.oct"), "--quiet"});
   scenes.emplace_back(folder.path("ball.oct"), true);
   scenes.emplace_back(with("gold", "metal mirror 0.9 roughness 0", ball), true);
   scenes.emplace_back(with("rough", "metal mirror 0.9 roughness 0.2", ball), false);
@@ -365,11 +260,11 @@ TEST_CASE("render look: --turntable -> a GIF of so many frames that decode, each
   const std::string scene = folder.write("a.scene", kLookScene);
   const std::string path = folder.path("a.gif");
   check_done({"render", scene, "--size", "90x70", "--turntable", "7", "-o", path, "--quiet"});
-  const Gif gif = decode(read_text(path));
+  const ReadPicture gif = read_gif(read_text(path));
   CHECK(gif.width == 90);
   CHECK(gif.height == 70);
   REQUIRE(gif.frames.size() == 7);
-  CHECK(gif.delays == std::vector<std::size_t>(7, 85));
+  CHECK(gif.delays_ms == std::vector<int>(7, 850));
   for (std::size_t i = 1; i < 7; ++i) {
     CHECK(gif.frames[i] != gif.frames[i - 1]);
   }

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "support/check_command.h"
 
@@ -159,7 +157,7 @@ TEST_CASE(
     "render quality: a budget without room for mean colours -> an error that says how much; then drawn") {
   const TemporaryFolder folder;
   const std::string baked = folder.path("s.oct");
-  REQUIRE(run_command({"bake", "spheres", "--quiet", "-o", baked}).status == 0);
+  check_done({"bake", "spheres", "--quiet", "-o", baked});
   const QualityPicture plain = render_ppm({"--shade", "color", "--cutoff", "0"}, baked);
   const std::string budget = std::to_string(plain.stats["high_water_bytes"].get<std::uint64_t>());
   const auto with = [&](const Words& more) {

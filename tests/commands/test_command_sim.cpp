@@ -3,39 +3,28 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "apps/app_table.h"
+#include "support/check_command.h"
 #include "support/pty.h"
-#include "support/run_command.h"
 
 namespace {
 
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 
 // Small, so that baking takes no time worth the name.
 constexpr const char* kSimScene = "spheres,depth=4";
 
-CommandResult sim(Words words) {
-  words.insert(words.begin(), "sim");
-  words.insert(words.end(), {"--display", "none"});
-  return run_command(words);
+Words sim_words(const Words& words) {
+  return Words{"sim"} + words + Words{"--display", "none"};
 }
-
+CommandResult sim(const Words& words) {
+  return run_command(sim_words(words));
+}
 void check_sim_refused(const Words& words, int status, const Words& named) {
-  const CommandResult result = sim(words);
-  CAPTURE(words.back());
-  CAPTURE(result.describe());
-  CHECK(result.status == status);
-  CHECK(is_one_sentence(result.err));
-  for (const std::string& name : named) {
-    CAPTURE(name);
-    CHECK(result.err.find(name) != std::string::npos);
-  }
+  check_refused(sim_words(words), status, named);
 }
 
 // The grey pixels of a P5.
@@ -117,7 +106,7 @@ TEST_CASE("sim: a baked scene -> the same picture as the scene that it was baked
   const TemporaryFolder folder;
   const std::string baked = folder.path("a.oct");
   const std::string shot = folder.path("a.png");
-  REQUIRE(run_command({"bake", kSimScene, "--board", "lm3s6965evb", "-o", baked, "--quiet"}).status == 0);
+  check_done({"bake", kSimScene, "--board", "lm3s6965evb", "-o", baked, "--quiet"});
   REQUIRE(sim({kSimScene, "--frames", "3", "--shot", shot, "--quiet"}).status == 0);
   CHECK(sim({baked, "--frames", "3", "--check", shot, "--quiet"}).status == 0);
 }
@@ -199,30 +188,4 @@ TEST_CASE(
   CHECK(pty.wait_for(" frames, "));
   CHECK(pty.wait_for_end());
   CHECK(pty.exit_status() == 0);
-}
-
-TEST_CASE("sim: the keys that ? shows are those that each application takes") {
-  const auto platform = std::filesystem::path(__FILE__).parent_path() / "../../platform/apps";
-  int keys = 0;
-  for (const thimble::apps::Application& one : thimble::apps::applications()) {
-    const std::string source =
-        one.is_to_watch ? read_text((platform / (std::string(one.name) + ".cpp")).string()) : "";
-    CAPTURE(one.name);
-    for (std::size_t at = source.find("case '"); at != std::string::npos;
-         at = source.find("case '", at + 1)) {
-      const char key = source[at + 6];
-      CAPTURE(key);
-      // Those of buttons are typed with shift.
-      const char typed = std::strchr("wasd", key) != nullptr ? static_cast<char>(key - 'a' + 'A') : key;
-      bool is_there = false;
-      for (const std::string& line : lines_of(one.keys)) {
-        const std::string head = line.substr(0, line.find("  "));
-        is_there = is_there || (" " + head + " ").find(std::string{' ', typed, ' '}) != std::string::npos ||
-                   line.find("; " + std::string{typed} + " ") != std::string::npos;
-      }
-      CHECK(is_there);
-      ++keys;
-    }
-  }
-  CHECK(keys > 25);
 }

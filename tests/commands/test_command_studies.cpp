@@ -106,10 +106,8 @@ TEST_CASE("table: two counts of points -> a row a projection, the paper's figure
   const TemporaryFolder folder;
   for (const char* scene : {"points", "cluster"}) {
     const CommandResult result =
-        run_command({"table", "--points", "1,1000,7", "--depth", "7", "--scene", scene, "--json",
-                     folder.path("t.json"), "--plot", folder.path("t.svg")});
-    CAPTURE(result.describe());
-    CHECK(result.status == 0);
+        check_done({"table", "--points", "1,1000,7", "--depth", "7", "--scene", scene, "--json",
+                    folder.path("t.json"), "--plot", folder.path("t.svg")});
     CHECK(result.err.empty());
     CHECK(lines_of(result.out).size() == 7);
     const json table = json::parse(read_text(folder.path("t.json")));
@@ -140,18 +138,13 @@ TEST_CASE("table: two counts of points -> a row a projection, the paper's figure
 }
 
 TEST_CASE("table: a world too small for 800 pixels of 1/256 voxel -> refused as usage, before any work") {
-  const CommandResult result = run_command({"table", "--points", "1", "--depth", "4"});
-  CHECK(result.status == 2);
-  CHECK(result.out.empty());
-  CHECK(result.err.find("5 to 12") != std::string::npos);
+  check_refused({"table", "--points", "1", "--depth", "4"}, 2, {"5 to 12"});
 }
 
 TEST_CASE("table: no points at all -> a table of misses, and a plot without lines") {
   const TemporaryFolder folder;
-  const CommandResult result = run_command({"table", "--points", "0", "--depth", "5", "--json",
-                                            folder.path("t.json"), "--plot", folder.path("t.svg")});
-  CAPTURE(result.describe());
-  CHECK(result.status == 0);
+  check_done({"table", "--points", "0", "--depth", "5", "--json", folder.path("t.json"), "--plot",
+              folder.path("t.svg")});
   const json table = json::parse(read_text(folder.path("t.json")));
   REQUIRE(table.size() == 2);
   CHECK(table[0]["hits"] == 0);

@@ -8,19 +8,17 @@
 #include <cstdio>
 #include <limits>
 
+#include "support/check_command.h"
 #include "support/file_bytes.h"
 #include "support/hit_rows.h"
 #include "support/ray_cases.h"
-#include "support/run_command.h"
 
 namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 
 struct Traced {
-  CommandResult result;
   std::vector<HitRow> rows;
 };
 
@@ -31,12 +29,8 @@ Traced trace(const TemporaryFolder& folder, const std::string& scene, const std:
   if (scene.ends_with(".xyz")) {
     words.push_back("--as-voxels");
   }
-  words.insert(words.end(), options.begin(), options.end());
-  Traced traced{run_command(words), {}};
-  CAPTURE(traced.result.describe());
-  REQUIRE(traced.result.status == 0);
-  traced.rows = parse_hits(read_text(folder.path("hits.csv")), false);
-  return traced;
+  check_done(words + options);
+  return {parse_hits(read_text(folder.path("hits.csv")), false)};
 }
 
 std::string full_text(double number) {
@@ -119,13 +113,9 @@ TEST_CASE(
   trace(folder, scene, lines);
   const std::string wanted = read_text(folder.path("hits.csv"));
   const std::vector<double> rays{0, 1.5, 2.5, 2, 0, 0, 0, 5, 5, 1, 0, 0, -1, -3, -2, 1, 1, 1};
-  const Words common{"trace", scene, "--as-voxels", "--rays", save("3, 6", rays), "-o"};
+  const std::string file = save("3, 6", rays);
   const auto run = [&](const std::string& output) {
-    Words words = common;
-    words.push_back(output);
-    const CommandResult result = run_command(words);
-    CAPTURE(result.describe());
-    CHECK(result.status == 0);
+    check_done({"trace", scene, "--as-voxels", "--rays", file, "-o", output});
     return read_text(output);
   };
   CHECK(run(folder.path("hits.csv")) == wanted);
@@ -170,26 +160,22 @@ TEST_CASE(
   check_array(run(folder.path("hits.npy")), wanted, false);
   for (const char* structure : {"compact", "dense"}) {
     const auto picture = [&](const std::string& hits) {
-      CHECK(run_command({"render", scene, "--as-voxels", "--structure", structure, "--size", "9x7", "-o",
-                         folder.path("p.png"), "--hits", hits})
-                .status == 0);
+      check_done({"render", scene, "--as-voxels", "--structure", structure, "--size", "9x7", "-o",
+                  folder.path("p.png"), "--hits", hits});
       return read_text(hits);
     };
     const std::string csv = picture(folder.path("h.csv"));
     check_array(picture(folder.path("h.npy")), csv, true);
   }
-  const auto refusal = [&](const std::string& path) {
-    const CommandResult result = run_command({"trace", "spheres", "--rays", path});
-    CHECK(result.status == 1);
-    CHECK(result.out.empty());
-    return result.err;
+  const auto refused = [&](const std::string& path, const std::string& named) {
+    check_refused({"trace", "spheres", "--rays", path}, 1, {named});
   };
-  CHECK(refusal(save("3, 5", rays)).find("this array has 5 columns") != std::string::npos);
-  CHECK(refusal(save("18", rays)).find("no table") != std::string::npos);
-  CHECK(refusal(save("4, 6", rays)).find("has room for 18") != std::string::npos);
+  refused(save("3, 5", rays), "this array has 5 columns");
+  refused(save("18", rays), "no table");
+  refused(save("4, 6", rays), "has room for 18");
   std::vector<double> bad = rays;
   bad[9] = std::nan("");
-  CHECK(refusal(save("3, 6", bad)).find("rays.npy: row 1: ") != std::string::npos);
+  refused(save("3, 6", bad), "rays.npy: row 1: ");
 }
 
 TEST_CASE("trace: a line that is no ray -> status 1, file and line named, nothing written, stdout included") {
@@ -204,11 +190,7 @@ TEST_CASE("trace: a line that is no ray -> status 1, file and line named, nothin
     CAPTURE(bad);
     const std::string rays = folder.write("rays.csv", good + bad + "\n0,0,0,1,1,1\n");
     const std::string hits = folder.write("hits.csv", "as it was");
-    const CommandResult filed = run_command({"trace", "spheres", "--rays", rays, "-o", hits});
-    CAPTURE(filed.describe());
-    CHECK(filed.status == 1);
-    CHECK(is_one_sentence(filed.err));
-    CHECK(filed.err.find(rays + ": line 3: ") != std::string::npos);
+    check_refused({"trace", "spheres", "--rays", rays, "-o", hits}, 1, {rays + ": line 3: "});
     CHECK(read_text(hits) == "as it was");
     CHECK(folder.names() == Words{"hits.csv", "rays.csv"});
     CHECK(run_command({"trace", "spheres", "--rays", rays}).out.empty());
@@ -216,15 +198,10 @@ TEST_CASE("trace: a line that is no ray -> status 1, file and line named, nothin
   // The first line is a header only when nothing in it is a number.
   for (const char* bad : {"1,2,3,4,5,z", "nan,nan,nan,nan,nan,nan,nan", "0,0,0,1,0", "a,b,c,1,2,3"}) {
     CAPTURE(bad);
-    const CommandResult result = run_command({"trace", "spheres", "--rays", folder.write("rays.csv", bad)});
-    CHECK(result.status == 1);
-    CHECK(result.err.find("line 1: ") != std::string::npos);
+    check_refused({"trace", "spheres", "--rays", folder.write("rays.csv", bad)}, 1, {"line 1: "});
   }
-  const CommandResult empty = run_command({"trace", "spheres", "--rays", folder.write("rays.csv", "")});
-  CHECK(empty.status == 1);
-  CHECK(empty.err.find("rays.csv") != std::string::npos);
-  CHECK(run_command({"trace", "spheres", "--rays", folder.path("none.csv")}).err.find("none.csv") !=
-        std::string::npos);
+  check_refused({"trace", "spheres", "--rays", folder.write("rays.csv", "")}, 1, {"rays.csv"});
+  check_refused({"trace", "spheres", "--rays", folder.path("none.csv")}, 1, {"none.csv"});
 }
 
 TEST_CASE("trace: origins at the very limits, -4 and 5 world sizes -> accepted, and the next number is not") {
@@ -238,11 +215,9 @@ TEST_CASE("trace: origins at the very limits, -4 and 5 world sizes -> accepted, 
                 options)
               .rows.size() == 2);
     for (const double beyond : {std::nextafter(-4 * side, -1e9), std::nextafter(5 * side, 1e9)}) {
-      const CommandResult result =
-          run_command({"trace", "points:4", "--depth", depth, "--rays",
-                       folder.write("rays.csv", "0,0," + full_text(beyond) + ",1,0,0\n")});
-      CHECK(result.status == 1);
-      CHECK(result.err.find("line 1") != std::string::npos);
+      check_refused({"trace", "points:4", "--depth", depth, "--rays",
+                     folder.write("rays.csv", "0,0," + full_text(beyond) + ",1,0,0\n")},
+                    1, {"line 1"});
     }
   }
 }
@@ -257,31 +232,21 @@ TEST_CASE(
   std::vector<std::array<double, 6>> rays;
   for (int i = 0; i < 20000; ++i) {
     std::array<double, 6> ray{};
+    // Whole numbers that are kept, fractions, whole numbers too large, and components of any size beside one of 1.
+    const int kind = i % 4;
+    const std::int64_t most = kind == 0 ? 65535 : std::int64_t{1} << 50;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       ray[axis] = std::ldexp(static_cast<double>(pick(random, -(1LL << 40), 1LL << 40)), -34);  // -64 .. 64
-    }
-    const int kind = i % 4;
-    for (std::size_t axis = 3; axis < 6; ++axis) {
-      if (kind == 0) {
-        ray[axis] = static_cast<double>(pick(random, -65535, 65535));
-      } else if (kind == 1) {
-        ray[axis] = std::ldexp(static_cast<double>(pick(random, -(1LL << 52), 1LL << 52)),
-                               pick_int(random, -1000, 900) * (axis == 3 ? 0 : 1) - 52);
-      } else if (kind == 2) {
-        ray[axis] = std::ldexp(static_cast<double>(pick(random, -(1LL << 52), 1LL << 52)), -52);
-      } else {
-        ray[axis] = static_cast<double>(pick(random, -(1LL << 50), 1LL << 50));
-      }
-      if (pick(random, 0, 5) == 0) {
-        ray[axis] = 0;
-      }
+      const int exponent = kind == 1 ? -50 : kind == 3 && axis != 0 ? pick_int(random, -1050, 850) - 50 : 0;
+      ray[axis + 3] =
+          pick(random, 0, 5) == 0 ? 0 : std::ldexp(static_cast<double>(pick(random, -most, most)), exponent);
     }
     if (ray[3] == 0 && ray[4] == 0 && ray[5] == 0) {
-      ray[5] = kind == 1 ? 5e-324 : 1;
+      ray[5] = kind == 3 ? 5e-324 : 1;
     }
     rays.push_back(ray);
-    for (std::size_t i2 = 0; i2 < 6; ++i2) {
-      text += full_text(ray[i2]) + (i2 == 5 ? "\n" : ",");
+    for (std::size_t column = 0; column < 6; ++column) {
+      text += full_text(ray[column]) + (column == 5 ? "\n" : ",");
     }
   }
   const Traced traced = trace(folder, "spheres", text);
@@ -293,22 +258,16 @@ TEST_CASE(
     std::array<long double, 3> a{};
     std::array<long double, 3> b{};
     long double largest = 0;
-    bool whole = true;
+    bool as_given = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       REQUIRE(std::abs(static_cast<double>(ray.origin_q8[axis]) - rays[i][axis] * 256) <= 0.5);
       a[axis] = rays[i][axis + 3];
       b[axis] = static_cast<long double>(ray.direction[axis]);
       largest = std::max(largest, std::abs(a[axis]));
-      whole = whole && rays[i][axis + 3] == std::trunc(rays[i][axis + 3]);
-      REQUIRE((rays[i][axis + 3] != 0 || ray.direction[axis] == 0));
+      as_given = as_given && a[axis] == b[axis];
       REQUIRE((ray.direction[axis] == 0 || (ray.direction[axis] > 0) == (a[axis] > 0)));
     }
-    if (whole && largest <= 65535) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        REQUIRE(static_cast<double>(ray.direction[axis]) == rays[i][axis + 3]);
-      }
-      continue;
-    }
+    REQUIRE((as_given || i % 4 != 0));
     long double dot = 0;
     long double cross = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -404,11 +363,9 @@ TEST_CASE("trace: --engine ray32 -> the same lines, or the line of the first ray
   const std::string wide = read_text(folder.path("hits.csv"));
   trace(folder, "spheres", rays, {"--engine", "ray32"});
   CHECK(read_text(folder.path("hits.csv")) == wide);
-  const CommandResult result = run_command({"trace", "spheres", "--engine", "ray32", "--rays",
-                                            folder.write("rays.csv", rays + "1,2,3,1000000,1,1\n")});
-  CHECK(result.status == 1);
-  CHECK(result.out.empty());
-  CHECK(result.err.find("line 4") != std::string::npos);
+  check_refused({"trace", "spheres", "--engine", "ray32", "--rays",
+                 folder.write("rays.csv", rays + "1,2,3,1000000,1,1\n")},
+                1, {"line 4"});
 }
 
 TEST_CASE("trace: empty scene, one voxel, deepest world -> answers, not errors") {
@@ -438,12 +395,9 @@ TEST_CASE(
   const std::string path = folder.write("rays.csv", rays);
   // The columns without `nodes`, and the engine.
   const auto lines_of = [&](const Words& options, std::string* engine, std::string* nodes) {
-    Words words{
-        "trace", kScene, "--rays", path, "-o", folder.path("hits.csv"), "--stats", folder.path("s.json")};
-    words.insert(words.end(), options.begin(), options.end());
-    const CommandResult result = run_command(words);
-    CAPTURE(result.describe());
-    REQUIRE(result.status == 0);
+    check_done(Words{"trace", kScene, "--rays", path, "-o", folder.path("hits.csv"), "--stats",
+                     folder.path("s.json")} +
+               options);
     const auto stats = nlohmann::json::parse(read_text(folder.path("s.json")));
     *engine = stats["engine"];
     CHECK(stats["rays"] == kRays);
@@ -484,9 +438,6 @@ TEST_CASE("trace: the first line that is no ray, far on in a long file -> its nu
     rays += i % 1000 == 0 ? "\n" : "1,2,3,4,5,6\n";
   }
   const std::string path = folder.write("rays.csv", rays + "1,2,3,4,5\n" + rays);
-  const CommandResult result =
-      run_command({"trace", "spheres", "--rays", path, "-o", folder.path("hits.csv")});
-  CHECK(result.status == 1);
-  CHECK(result.err.find("line " + std::to_string(kGood + 2) + ": these are not the six numbers") !=
-        std::string::npos);
+  check_refused({"trace", "spheres", "--rays", path, "-o", folder.path("hits.csv")}, 1,
+                {"line " + std::to_string(kGood + 2) + ": these are not the six numbers"});
 }

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "support/check_command.h"
+#include "support/file_bytes.h"
 #include "support/pty.h"
-#include "support/run_command.h"
 #include "support/virtual_display.h"
 
 namespace {
@@ -100,13 +100,6 @@ class Viewing {
   pid_t child_ = -1;
 };
 
-bool can_test(const VirtualDisplay& display) {
-  if (!display.works()) {
-    MESSAGE("skipped: " << display.why_not());
-  }
-  return display.works();
-}
-
 // Until the window is there and the pointer in it.
 bool point_into(const VirtualDisplay& display) {
   return display.xdotool("search --sync --onlyvisible --name '^thimble: '") &&
@@ -166,9 +159,7 @@ void check_same_picture(const TemporaryFolder& folder, const std::string& line) 
   words.back() = "again.png";
   CommandLimits limits;
   limits.directory = folder.path();
-  const CommandResult again = run_command(words, limits);
-  CAPTURE(again.describe());
-  REQUIRE(again.status == 0);
+  check_done(words, limits);
   CHECK(read_text(folder.path(saved)) == read_text(folder.path("again.png")));
 }
 
@@ -176,9 +167,7 @@ void check_same_picture(const TemporaryFolder& folder, const std::string& line) 
 
 TEST_CASE("view: dragged, moved, nearer, named views, resized -> what s saves is what its command renders") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   Viewing viewing(folder, {"spheres,depth=5", "--size", "120x90"});
   REQUIRE(point_into(display));
@@ -213,9 +202,7 @@ TEST_CASE("view: dragged, moved, nearer, named views, resized -> what s saves is
 
 TEST_CASE("view: shift drag, flight and a double click -> the eye goes where they say") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   std::string cube;
   for (int i = 0; i < 512; ++i) {
@@ -253,9 +240,7 @@ TEST_CASE("view: shift drag, flight and a double click -> the eye goes where the
 
 TEST_CASE("view: keys shown, Escape in the middle of a slow picture -> over at once") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   Viewing viewing(folder, {"water,depth=6", "--size", "900x700", "--samples", "64"});
   REQUIRE(point_into(display));
@@ -278,9 +263,7 @@ TEST_CASE(
     "view: the file changes, or a model of the scene -> read again; half written -> the old picture, a "
     "sentence") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   for (const bool is_model : {false, true}) {
     const TemporaryFolder folder;
     folder.write("dots.xyz", "0 0 0\n9 9 9\n");
@@ -316,9 +299,7 @@ TEST_CASE(
 TEST_CASE(
     "view: a file is dropped on the window -> it is opened, and nothing is kept; other things are not") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   folder.write("first.xyz", "0 0 0\n9 9 9\n");
   const std::string other = folder.write("an other.xyz", "0 0 0\n1 5 9\n4 4 4\n");
@@ -348,22 +329,15 @@ TEST_CASE(
 TEST_CASE(
     "view: an animation -> its frames play, space stops them; what is saved is the frame that was shown") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   // Models without a scene graph are frames: a voxel that walks along x.
-  const auto u32 = [](std::size_t value) {
-    return std::string{static_cast<char>(value), static_cast<char>(value >> 8), 0, 0};
-  };
-  const auto chunk = [&](const std::string& name, const std::string& content) {
-    return name + u32(content.size()) + u32(0) + content;
-  };
   std::string models;
   for (char frame = 0; frame < 8; ++frame) {
-    models += chunk("SIZE", u32(8) + u32(8) + u32(8)) + chunk("XYZI", u32(1) + std::string{frame, 0, 0, 1});
+    models += vox_chunk("SIZE", little(8, 4) + little(8, 4) + little(8, 4)) +
+              vox_chunk("XYZI", little(1, 4) + std::string{frame, 0, 0, 1});
   }
-  folder.write("walk.vox", "VOX " + u32(150) + "MAIN" + u32(0) + u32(models.size()) + models);
+  folder.write("walk.vox", "VOX " + little(150, 4) + vox_chunk("MAIN", "", models));
   Viewing viewing(folder, {"walk.vox", "--size", "200x150"});
   REQUIRE(point_into(display));
   const auto frame_saved = [&](const std::string& name) {
@@ -390,9 +364,7 @@ TEST_CASE(
 
 TEST_CASE("view: water -> still; space lets it rain, space again lays it to rest as render draws it") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   Viewing viewing(folder, {"water,depth=5", "--size", "640x480", "--samples", "1"});
   REQUIRE(point_into(display));
@@ -463,9 +435,7 @@ TEST_CASE("view: without a display, in a terminal -> drawn there; keys, saving, 
 
 TEST_CASE("sim: Escape in the middle of a frame that takes seconds -> over at once, as if it had ended") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   Viewing running(folder, {"sim", "water,depth=8", "--board", "raspi0"});
   REQUIRE(display.xdotool("search --sync --onlyvisible --name '^thimble sim' mousemove 100 100 sleep 0.3"));
@@ -516,9 +486,7 @@ TEST_CASE("view, sim, particles: their display ends -> status 1 and one sentence
   for (const Words& words : tools) {
     CAPTURE(words[0]);
     VirtualDisplay display("1000x800x24");
-    if (!can_test(display)) {
-      return;
-    }
+    NEEDS_DISPLAY(display);
     const TemporaryFolder folder;
     const std::string wanted = "thimble: the display " + std::string(std::getenv("DISPLAY")) + " has ended\n";
     Viewing viewing(folder, words);
@@ -536,9 +504,7 @@ TEST_CASE("view, sim, particles: their display ends -> status 1 and one sentence
 
 TEST_CASE("view: a window too small for its rays says so, and no more once it has grown") {
   const VirtualDisplay display("1000x800x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   Viewing viewing(folder, {"view", "spheres,depth=5", "--size", "900x300", "--samples", "1", "--fov", "120"});
   REQUIRE(point_into(display));

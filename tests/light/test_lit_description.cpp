@@ -13,8 +13,8 @@
 #include "scene/built_scene.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
+#include "support/check_command.h"
 #include "support/reader_inputs.h"
-#include "support/run_command.h"
 #include "thimble/base/memory.h"
 
 namespace {
@@ -204,33 +204,6 @@ TEST_CASE("generators: water -> still water between the walls, a sun, a sky; the
     const int side = 1 << depth;
     CHECK(water.corner.x + water.width + water.corner.x == side);
     CHECK(water.highest_q8 == 15 * 256 * side / 64);
-    // The basin holds it: around the water, walls that reach above its level; under it, ground.
-    std::vector<bool> solid(static_cast<std::size_t>(side * side * side));
-    source->stream([&](int x, int y, int z,
-                       std::uint8_t) { solid[static_cast<std::size_t>((z * side + y) * side + x)] = true; },
-                   {});
-    const auto is_solid = [&](int x, int y, int z) {
-      return static_cast<bool>(solid[static_cast<std::size_t>((z * side + y) * side + x)]);
-    };
-    const int first = water.corner.x;
-    const int last = first + water.width - 1;
-    const int top = (water.highest_q8 + 255) / 256;
-    for (int at = first; at <= last; ++at) {
-      for (int z = 0; z < top; ++z) {
-        REQUIRE(is_solid(first - 1, at, z));
-        REQUIRE(is_solid(last + 1, at, z));
-        REQUIRE(is_solid(at, first - 1, z));
-        REQUIRE(is_solid(at, last + 1, z));
-      }
-      REQUIRE(is_solid(at, at, 0));
-    }
-    int open = 0;
-    for (int y = first; y <= last; ++y) {
-      for (int x = first; x <= last; ++x) {
-        open += is_solid(x, y, top - 1) ? 0 : 1;
-      }
-    }
-    CHECK(open > water.width * water.depth / 3);
   }
   for (const char* plain : {"spheres", "demo,depth=4", "points:100,depth=4"}) {
     CAPTURE(std::string(plain));
@@ -286,9 +259,7 @@ TEST_CASE("bake: a header -> the set of effects as a macro; --effects as asked f
   const auto macro = [&](const std::string& scene, const std::vector<std::string>& more) {
     std::vector<std::string> words{"bake", scene, "-o", folder.path("a.h")};
     words.insert(words.end(), more.begin(), more.end());
-    const auto result = tests::run_command(words);
-    CAPTURE(result.describe());
-    REQUIRE(result.status == 0);
+    tests::check_done(words);
     for (const std::string& line : tests::lines_of(tests::read_text(folder.path("a.h")))) {
       if (line.starts_with("#define THIMBLE_SCENE_EFFECTS ")) {
         return line.substr(30);

@@ -12,7 +12,7 @@
 
 #include "linux/framebuffer.h"
 #include "linux/pixels.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 
 namespace {
 
@@ -162,9 +162,8 @@ TEST_CASE(
   const std::string scene = folder.path("demo.oct");
   const std::string shot = folder.path("shot.ppm");
   REQUIRE(tests::run_command({"bake", "demo", "-o", scene, "--quiet"}).status == 0);
-  const tests::CommandResult simulated = tests::run_command(
+  tests::check_done(
       {"sim", scene, "--board", "raspi0", "--display", "none", "--frames", "2", "--shot", shot, "--quiet"});
-  REQUIRE_MESSAGE(simulated.status == 0, simulated.describe());
   const std::string expected = tests::read_text(shot);
   const size_t header = expected.size() - size_t{640} * 480 * 3;
   for (const Kind& kind : kKinds) {
@@ -176,9 +175,8 @@ TEST_CASE(
     tests::CommandLimits limits;
     limits.program = THIMBLE_FB_PATH;
     const std::string layout = "643,482," + std::to_string(kind.bits) + "," + std::to_string(stride);
-    const tests::CommandResult drawn = tests::run_command(
-        {scene, "--stand-in", screen, "--layout", layout, "--size", "640,480", "--frames", "2"}, limits);
-    REQUIRE_MESSAGE(drawn.status == 0, drawn.describe());
+    tests::check_done({scene, "--stand-in", screen, "--layout", layout, "--size", "640,480", "--frames", "2"},
+                      limits);
     const std::string bytes = tests::read_text(screen);
     REQUIRE(bytes.size() == stride * 482);
     size_t wrong = 0;

@@ -7,27 +7,23 @@
 #include <cstdlib>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "support/check_command.h"
 #include "support/pty.h"
-#include "support/run_command.h"
 #include "support/virtual_display.h"
 
 namespace {
 
 using thimble::Rgb8;
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 
 /// The command in a process of its own; its end is waited for.
 class Running {
  public:
-  explicit Running(Words words) {
-    words.insert(words.begin(), "particles");
-    thread_ = std::thread([this, words] { result_ = run_command(words); });
-  }
+  explicit Running(const Words& words)
+      : thread_([this, words] { result_ = run_command(Words{"particles"} + words); }) {}
   ~Running() {
     if (thread_.joinable()) {
       thread_.join();
@@ -70,18 +66,13 @@ nlohmann::json json_of(const std::string& path) {
 TEST_CASE(
     "particles in a window: pointer and keys -> walls, balls, figures; its record gives the same state") {
   const VirtualDisplay display("1000x760x24");
-  if (!display.works()) {
-    MESSAGE("skipped: " << display.why_not());
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const TemporaryFolder folder;
   const std::string stats = folder.path("window.json");
   const std::string record = folder.path("input.txt");
   const Words world{"--size", "800x600", "--count", "200", "--seed", "3"};
-  Words words = world;
-  words.insert(words.end(), {"--display", "window", "--record-input", record, "--stats", stats, "--field",
-                             folder.path("window.pbm"), "--state", folder.path("window.csv"), "--quiet"});
-  Running running(words);
+  Running running(world + Words{"--display", "window", "--record-input", record, "--stats", stats, "--field",
+                                folder.path("window.pbm"), "--state", folder.path("window.csv"), "--quiet"});
   REQUIRE(display.xdotool("search --sync --name 'thimble particles'"));
   // Figure 1's overlay: a panel with white text at the top left of the picture.
   CHECK(becomes_true([&] { return display.pixel(7, 7) == Rgb8{32, 34, 38}; }));
@@ -118,14 +109,9 @@ TEST_CASE(
     CAPTURE(std::string(part));
     CHECK(events.find(part) != std::string::npos);
   }
-  words = world;
-  words.insert(words.begin(), "particles");
-  words.insert(words.end(),
-               {"--display", "none", "--input", record, "--stats", folder.path("again.json"), "--field",
-                folder.path("again.pbm"), "--state", folder.path("again.csv"), "--quiet"});
-  const CommandResult again = run_command(words);
-  CAPTURE(again.describe());
-  REQUIRE(again.status == 0);
+  check_done(Words{"particles"} + world +
+             Words{"--display", "none", "--input", record, "--stats", folder.path("again.json"), "--field",
+                   folder.path("again.pbm"), "--state", folder.path("again.csv"), "--quiet"});
   CHECK(json_of(folder.path("again.json")).at("state_crc32") == json_of(stats).at("state_crc32"));
   CHECK(json_of(folder.path("again.json")).at("steps") == json_of(stats).at("steps"));
   CHECK(json_of(stats).at("particles").get<int>() > 200);
@@ -135,10 +121,7 @@ TEST_CASE(
 
 TEST_CASE("particles in a window: no option but a display -> Figure 1 in a window; closing it ends it") {
   const VirtualDisplay display("1000x760x24");
-  if (!display.works()) {
-    MESSAGE("skipped: " << display.why_not());
-    return;
-  }
+  NEEDS_DISPLAY(display);
   Running running({});
   REQUIRE(display.xdotool("search --sync --name 'thimble particles'"));
   CHECK(becomes_true([&] { return display.pixel(7, 7) == Rgb8{32, 34, 38}; }));
@@ -191,10 +174,8 @@ TEST_CASE(
   const std::string events = read_text(record);
   CHECK(events.find(": press left 81,18\n") != std::string::npos);
   CHECK(events.find(": key up\n") != std::string::npos);
-  const CommandResult again = run_command({"particles", "--size", "160x96", "--count", "40", "--input",
-                                           record, "--stats", folder.path("again.json"), "--quiet"});
-  CAPTURE(again.describe());
-  REQUIRE(again.status == 0);
+  const CommandResult again = check_done({"particles", "--size", "160x96", "--count", "40", "--input", record,
+                                          "--stats", folder.path("again.json"), "--quiet"});
   CHECK(json_of(folder.path("again.json")).at("state_crc32") == json_of(stats).at("state_crc32"));
   CHECK(json_of(stats).at("particles").get<int>() > 50);
 }

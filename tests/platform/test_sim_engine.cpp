@@ -15,8 +15,8 @@
 #include "readers/source.h"
 #include "scene/baking.h"
 #include "scene/wide_frames.h"
+#include "support/check_command.h"
 #include "support/counts.h"
-#include "support/run_command.h"
 #include "support/simulated_run.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
@@ -25,17 +25,11 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using Words = std::vector<std::string>;
 using nlohmann::json;
 
 const std::uint32_t kFrames = thimble::tests::many_or_few<std::uint32_t>(24, 6);
 
 constexpr const char* kScene = "spheres,depth=4";
-
-Words operator+(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
 
 struct Ran {
   CommandResult result;
@@ -171,13 +165,7 @@ TEST_CASE("sim --engine: frames with light, and a rate that is held -> the same,
 TEST_CASE(
     "sim --engine: words that there are not, applications that it is not for -> status 2, one sentence") {
   const auto refused = [](const Words& words, const Words& named) {
-    const CommandResult result = run_command(Words{"sim"} + words + Words{"--display", "none"});
-    CAPTURE(result.describe());
-    CHECK(result.status == 2);
-    CHECK(is_one_sentence(result.err));
-    for (const std::string& name : named) {
-      CHECK(result.err.find(name) != std::string::npos);
-    }
+    check_refused(Words{"sim"} + words + Words{"--display", "none"}, 2, named);
   };
   refused({"--engine", "fast"}, {"--engine", "\"fast\"", "auto, wide or ray64"});
   refused({"--engine", "ray32"}, {"\"ray32\""});
@@ -190,9 +178,7 @@ TEST_CASE("sim --engine: applications that nothing else draws for -> statistics 
   const TemporaryFolder folder;
   const std::string stats = folder.path("stats.json");
   const CommandResult result =
-      run_command({"sim", "--app", "particles", "--frames", "2", "--display", "none", "--stats", stats});
-  CAPTURE(result.describe());
-  REQUIRE(result.status == 0);
+      check_done({"sim", "--app", "particles", "--frames", "2", "--display", "none", "--stats", stats});
   CHECK_FALSE(json::parse(read_text(stats)).contains("engine"));
   CHECK(result.err.find("engine") == std::string::npos);
 }
@@ -201,21 +187,16 @@ TEST_CASE(
     "sim --engine: a camera that is too fine -> the core draws, or --engine wide says so with status 1") {
   const TemporaryFolder folder;
   const std::string fine = folder.path("fine.oct");
-  REQUIRE(run_command({"bake", "points:2000,depth=6", "--fov", "1", "--direction-bits", "8",
-                       "--eye=-200,20,30", "--board", "lm3s6965evb", "-o", fine, "--quiet"})
-              .status == 0);
+  check_done({"bake", "points:2000,depth=6", "--fov", "1", "--direction-bits", "8", "--eye=-200,20,30",
+              "--board", "lm3s6965evb", "-o", fine, "--quiet"});
   const Words words{fine, "--frames", "3"};
   const Ran core = run_sim(folder, words + Words{"--engine", "ray64"});
   const Ran any = run_sim(folder, words);
   CHECK(any.stats["engine"] == "ray64");
   check_same(core, any);
   const std::string shot = folder.path("shot.png");
-  const CommandResult forced =
-      run_command({"sim", fine, "--engine", "wide", "--display", "none", "--shot", shot});
-  CAPTURE(forced.describe());
-  CHECK(forced.status == 1);
-  CHECK(is_one_sentence(forced.err));
-  CHECK(forced.err.find("--engine wide does not take the rays of this camera") != std::string::npos);
+  check_refused({"sim", fine, "--engine", "wide", "--display", "none", "--shot", shot}, 1,
+                {"--engine wide does not take the rays of this camera"});
   CHECK(folder.names() == Words{"fine.oct", "frames.y4m", "stats.json"});
 }
 

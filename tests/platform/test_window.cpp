@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,13 +19,6 @@ namespace {
 using namespace thimble;
 using namespace thimble::host;
 using thimble::tests::VirtualDisplay;
-
-bool can_test(const VirtualDisplay& display) {
-  if (!display.works()) {
-    MESSAGE("skipped: " << display.why_not());
-  }
-  return display.works();
-}
 
 std::optional<Event> wait_for(Screen* screen, const std::function<bool(const Event&)>& wanted) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
@@ -75,9 +67,7 @@ std::vector<std::uint8_t> one_pixel(std::int32_t x, std::int32_t y, Rgb8 color) 
 
 TEST_CASE("window: keys, pointer, wheel, size and close -> events in the picture's pixels") {
   const VirtualDisplay display("1280x900x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const auto screen = open_screen(ScreenKind::kAuto, options_of(Theme::kPlain));
   REQUIRE(std::string(screen->name()) == "window");
   const auto rgb = one_pixel(0, 0, {255, 255, 255});
@@ -149,9 +139,7 @@ TEST_CASE("window: keys, pointer, wheel, size and close -> events in the picture
 
 TEST_CASE("window: themes -> lit pixels, gaps and ground in their colours, eight screen pixels a pixel") {
   const VirtualDisplay display("1280x900x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   for (const Theme theme : {Theme::kPlain, Theme::kOled, Theme::kLcd}) {
     const ScreenOptions options = options_of(theme);
     const Look& look = options.look;
@@ -173,9 +161,7 @@ TEST_CASE("window: themes -> lit pixels, gaps and ground in their colours, eight
 
 TEST_CASE("window: a display of 16 bits -> the same picture in its colours") {
   const VirtualDisplay display("640x480x16");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const auto screen = open_screen(ScreenKind::kWindow, options_of(Theme::kPlain));
   const auto rgb = one_pixel(1, 1, {255, 128, 8});
   drain(screen.get());
@@ -186,9 +172,7 @@ TEST_CASE("window: a display of 16 bits -> the same picture in its colours") {
 
 TEST_CASE("window: a display of 8 bits -> no window, and a sentence with its bits") {
   const VirtualDisplay display("640x480x8");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const std::string sentence = "the display " + std::string(std::getenv("DISPLAY")) +
                                " has 8 bits a pixel; a window takes one of true colours, of 16 bits or more";
   CHECK_THROWS_WITH_AS(open_screen(ScreenKind::kWindow, options_of(Theme::kPlain)), sentence.c_str(),
@@ -209,9 +193,7 @@ TEST_CASE("window: a display of 8 bits -> no window, and a sentence with its bit
 
 TEST_CASE("window: destroyed by somebody else, or its server gone -> close, and the program lives") {
   VirtualDisplay display("1280x900x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const auto rgb = one_pixel(0, 0, {1, 2, 3});
   {
     const auto screen = open_screen(ScreenKind::kWindow, options_of(Theme::kPlain));
@@ -235,9 +217,7 @@ TEST_CASE("window: destroyed by somebody else, or its server gone -> close, and 
 
 TEST_CASE("window: the simulator in one -> its picture is the one without a window, and real keys end it") {
   const VirtualDisplay display("1280x900x24");
-  if (!can_test(display)) {
-    return;
-  }
+  NEEDS_DISPLAY(display);
   const thimble::tests::TemporaryFolder folder;
   const std::string shot = folder.path("a.png");
   const auto sim = [](std::vector<std::string> words) {

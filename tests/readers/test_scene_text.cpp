@@ -15,13 +15,14 @@
 #include "readers/read_any.h"
 #include "readers/scene_text.h"
 #include "scene/scene_source.h"
+#include "support/check_command.h"
 #include "support/reader_inputs.h"
-#include "support/run_command.h"
 
 namespace {
 
 using namespace thimble;
 using namespace thimble::tools;
+using tests::operator+;
 using tests::TemporaryFolder;
 using tools::test::contains;
 
@@ -563,25 +564,19 @@ TEST_CASE("scene: models that cannot be read, .gz, options -> as for the command
 TEST_CASE("scene: the command -> one sentence with file, line and column, status 1; --memory holds") {
   const TemporaryFolder folder;
   const auto bad = folder.write("bad.scene", "depth 5\n\tbox\n");
-  auto result = tests::run_command({"render", bad, "-o", folder.path("a.ppm")});
-  CHECK(result.status == 1);
-  CHECK(tests::is_one_sentence(result.err));
-  CHECK(contains(result.err, bad + ": line 2, column 5: box needs the name of a material"));
+  tests::check_refused({"render", bad, "-o", folder.path("a.ppm")}, 1,
+                       {bad + ": line 2, column 5: box needs the name of a material"});
   CHECK(folder.names() == std::vector<std::string>{"bad.scene"});
 
   const auto good =
       folder.write("good.scene",
                    "model spheres at 3 0 1\nmodel spheres,seed=2 turn z 1 crop\nmaterial m\nball m at 20 "
                    "20 20 radius 9\ncamera eye 0 -60 60 target 30 30 30 fov 50\n");
-  result =
-      tests::run_command({"render", good, "-o", folder.path("a.ppm"), "--size", "40x30", "--memory", "2K"});
-  CHECK(result.status == 1);
-  CHECK(contains(result.err, "--memory"));
-  result =
-      tests::run_command({"render", good, "-o", folder.path("a.ppm"), "--size", "40x30", "--memory", "300K"});
-  CAPTURE(result.describe());
-  CHECK(result.status == 0);
-  const auto free = tests::run_command({"render", good, "-o", folder.path("b.ppm"), "--size", "40x30"});
-  CHECK(free.status == 0);
+  const auto render = [&](const char* name) {
+    return tests::Words{"render", good, "-o", folder.path(name), "--size", "40x30", "--quiet"};
+  };
+  tests::check_refused(render("a.ppm") + tests::Words{"--memory", "2K"}, 1, {"--memory"});
+  tests::check_done(render("a.ppm") + tests::Words{"--memory", "300K"});
+  tests::check_done(render("b.ppm"));
   CHECK(tests::read_text(folder.path("a.ppm")) == tests::read_text(folder.path("b.ppm")));
 }

@@ -27,8 +27,8 @@ inline std::string line_of_words(const Words& words) {
 }
 
 /// What the command with `words` does, which is to end well.
-inline CommandResult check_done(const Words& words) {
-  CommandResult result = run_command(words);
+inline CommandResult check_done(const Words& words, const CommandLimits& limits = {}) {
+  CommandResult result = run_command(words, limits);
   CAPTURE(line_of_words(words));
   CAPTURE(result.describe());
   REQUIRE(result.status == 0);
@@ -36,8 +36,9 @@ inline CommandResult check_done(const Words& words) {
 }
 
 /// The command with `words` is refused: that status, nothing but one sentence, which holds each of `named`.
-inline void check_refused(const Words& words, int status, const Words& named) {
-  const CommandResult result = run_command(words);
+inline void check_refused(const Words& words, int status, const Words& named,
+                          const CommandLimits& limits = {}) {
+  const CommandResult result = run_command(words, limits);
   CAPTURE(line_of_words(words));
   CAPTURE(result.describe());
   CHECK(result.status == status);

@@ -1,11 +1,20 @@
 /// An X server that shows nothing to anybody, for tests of the window, and what a test does to it.
 #pragma once
 
+#include <doctest/doctest.h>
 #include <sys/types.h>
 
 #include <string>
 
 #include "thimble/picture/pixel.h"
+
+/// Ends the test case with a word on why where the display does not work.
+#define NEEDS_DISPLAY(display)                   \
+  if (!(display).works()) {                      \
+    MESSAGE("skipped: " << (display).why_not()); \
+    return;                                      \
+  }                                              \
+  static_assert(true, "so that a semicolon follows")
 
 namespace thimble::tests {
 

@@ -13,7 +13,7 @@
 #include "scene/host_memory.h"
 #include "scene/magnify.h"
 #include "scene/moving_pool.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "thimble/light/scene.h"
 #include "thimble/picture/render.h"
 #include "viewer/fast_frames.h"
@@ -303,9 +303,7 @@ TEST_CASE(
     words.push_back(folder.path("a.ppm"));
     words.insert(words.end(), look->words().begin(), look->words().end());
     CHECK(std::find(words.begin(), words.end(), "auto") != words.end());
-    const tests::CommandResult rendered = tests::run_command(words);
-    CAPTURE(rendered.describe());
-    REQUIRE(rendered.status == 0);
+    tests::check_done(words);
     const std::string text = tests::read_text(folder.path("a.ppm"));
     const std::vector<std::uint8_t> wanted(text.end() - 3 * 97 * 61, text.end());
     ViewWishes view = view_of(97, 61);
