@@ -1,4 +1,4 @@
-// What the wide renderer refuses, what memory it takes, and which blocks it splits into voxels.
+// What the wide renderer refuses, and what memory it takes.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,61 +8,6 @@
 #include "support/wide_cases.h"
 
 namespace thimble::tests {
-
-TEST_CASE("wide: a few solid blocks among single voxels -> given as voxels; more of them, or merged, not") {
-  const auto made = [&](int blocks, int voxels, int block_level) {
-    return make_scene(
-        8,
-        [&](Octree* octree) {
-          for (int i = 0; i < blocks; ++i) {
-            REQUIRE(octree->insert_block({i << 4, 64, 0}, block_level, static_cast<std::uint8_t>(i)) ==
-                    Status::kOk);
-          }
-          for (int i = 0; i < voxels; ++i) {
-            REQUIRE(octree->insert({2 * (i % 100), 0, 2 * (i / 100)}, 200) == Status::kOk);
-          }
-        },
-        std::size_t{4} << 20, wide::ListKind::kBoxes);
-  };
-  // 8 voxels for 1 box: 7 more.
-  const WideScene few = made(2, 7 * 2 * 8 - 2, 1);
-  CHECK_FALSE(few.lists().has_blocks());
-  CHECK(few.lists().entries().size == 7 * 2 * 8 - 2 + 2 * 8);
-  CHECK(few.lists().face_area() == few.lists().entries().size);
-  CHECK(made(2, 7 * 2 * 8 - 3, 1).lists().has_blocks());
-  CHECK_FALSE(made(1, 8 * 63, 2).lists().has_blocks());
-  CHECK(made(1, 8 * 60, 2).lists().has_blocks());
-  // Blocks keep their colours, each voxel of them.
-  const WideScene colored = made(3, 1600, 2);
-  REQUIRE_FALSE(colored.lists().has_blocks());
-  REQUIRE(colored.lists().materials().size == colored.lists().entries().size);
-  std::size_t of_first = 0;
-  for (std::size_t i = 0; i < colored.lists().entries().size; ++i) {
-    of_first += colored.lists().materials()[i] == 0 ? 1U : 0U;
-  }
-  CHECK(of_first == 64);
-  std::mt19937_64 random(5);
-  for (int view = 0; view < 20; ++view) {
-    FrameCase frame;
-    if (!random_frame(random, colored, &frame)) {
-      continue;
-    }
-    frame.shading.mode = view % 2 == 0 ? ShadeMode::kColor : ShadeMode::kDepth;
-    const auto ours = draw_wide(colored, frame, random_options(random));
-    std::uint64_t hits = 0;
-    if (ours) {
-      CHECK(*ours == draw_core(colored, frame, &hits));
-    }
-  }
-  const WideScene merged = make_scene(8, [](Octree* octree) {
-    for (int i = 0; i < 3000; ++i) {
-      REQUIRE(octree->insert({2 * (i % 100), i / 1000, 2 * (i / 100 % 10)}, 1) == Status::kOk);
-    }
-    (void)octree->coarsen_to(octree->nodes_used() - 2);
-  });
-  REQUIRE(merged.tree.merged());
-  CHECK(merged.lists().has_blocks());
-}
 
 TEST_CASE("wide: an arena or a workspace that is too small -> kOutOfMemory, nothing taken, nothing drawn") {
   std::mt19937_64 random(5);
