@@ -150,20 +150,3 @@ TEST_CASE("arena: a compact tree") {
   }
   CHECK(tree.rank_shift() == kDefaultRankShift);
 }
-
-TEST_CASE("arena: a voxel world in ten lines") {
-  static std::uint8_t memory[2048];
-  Arena arena{Bytes(memory)};
-  Octree octree;
-  REQUIRE(Octree::make(4, 128, arena, &octree) == Status::kOk);
-  for (std::int32_t i = 0; i < 16; ++i) {
-    REQUIRE(octree.insert({i, i, i}) == Status::kOk);
-  }
-  CompactTree tree;
-  REQUIRE(CompactTree::make(octree, arena, &tree) == Status::kOk);
-  Hit hit;
-  REQUIRE(closest_hit(tree, {{Q8::saturate(-1), Q8::saturate(-1), Q8::saturate(-1)}, {1, 1, 1}}, &hit) ==
-          Status::kOk);
-  CHECK(hit.kind == HitKind::kHit);
-  CHECK(hit.voxel == Vec3i{0, 0, 0});
-}

@@ -149,43 +149,5 @@ TEST_CASE("mirrors by the map: reflected rays through edges and corners -> the t
   CHECK(passed > turns / 8);
 }
 
-TEST_CASE(
-    "mirrors by the map: every format and set, faces of many pixels, rough metals -> the tree's bytes") {
-  MirrorWorld world;
-  world.box({0, 0, 0}, {32, 32, 2}, kMetal);
-  world.box({6, 6, 2}, {8, 26, 14}, kStone);
-  world.box({6, 24, 2}, {26, 26, 10}, kRough);
-  world.box({16, 10, 2}, {20, 14, 20}, 4);
-  world.voxel({24, 8, 5}, 5);
-  world.surfaces[5] = surface(SurfaceKind::kEmit, {90, 220, 120});
-  world.lights.push_back(lamp({14 * 256, 5 * 256, 12 * 256}, 700));
-  world.scene.occlusion = {8, 200, 6};
-  world.map_it();
-  constexpr EffectSet kAll = kMirrored | Effect::kEmission | Effect::kSky;
-  for (const int width : {53, 200}) {
-    world.look({-6 * 256 + 3, -9 * 256 + 17, 18 * 256}, {16 * 256, 16 * 256, 4 * 256}, 44, width,
-               width * 3 / 4);
-    for (int number = 0; number < kPixelFormats; ++number) {
-      CAPTURE(number);
-      const auto format = static_cast<PixelFormat>(number);
-      if (width == 200 && tests::takes_few() && number % 3 != 0) {
-        continue;
-      }
-      for (const std::size_t offset : {0U, 1U}) {
-        world.scene.lights = {world.lights.data(), 1};
-        compare(world, format, offset);
-        compare<kAll>(world, format, offset);
-        compare<kAll | Effect::kAmbientOcclusion>(world, format, offset);
-        world.scene.lights = {world.lights.data(), 2};
-        compare<kMirrored | Effect::kEmitterLight>(world, format, offset);
-        compare<kAll | Effect::kAmbientOcclusion | Effect::kEmitterLight>(world, format, offset);
-        if (width == 200) {
-          break;
-        }
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace thimble::testing::map_mirrors

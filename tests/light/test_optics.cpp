@@ -388,38 +388,6 @@ TEST_CASE("distance_q8 with a cosine: rays to a point, any others -> both as apa
   CHECK(to_points > kSweep / 10);
 }
 
-TEST_CASE("occlusion pattern: each prefix -> balanced, cosine distributed, never in the plane") {
-  for (const int count : {4, 8, 16, 32}) {
-    int x = 0;
-    int y = 0;
-    Real z = 0;
-    std::vector<Real> areas;
-    for (int i = 0; i < count; ++i) {
-      const Vec3i direction = occlusion_direction(i, 2, false);
-      CHECK(direction.z > 0);
-      CHECK(std::fabs(length(reals(direction)) - kOcclusionLength) <= 1);
-      x += direction.x;
-      y += direction.y;
-      z += direction.z;
-      areas.push_back(static_cast<Real>(direction.x * direction.x + direction.y * direction.y) / (127 * 127));
-    }
-    CHECK(x == 0);
-    CHECK(y == 0);
-    // The mean height of the distribution is 2/3; four directions alone are a little higher.
-    CHECK(std::fabs(z / count / 127 - 2.0L / 3) < 0.05L);
-    // Equal areas of the disc: the squares of the radii fill equal bins, four to a bin.
-    std::sort(areas.begin(), areas.end());
-    CHECK(std::fabs(areas[static_cast<std::size_t>(count / 2)] - 0.5L) < 0.1L);
-    // No two within 1/3 of the spacing that so many would have on average.
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < i; ++j) {
-        CHECK(angle_urad(reals(occlusion_direction(i, 2, false)), reals(occlusion_direction(j, 2, false))) >
-              0.4e6L * std::sqrt(2 * 3.14159L / count));
-      }
-    }
-  }
-}
-
 TEST_CASE("occlusion direction: the six faces -> away from each, a turned copy of the first") {
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool smaller : {false, true}) {

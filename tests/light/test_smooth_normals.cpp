@@ -246,31 +246,6 @@ TEST_CASE("a face within a slope that leans the other way: straight up, along an
   }
 }
 
-// Plates are 3 voxels thick, which is no shell: nothing is made solid below them.
-TEST_CASE("a ramp of plates 3 thick in steps of 2: the gradient of its definition, on treads and risers") {
-  for (int turn = 0; turn < 3; ++turn) {
-    const Body ramp([turn](int x, int y, int z) {
-      const int along[3] = {x, y, z};
-      const int top = along[(turn + 1) % 3] / 5 * 2 + 20;
-      const int up = along[turn];
-      return up <= top && up > top - 3;
-    });
-    double worst = 0;
-    int places = 0;
-    ramp.each_place(1, [&](const Vec3Q8& at, const Face& face, const Vec3i& normal) {
-      const Vec3i voxel{at.x.floor(), at.y.floor(), at.z.floor()};
-      const bool inner = voxel[(turn + 1) % 3] > 10 && voxel[(turn + 1) % 3] < 54 &&
-                         voxel[(turn + 2) % 3] > 8 && voxel[(turn + 2) % 3] < 56;
-      if (inner && face.axis == (turn + 1) % 3) {
-        ++places;
-        worst = std::max(worst, degrees_between(normal, ramp.gradient(at)));
-      }
-    });
-    CHECK(places > 100);
-    CHECK(worst < 0.02);
-  }
-}
-
 TEST_CASE("between a floor and a ceiling that balance: the gradient of its definition, small as it is") {
   const Body slot([](int x, int y, int z) {
     const bool hole = (x == 29 && y == 29 && z == 27) || (x == 37 && y == 29 && z == 30);

@@ -99,16 +99,4 @@ TEST_CASE(
   });
 }
 
-TEST_CASE("bytes: a pool at any address -> as many nodes as its bytes were meant for") {
-  misuse(62, 400, [](OddValues& odd) {
-    const auto nodes = static_cast<std::size_t>(odd.between(0, 1000));
-    const auto off = static_cast<std::size_t>(odd.between(0, 3));
-    ExactBytes room(Octree::octree_bytes(nodes) + off);
-    Octree octree;
-    REQUIRE(Octree::make(kMinLevel, room.bytes().subspan(off), &octree) == Status::kOk);
-    CHECK(octree.capacity_bytes() >= nodes * 8);
-    CHECK(octree.capacity_bytes() <= nodes * 8 + 3);
-  });
-}
-
 }  // namespace thimble::tests

@@ -278,27 +278,6 @@ TEST_CASE("panel formats: render_band, any size and band -> what a straight enco
   }
 }
 
-TEST_CASE("panel formats: depth, cut-off -> the same") {
-  Stairs stairs;
-  const Size size{61, 37};
-  const Camera& camera = stairs.look(size.width, size.height);
-  Cutoff cutoff;
-  REQUIRE(cutoff.set(camera, Q16::saturate(6)) == Status::kOk);
-  NodeColors colors;
-  Picture table(node_colors_bytes(stairs.world.tree));
-  REQUIRE(NodeColors::make(stairs.world.tree, stairs.world.shading.palette, {}, {table.data(), table.size()},
-                           &colors) == Status::kOk);
-  const auto cut = [&](const Band& band) {
-    return render_band_cut(stairs.world.tree, camera, stairs.world.shading, cutoff, colors, band);
-  };
-  expect_encoded(size, in_rgb(size, cut), cut);
-  Shading depth = stairs.world.shading;
-  depth.mode = ShadeMode::kDepth;
-  depth.far_q8 = 256 * 80;
-  const auto deep = [&](const Band& band) { return render_band(stairs.world.tree, camera, depth, band); };
-  expect_encoded(size, in_rgb(size, deep), deep);
-}
-
 TEST_CASE(
     "panel formats: any-time frames, done -> the same; before -> whole pages, and errors within bounds") {
   Stairs stairs;

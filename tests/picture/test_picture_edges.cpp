@@ -195,7 +195,5 @@ TEST_CASE(
   CHECK(frame.counts().step_limited == limited);
 }
 
-// ---- samples
-
 }  // namespace
 }  // namespace thimble::tests::picture_edges

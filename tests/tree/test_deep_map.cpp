@@ -150,25 +150,6 @@ TEST_CASE(
   CHECK(map.material(tree, last.number, last.bit) == 9);
 }
 
-TEST_CASE("deep map: each beginning of a map -> truncated, or not a map") {
-  std::mt19937_64 random(914);
-  const ChipScene scene = make_deep_scene(random, DeepWorld::kCorners, 10);
-  const std::size_t size = scene.map.size_bytes();
-  const auto* const from = static_cast<const std::uint8_t*>(static_cast<const void*>(scene.map_words.data()));
-  for (std::size_t length = 0; length < size; length += length < 64 || length + 64 > size ? 1 : 61) {
-    CAPTURE(length);
-    const HeapBytes bytes(length);
-    if (length != 0) {
-      std::memcpy(bytes.span().data, from, length);
-    }
-    BrickMap map;
-    REQUIRE(BrickMap::open(bytes.view(), &map) == Status::kDamaged);
-    const char* const text = BrickMap::validate(bytes.view());
-    REQUIRE(text != nullptr);
-    CHECK(std::strcmp(text, length < 4 ? "not a brick map" : "truncated") == 0);
-  }
-}
-
 TEST_CASE("deep map: an empty world, a full one, one voxel -> the bytes that the format's page says") {
   const struct {
     int block;  // its level; -1 none

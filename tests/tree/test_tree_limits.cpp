@@ -127,52 +127,6 @@ TEST_CASE("tree limits: maps of mixed bricks alone, of others alone and of one -
   }
 }
 
-TEST_CASE("tree limits: a map's header with a number beyond its range -> damaged, and told by validate") {
-  OwnedPool owned(4);
-  REQUIRE(owned.octree.insert({1, 1, 1}, 5) == Status::kOk);
-  REQUIRE(owned.octree.insert({5, 1, 1}, 6) == Status::kOk);
-  REQUIRE(owned.octree.insert({5, 2, 1}, 5) == Status::kOk);
-  const HeapBytes bytes = compact_of(owned.octree);
-  const OwnedMap made(open_or_throw(bytes), most_brick_map_bytes(4));
-  REQUIRE(made.status == Status::kOk);
-  std::uint8_t* const base = made.room.span().data;
-  const auto fault_with = [&](std::size_t at, std::uint8_t value) {
-    const std::uint8_t before = base[at];
-    base[at] = value;
-    BrickMap opened;
-    const Status status = BrickMap::open({base, made.size}, &opened);
-    const char* const text = BrickMap::validate({base, made.size});
-    base[at] = before;
-    CHECK(status == Status::kDamaged);
-    return std::string(text == nullptr ? "" : text);
-  };
-  int outside = 0;
-  int counts = 0;
-  for (std::size_t at = 4; at < kBrickMapHeaderBytes; ++at) {
-    for (int value = 0; value < 256; ++value) {
-      const std::uint8_t before = base[at];
-      base[at] = static_cast<std::uint8_t>(value);
-      BrickMap opened;
-      if (BrickMap::open({base, made.size}, &opened) == Status::kOk) {
-        // Whatever it says, it lies in its bytes and in the world.
-        for (int axis = 0; axis < 3; ++axis) {
-          CHECK(opened.box().low[axis] >= 0);
-          CHECK(opened.box().high[axis] <= 1 << (opened.level() - 2));
-        }
-        CHECK(opened.size_bytes() <= made.size);
-        base[at] = before;
-        continue;
-      }
-      base[at] = before;
-      const std::string text = fault_with(at, static_cast<std::uint8_t>(value));
-      outside += text == "box outside the world" ? 1 : 0;
-      counts += text == "size does not match the counts" ? 1 : 0;
-    }
-  }
-  CHECK(outside > 100);
-  CHECK(counts > 100);
-}
-
 // ---- shared trees
 
 HeapBytes shared_bytes(const CompactTree& compact) {
@@ -393,24 +347,6 @@ TEST_CASE(
     CHECK(room.bricks == (bricks <= 65000 ? bricks : 0));
     CHECK((room.nodes != 0) == (bricks <= 65000));
   }
-}
-
-TEST_CASE(
-    "tree limits: a map's bytes behind its directory -> looked at when it is validated, not when it is "
-    "opened") {
-  OwnedPool owned(2);
-  REQUIRE(owned.octree.insert({1, 2, 3}, 4) == Status::kOk);
-  const HeapBytes compact = compact_of(owned.octree);
-  OwnedMap made(open_or_throw(compact), most_brick_map_bytes(2));
-  REQUIRE(made.status == Status::kOk);
-  // One cell: two bytes, and six to the next multiple of eight.
-  for (std::size_t i = 2; i < 8; ++i) {
-    made.room.span()[kBrickMapHeaderBytes + i] = 0xFF;
-  }
-  const ConstBytes bytes(made.room.span().data, made.size);
-  BrickMap map;
-  CHECK(BrickMap::open(bytes, &map) == Status::kOk);
-  CHECK(BrickMap::validate(bytes) != nullptr);
 }
 
 }  // namespace
