@@ -42,47 +42,41 @@ struct Scene {
   std::unique_ptr<TextbookOctree> textbook;
 };
 
-Scene& scene(const std::string& name, tools::StructureKind structure, bool with_textbook) {
+Scene& scene(const std::string& name) {
   static Scene last;
-  const std::string key = name + "/" + std::to_string(static_cast<int>(structure));
-  if (last.name != key || (with_textbook && last.textbook == nullptr)) {
+  if (last.name != name) {
     last = {};
     tools::SceneArguments arguments;
     arguments.scene = name;
     const auto source = tools::open_scene(arguments);
-    tools::BuildOptions options;
-    options.structure = structure;
-    last.built = std::make_unique<tools::BuiltScene>(*source, options);
-    if (with_textbook) {
-      // In Morton order, so that nodes that are near in space are near in memory.
-      std::vector<std::uint64_t> codes;
-      source->stream(
-          [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
-            codes.push_back(morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                        static_cast<std::uint32_t>(z)));
-          },
-          {});
-      std::sort(codes.begin(), codes.end());
-      last.textbook = std::make_unique<TextbookOctree>(source->level());
-      for (const std::uint64_t code : codes) {
-        const Vec3i voxel = morton_voxel(code);
-        last.textbook->insert(voxel.x, voxel.y, voxel.z);
-      }
+    last.built = std::make_unique<tools::BuiltScene>(*source, tools::BuildOptions{});
+    // In Morton order, so that nodes that are near in space are near in memory.
+    std::vector<std::uint64_t> codes;
+    source->stream(
+        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+          codes.push_back(morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                      static_cast<std::uint32_t>(z)));
+        },
+        {});
+    std::sort(codes.begin(), codes.end());
+    last.textbook = std::make_unique<TextbookOctree>(source->level());
+    for (const std::uint64_t code : codes) {
+      const Vec3i voxel = morton_voxel(code);
+      last.textbook->insert(voxel.x, voxel.y, voxel.z);
     }
-    last.name = key;
+    last.name = name;
   }
   return last;
 }
 
 // From outside with the cube filling the picture, or along y; `frame` moves it a little.
-Camera camera_of(int level, bool orthographic, int direction_bits, int frame) {
+Camera camera_of(int level, bool orthographic, int frame) {
   const double side = 1 << level;
   const double drift = 0.003 * side * (frame % kFrames + 1);
   tools::ViewWishes view;
   view.width_px = kWidthPx;
   view.height_px = kHeightPx;
   view.orthographic = orthographic;
-  view.direction_bits = direction_bits;
   view.target = tools::Real3{side / 2 + drift / 3, side / 2, side / 2 + drift / 5};
   if (orthographic) {
     view.eye = tools::Real3{(*view.target)[0], -1, (*view.target)[2]};
@@ -93,7 +87,7 @@ Camera camera_of(int level, bool orthographic, int direction_bits, int frame) {
   return tools::frame_box(view, level, {}).camera;
 }
 
-std::uint64_t draw_core(const tools::BuiltScene& built, const Camera& camera, Width width,
+std::uint64_t draw_core(const tools::BuiltScene& built, const Camera& camera,
                         std::vector<std::uint8_t>& pixels) {
   Shading shading;
   const DepthRange range = depth_range(camera, built.bounds());
@@ -104,9 +98,7 @@ std::uint64_t draw_core(const tools::BuiltScene& built, const Camera& camera, Wi
   band.format = PixelFormat::kGray8;
   band.rows = kHeightPx;
   RenderCounts counts;
-  TraceOptions options;
-  options.width = width;
-  if (built.render_band(camera, shading, band, &counts, options) != Status::kOk) {
+  if (built.render_band(camera, shading, band, &counts, {}) != Status::kOk) {
     throw tools::InputError("the rays of this view are not taken");
   }
   return counts.hits;
@@ -137,7 +129,7 @@ std::uint64_t draw_textbook(const Scene& scene, const Camera& camera, std::vecto
 }
 
 void pair(benchmark::State& state, const std::string& name, bool orthographic) {
-  const Scene& both = scene(name, tools::StructureKind::kCompact, true);
+  const Scene& both = scene(name);
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(kWidthPx) * kHeightPx);
   double core_seconds = 0;
   double textbook_seconds = 0;
@@ -146,11 +138,11 @@ void pair(benchmark::State& state, const std::string& name, bool orthographic) {
   int frame = 0;
   for ([[maybe_unused]] const auto _ : state) {
     const auto draw_ours = [&] {
-      const Camera camera = camera_of(both.built->level(), orthographic, 0, frame);
-      hits = draw_core(*both.built, camera, Width::kAuto, pixels);
+      const Camera camera = camera_of(both.built->level(), orthographic, frame);
+      hits = draw_core(*both.built, camera, pixels);
     };
     const auto draw_theirs = [&] {
-      textbook_hits = draw_textbook(both, camera_of(both.built->level(), orthographic, 0, frame), pixels);
+      textbook_hits = draw_textbook(both, camera_of(both.built->level(), orthographic, frame), pixels);
     };
     const double seconds = seconds_of(draw_ours, kProgramClock);
     state.SetIterationTime(seconds);
@@ -167,26 +159,6 @@ void pair(benchmark::State& state, const std::string& name, bool orthographic) {
   state.counters["bytes"] = bytes;
   state.counters["textbook_bytes"] = textbook_bytes;
   state.counters["smaller"] = textbook_bytes / bytes;
-}
-
-void core(benchmark::State& state, const std::string& name, tools::StructureKind structure, bool orthographic,
-          Width width) {
-  const Scene& only = scene(name, structure, false);
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(kWidthPx) * kHeightPx);
-  // The fewest bits that the view takes leave too many for 32-bit products in large worlds.
-  const int direction_bits = width == Width::k32 ? 10 : 0;
-  std::uint64_t hits = 0;
-  int frame = 0;
-  for ([[maybe_unused]] const auto _ : state) {
-    const auto draw = [&] {
-      const Camera camera = camera_of(only.built->level(), orthographic, direction_bits, frame);
-      hits = draw_core(*only.built, camera, width, pixels);
-    };
-    state.SetIterationTime(seconds_of(draw, kProgramClock));
-    ++frame;
-  }
-  state.counters["hits"] = static_cast<double>(hits);
-  state.counters["bytes"] = static_cast<double>(only.built->tree_bytes());
 }
 
 template <class Function>
@@ -210,23 +182,6 @@ const bool kRegistered = [] {
   }
   add("pair/spheres,depth=8",
       [](benchmark::State& state, bool orthographic) { pair(state, "spheres,depth=8", orthographic); });
-  struct Row {
-    const char* label;
-    const char* scene;
-    tools::StructureKind structure;
-    Width width;
-  };
-  for (const Row& row : {
-           Row{"32 bits", "points:100000", tools::StructureKind::kCompact, Width::k32},
-           Row{"64 bits", "points:100000", tools::StructureKind::kCompact, Width::k64},
-           Row{"pool", "points:100000", tools::StructureKind::kPool, Width::kAuto},
-           Row{"dense grid", "points:1000,depth=7", tools::StructureKind::kDense, Width::kAuto},
-           Row{"compact tree", "points:1000,depth=7", tools::StructureKind::kCompact, Width::kAuto},
-       }) {
-    add(std::string(row.label) + "/" + row.scene, [=](benchmark::State& state, bool orthographic) {
-      core(state, row.scene, row.structure, orthographic, row.width);
-    });
-  }
   return true;
 }();
 

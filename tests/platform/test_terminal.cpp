@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -186,25 +185,6 @@ TEST_CASE("terminal input: an escape alone -> waits, and is the key when nothing
   input.settle(&events);
   CHECK(words_of(events) == down(Key::kEscape));
   CHECK_FALSE(input.waits());
-}
-
-TEST_CASE("terminal input: random bytes -> no crash, and it comes to rest") {
-  const unsigned seed = std::random_device{}();
-  CAPTURE(seed);
-  std::mt19937 random(seed);
-  TerminalInput input;
-  const std::string likely = "\x1b[<;0123456789Mm~AO\xC3\xE2";
-  std::vector<Event> events;
-  for (int round = 0; round < 20000; ++round) {
-    std::string bytes;
-    for (auto i = random() % 12; i > 0; --i) {
-      bytes += random() % 4 == 0 ? static_cast<char>(random()) : likely[random() % likely.size()];
-    }
-    input.take(bytes, &events);
-  }
-  input.settle(&events);
-  CHECK_FALSE(input.waits());
-  CHECK_FALSE(events.empty());
 }
 
 TEST_CASE("terminal cells: only cells that changed are sent, with the colours that the terminal has") {

@@ -11,10 +11,9 @@
 #include "readers/source.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
+#include "support/scene_under_test.h"
 #include "thimble/trace/ray.h"
-#include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
-#include "thimble/tree/octree.h"
 
 namespace {
 
@@ -125,25 +124,23 @@ namespace {
 class Balls {
  public:
   Balls() {
-    std::vector<std::uint8_t> pool(1U << 20);
-    Octree tree;
-    REQUIRE(Octree::make(kLevel, Bytes(pool.data(), pool.size()), &tree) == Status::kOk);
+    tests::OwnedPool pool(kLevel);
     for (const Vec3i& center : {Vec3i{16, 14, 12}, Vec3i{36, 30, 26}, Vec3i{48, 20, 44}}) {
       for (int i = 0; i < 17 * 17 * 17; ++i) {
         const Vec3i off{i % 17 - 8, i / 17 % 17 - 8, i / 289 - 8};
         if (off.x * off.x + off.y * off.y + off.z * off.z <= 64) {
           const Vec3i at{center.x + off.x, center.y + off.y, center.z + off.z};
-          REQUIRE(tree.insert(at) == Status::kOk);
+          REQUIRE(pool.octree.insert(at) == Status::kOk);
         }
       }
     }
-    bytes_.resize(compact_bytes(compact_shape(tree)));
-    REQUIRE(CompactTree::make(tree, Bytes(bytes_.data(), bytes_.size()), &tree_) == Status::kOk);
+    bytes_ = tests::compact_of(pool.octree);
+    tree_ = tests::open_or_throw(bytes_);
   }
   const CompactTree& tree() const { return tree_; }
 
  private:
-  std::vector<std::uint8_t> bytes_;
+  tests::HeapBytes bytes_{0};
   CompactTree tree_;
 };
 
@@ -232,17 +229,15 @@ TEST_CASE("framing: front looks along +y, left along +x, top down with the front
 TEST_CASE("framing: best, iso -> the side with the many colours, from the front where sides are alike") {
   const auto painted = [](int axis, bool high, tools::NamedView view = tools::NamedView::kBest) {
     // A cube whose one side is a checkerboard of materials.
-    std::vector<std::uint8_t> pool(1U << 20);
-    Octree octree;
-    REQUIRE(Octree::make(5, Bytes(pool.data(), pool.size()), &octree) == Status::kOk);
+    tests::OwnedPool pool(5);
+    Octree& octree = pool.octree;
     for (int i = 0; i < 16 * 16 * 16; ++i) {
       const Vec3i at{i % 16 + 8, i / 16 % 16 + 8, i / 256 + 8};
       const bool on_side = axis >= 0 && at[axis] == (high ? 23 : 8);
       REQUIRE(octree.insert(at, static_cast<std::uint8_t>(on_side ? 1 + i % 200 : 0)) == Status::kOk);
     }
-    std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
-    CompactTree tree;
-    REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
+    const tests::HeapBytes bytes = tests::compact_of(octree);
+    const CompactTree tree = tests::open_or_throw(bytes);
     return tools::best_angles(tools::shape_of(tree), view);
   };
   const auto plain = painted(-1, false);
@@ -258,10 +253,9 @@ TEST_CASE("framing: best, iso -> the side with the many colours, from the front 
 }
 
 TEST_CASE("framing: best of one material -> from the front, though the back has more faces") {
-  std::vector<std::uint8_t> pool(1U << 20);
   for (const std::uint8_t of_back : {std::uint8_t{0}, std::uint8_t{1}}) {
-    Octree octree;
-    REQUIRE(Octree::make(5, Bytes(pool.data(), pool.size()), &octree) == Status::kOk);
+    tests::OwnedPool pool(5);
+    Octree& octree = pool.octree;
     for (int i = 0; i < 16 * 16; ++i) {
       for (int y = 8; y < 16; ++y) {
         REQUIRE(octree.insert({8 + i % 16, y, 8 + i / 16}, 0) == Status::kOk);
@@ -271,9 +265,8 @@ TEST_CASE("framing: best of one material -> from the front, though the back has 
         REQUIRE(octree.insert({8 + i % 16, y, 8 + i / 16}, of_back) == Status::kOk);
       }
     }
-    std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
-    CompactTree tree;
-    REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
+    const tests::HeapBytes bytes = tests::compact_of(octree);
+    const CompactTree tree = tests::open_or_throw(bytes);
     CHECK((std::abs(tools::best_angles(tools::shape_of(tree)).turn) > 90) == (of_back != 0));
   }
 }
@@ -282,16 +275,14 @@ TEST_CASE(
     "framing: round -> the demonstration's whole turn has everything in the picture, and no picture is "
     "small") {
   // A bar with a mast at its end, which is far from the middle of its box.
-  std::vector<std::uint8_t> pool(1U << 20);
-  Octree octree;
-  REQUIRE(Octree::make(5, Bytes(pool.data(), pool.size()), &octree) == Status::kOk);
+  tests::OwnedPool pool(5);
+  Octree& octree = pool.octree;
   for (int i = 2; i < 30; ++i) {
     REQUIRE(octree.insert({i, 20, 4}, 0) == Status::kOk);
     REQUIRE(octree.insert({2, 20, 2 + i / 2}, 0) == Status::kOk);
   }
-  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
-  CompactTree tree;
-  REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
+  const tests::HeapBytes bytes = tests::compact_of(octree);
+  const CompactTree tree = tests::open_or_throw(bytes);
   const tools::SceneShape shape = tools::shape_of(tree);
   tools::SceneArguments arguments;
   arguments.scene = "points:1,depth=5";
@@ -351,15 +342,13 @@ TEST_CASE("framing: a turn of pictures -> one eye's distance, evenly round, ever
 
 TEST_CASE("framing: nothing occupied, one voxel, a whole world -> a camera all the same") {
   for (const int voxels : {0, 1, 64}) {
-    std::vector<std::uint8_t> pool(1U << 16);
-    Octree octree;
-    REQUIRE(Octree::make(2, Bytes(pool.data(), pool.size()), &octree) == Status::kOk);
+    tests::OwnedPool pool(2);
+    Octree& octree = pool.octree;
     for (int i = 0; i < voxels; ++i) {
       REQUIRE(octree.insert({i % 4, i / 4 % 4, i / 16}) == Status::kOk);
     }
-    std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(octree)));
-    CompactTree tree;
-    REQUIRE(CompactTree::make(octree, Bytes(bytes.data(), bytes.size()), &tree) == Status::kOk);
+    const tests::HeapBytes bytes = tests::compact_of(octree);
+    const CompactTree tree = tests::open_or_throw(bytes);
     for (const tools::NamedView side : kSides) {
       for (const bool orthographic : {false, true}) {
         tools::ViewWishes wishes;

@@ -316,13 +316,6 @@ TrialWorld::TrialWorld(const std::string& name) : name_(name) {
   box_list_seconds_ = make_lists(tree_, wide::ListKind::kBoxes, &box_list_bytes_, &box_lists_);
 }
 
-std::vector<std::string> trial_view_names() {
-  return {
-      "outside",      "behind",        "far",           "near",   "close",  "closest",  "inside",
-      "wide",         "grazing",       "along",         "tele 5", "tele 2", "parallel", "parallel oblique",
-      "parallel far", "parallel part", "parallel close"};
-}
-
 std::vector<TrialView> trial_views(const CompactTree& tree, std::int32_t width_px, std::int32_t height_px) {
   std::vector<TrialView> views;
   const VoxelBox& box = tree.bounds();

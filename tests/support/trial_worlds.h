@@ -64,9 +64,6 @@ struct TrialView {
   Camera camera;
 };
 
-/// All that `trial_views` knows.
-std::vector<std::string> trial_view_names();
-
 /// Cameras from outside and inside, near and far, wide and narrow, along axes and grazing, perspective and
 /// parallel: those of them that the core takes.
 std::vector<TrialView> trial_views(const CompactTree& tree, std::int32_t width_px, std::int32_t height_px);

@@ -2,7 +2,6 @@
 //
 //   thimble_particle_table                     all tables, some minutes
 //   thimble_particle_table speed quality       some of: speed quality energy
-//   thimble_particle_table --csv DIR ...       each table also as DIR/NAME.csv
 //
 // Times are processor time of the stepping alone. Engines that stand in one table are run by turns, a few
 // steps each, so that the load of the machine falls on all.
@@ -11,10 +10,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -44,15 +41,14 @@ std::string number(double value, int digits = 3) {
   return text.str();
 }
 
-// Rows of text under a heading; printed aligned, and written as CSV where asked.
+// Rows of text under a heading, printed aligned.
 class Table {
  public:
-  Table(std::string name, const std::string& title, std::vector<std::string> columns)
-      : name_(std::move(name)), rows_{std::move(columns)} {
+  Table(const std::string& title, std::vector<std::string> columns) : rows_{std::move(columns)} {
     std::cout << '\n' << title << "\n\n";
   }
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-  void print(const std::string& csv_folder) const {
+  void print() const {
     std::vector<std::size_t> widths(rows_.front().size(), 0);
     for (const auto& row : rows_) {
       for (std::size_t i = 0; i < row.size(); ++i) {
@@ -73,22 +69,9 @@ class Table {
       }
     }
     std::cout.flush();
-    if (!csv_folder.empty()) {
-      std::ofstream file(csv_folder + "/" + name_ + ".csv");
-      for (const auto& row : rows_) {
-        for (std::size_t i = 0; i < row.size(); ++i) {
-          file << (i == 0 ? "" : ",") << row[i];
-        }
-        file << '\n';
-      }
-      if (!file.flush()) {
-        throw std::runtime_error(csv_folder + "/" + name_ + ".csv cannot be written");
-      }
-    }
   }
 
  private:
-  std::string name_;
   std::vector<std::vector<std::string>> rows_;
 };
 
@@ -127,9 +110,8 @@ std::uint64_t count_kinks(const Scene& scene, Engine& engine, int steps) {
   return count;
 }
 
-void speed(const std::string& csv) {
+void speed() {
   Table table(
-      "speed",
       "Step time side by side (the same balls, by turns). Collisions: as the engine counts them, and as "
       "changes of "
       "balls' velocities; the last row of each scene is round balls in double precision with 64 substeps",
@@ -160,7 +142,7 @@ void speed(const std::string& csv) {
                  number(true_collisions), "1", number(true_changes), "1"});
     }
   }
-  table.print(csv);
+  table.print();
 }
 
 // --- Quality
@@ -182,9 +164,8 @@ std::size_t through_the_wall(const std::string& engine, double speed) {
   return static_cast<std::size_t>(std::count(through.begin(), through.end(), true));
 }
 
-void quality(const std::string& csv) {
+void quality() {
   Table table(
-      "quality",
       "Quality. Gas: 693 balls, restitution 1, 10,000 steps. Wall: one pixel, 40 balls. Heap: 693 and 10,000 "
       "balls fall (gravity 0.1, restitution 0.8)",
       {"engine", "balls", "gas energy end / start", "greatest overlap px",
@@ -231,7 +212,7 @@ void quality(const std::string& csv) {
                  number(greatest_overlap(falling, state)), number(us), std::to_string(bytes)});
     }
   }
-  table.print(csv);
+  table.print();
 }
 
 // --- Energy
@@ -247,13 +228,13 @@ double energy_under_gravity(const Scene& scene, std::vector<BallState> balls) {
   return kinetic_energy(balls) + 2 * scene.gravity * heights;
 }
 
-void energy(const std::string& csv) {
+void energy() {
   constexpr std::array<int, 4> kMarks{0, 1000, 10000, 100000};
   constexpr int kEvery = 10;
-  Table table("energy",
-              "Energy of speed and height, against the start, after so many steps: 100 balls, gravity 0.1. "
-              "Greatest: of every tenth step",
-              {"bounciness", "engine", "0", "1000", "10000", "100000", "greatest"});
+  Table table(
+      "Energy of speed and height, against the start, after so many steps: 100 balls, gravity 0.1. "
+      "Greatest: of every tenth step",
+      {"bounciness", "engine", "0", "1000", "10000", "100000", "greatest"});
   for (const double bounciness : {0.5, 0.8, 0.95, 1.0}) {
     Scene scene = make_scene("falling", 100);
     scene.restitution = bounciness;
@@ -281,20 +262,12 @@ void energy(const std::string& csv) {
       table.add(row);
     }
   }
-  table.print(csv);
+  table.print();
 }
 
 int main_of(const std::vector<std::string>& arguments) {
-  std::string csv;
-  std::vector<std::string> wanted;
-  for (std::size_t i = 1; i < arguments.size(); ++i) {
-    if (arguments[i] == "--csv" && i + 1 < arguments.size()) {
-      csv = arguments[++i];
-    } else {
-      wanted.push_back(arguments[i]);
-    }
-  }
-  constexpr std::array<std::pair<const char*, void (*)(const std::string& csv)>, 3> kTables{
+  const std::vector<std::string> wanted(arguments.begin() + 1, arguments.end());
+  constexpr std::array<std::pair<const char*, void (*)()>, 3> kTables{
       {{"speed", speed}, {"quality", quality}, {"energy", energy}}};
   for (const std::string& name : wanted) {
     if (std::none_of(kTables.begin(), kTables.end(),
@@ -305,7 +278,7 @@ int main_of(const std::vector<std::string>& arguments) {
   }
   for (const auto& [name, table] : kTables) {
     if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end()) {
-      table(csv);
+      table();
     }
   }
   return 0;

@@ -2,7 +2,6 @@
 // by ray, on many worlds and from many cameras.
 //
 //   thimble_engine_table                          all rows, some minutes
-//   thimble_engine_table --filter cluster         those with the word in world or camera
 //   thimble_engine_table --most 1000000 --csv F   clouds of at most so many points; for machines
 //   thimble_engine_table FILE...                  these instead, at two depths (or that behind an @), six views
 //   thimble_engine_table --world city:10 --save F the world alone, as a file that any thimble reads
@@ -304,7 +303,6 @@ int run(int count, char** words) {
   CLI::App app("The wide renderer's choice of an engine, judged by time");
   int frames = 5;
   std::uint64_t most_points = 10'000'000;
-  std::string filter;
   std::string csv_path;
   std::vector<std::string> worlds;
   std::vector<std::string> files;
@@ -313,7 +311,6 @@ int run(int count, char** words) {
   app.add_option("--frames", frames, "frames of each engine and view; the median counts")
       ->check(CLI::Range(1, 1000));
   app.add_option("--most", most_points, "points of the largest cloud");
-  app.add_option("--filter", filter, "only rows that hold this text in `world camera`");
   app.add_option("--world", worlds, "these worlds (tests/support/trial_worlds.h) or scenes instead");
   app.add_option("--csv", csv_path, "write the rows there too");
   app.add_option("--save", save_path, "write the tree of the one --world there (.oct), and draw nothing");
@@ -336,14 +333,6 @@ int run(int count, char** words) {
   }
   for (const std::string& name : worlds) {
     const bool is_large = std::find(large.begin(), large.end(), name) != large.end();
-    const auto wanted = [&](const std::string& view) {
-      return (short_name(name) + " " + view).find(filter) != std::string::npos &&
-             (!is_large || is_one_of_six(view));
-    };
-    const std::vector<std::string> all_views = tests::trial_view_names();
-    if (std::none_of(all_views.begin(), all_views.end(), wanted)) {
-      continue;
-    }
     const tests::TrialWorld world(name);
     if (!save_path.empty()) {
       save(world.tree(), save_path);
@@ -357,15 +346,11 @@ int run(int count, char** words) {
                 world.box_lists().entries().size, static_cast<double>(world.box_list_bytes()) / 1e6,
                 world.box_list_seconds());
     for (const tests::TrialView& view : tests::trial_views(world.tree(), kWidthPx, kHeightPx)) {
-      if (wanted(view.name)) {
+      if (!is_large || is_one_of_six(view.name)) {
         rows.push_back(table.draw(world, view, frames));
         print(rows.back());
       }
     }
-  }
-  if (rows.empty()) {
-    std::printf("no row holds \"%s\"\n", filter.c_str());
-    return 1;
   }
   print_worst("auto over the better order", rows, &Row::choice);
   print_worst("auto over the core", rows, &Row::against_core);

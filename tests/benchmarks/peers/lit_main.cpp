@@ -96,17 +96,14 @@ std::string short_name(const std::string& path) {
 
 int run(int count, char** words) {
   std::vector<std::string> names;
-  std::string csv_path;
   int frames = 5;
   CLI::App app("Lit pictures by the core and by streams of rays");
   app.add_option("SCENES", names, "files and generators, @DEPTH behind them")->required();
   app.add_option("--frames", frames, "by turns, of each")->check(CLI::Range(1, 1000));
-  app.add_option("--csv", csv_path, "the table as CSV");
   CLI11_PARSE(app, count, words);
 
   std::printf("%-30s %9s %9s %6s %9s %7s %9s %9s  %s\n", "scene", "core, ms", "ours, ms", "ratio",
               "2 threads", "map, ms", "MB", "different", "effects");
-  std::string csv = "scene,core_ms,ours_ms,ratio,two_threads_gain,map_ms,bytes,different\n";
   for (const std::string& name : names) {
     LitTrial one(name, 1);
     LitTrial two(name, 2);
@@ -140,12 +137,7 @@ int run(int count, char** words) {
                 static_cast<double>(one.bytes()) / 1e6, different,
                 tools::effects_text(one.effects()).c_str());
     std::fflush(stdout);
-    csv += short_name(name) + "," + std::to_string(median(core) * 1e3) + "," +
-           std::to_string(median(ours) * 1e3) + "," + std::to_string(ratio) + "," + std::to_string(gain) +
-           "," + std::to_string(one.seconds() * 1e3) + "," + std::to_string(one.bytes()) + "," +
-           std::to_string(different) + "\n";
   }
-  write_text(csv_path, csv);
   return 0;
 }
 

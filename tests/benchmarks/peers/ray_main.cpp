@@ -214,13 +214,12 @@ struct SetBack {
 };
 
 void measure(const std::string& name, const tools::BuiltScene& built, const wide::RayMap& map,
-             const std::vector<std::unique_ptr<Peer>>& peers, const Kind& kind, int turns, int most_sets,
-             std::string* csv) {
+             const std::vector<std::unique_ptr<Peer>>& peers, const Kind& kind, int turns) {
   if (kind.rays.empty()) {
     return;
   }
   const SetBack after;
-  const int sets = std::min(most_sets, wide::instruction_set_count());
+  const int sets = wide::instruction_set_count();
   Answers expected(kind);
   Answers found(kind);
   double core = 1e30;
@@ -250,9 +249,6 @@ void measure(const std::string& name, const tools::BuiltScene& built, const wide
     const double rate = static_cast<double>(kind.rays.size()) / seconds / 1e6;
     std::printf("%-22s %-10s %-17s %9zu %9.2f %8.2f %7zu\n", name.c_str(), kind.name.c_str(), engine.c_str(),
                 kind.rays.size(), rate, core / seconds, mistakes);
-    *csv += "\"" + name + "\"," + kind.name + "," + engine + "," + std::to_string(kind.rays.size()) + "," +
-            std::to_string(rate) + "," + std::to_string(core / seconds) + "," + std::to_string(mistakes) +
-            "\n";
   };
   put("core", core, 0);
   for (int set = 0; set < sets; ++set) {
@@ -267,21 +263,15 @@ void measure(const std::string& name, const tools::BuiltScene& built, const wide
 
 int run(int count, char** words) {
   std::vector<std::string> scenes;
-  std::string csv_path;
   int turns = 3;
-  int most_sets = 100;
   bool has_peers = false;
   CLI::App app("Rays a second by the map and by the core");
   app.add_option("SCENE@DEPTH", scenes, "files or generators")->required();
   app.add_option("--turns", turns, "of each way of tracing")->check(CLI::Range(1, 100));
-  app.add_option("--sets", most_sets, "only so many instruction sets, the best first")
-      ->check(CLI::Range(1, 100));
   app.add_flag("--peers", has_peers, "beside Embree and NanoVDB, in a nearer view");
-  app.add_option("--csv", csv_path, "the table as CSV");
   CLI11_PARSE(app, count, words);
   std::printf("%-22s %-10s %-17s %9s %9s %8s %7s\n", "scene", "rays", "engine", "number", "Mrays/s",
               "to core", "wrong");
-  std::string csv = "scene,kind,engine,rays,mega_rays_a_second,to_core,wrong\n";
   for (const std::string& scene : scenes) {
     tools::SceneArguments arguments;
     const std::size_t at = scene.rfind('@');
@@ -318,10 +308,9 @@ int run(int count, char** words) {
     }
     const Camera camera = tools::frame_box(view, built.level(), built.bounds()).camera;
     for (const Kind& kind : make_rays(built, camera)) {
-      measure(name, built, map, peers, kind, turns, most_sets, &csv);
+      measure(name, built, map, peers, kind, turns);
     }
   }
-  write_text(csv_path, csv);
   return 0;
 }
 
