@@ -320,45 +320,53 @@ Status DeepWorld::update_cell(EditedWorld* world, const Vec3i& voxel) {
 
 // ---- making
 
+// Depth first; nodes of a level come in the order in which they stand, so that no directory is read that may be damaged.
 void DeepWorld::copy_nodes(const CompactTree& tree, EditedWorld* world) {
-  struct OpenNode {
-    uint32_t child;
-    uint32_t place;
-    uint8_t rest;
-  } stack[kMaxDeepMapLevel + 1];
-  uint32_t node = 0;
+  struct Level {
+    uint32_t node;  // the next one's number, and that of the next solid block
+    uint32_t block;
+    uint32_t place;  // of the next child of the open node, and children that there are left
+    uint32_t rest;
+  } levels[kMaxDeepMapLevel + 1];
+  uint32_t next = 0;
+  uint32_t blocks = 0;
+  uint32_t end = 1;
+  for (int level = tree.level(); level >= 1; --level) {
+    levels[level] = {next, blocks, 0, 0};
+    uint32_t children = 0;
+    for (; next < end; ++next) {
+      children += bits::popcount8(tree.mask(next));
+      blocks += tree.mask(next) == 0 ? 1U : 0U;
+    }
+    end += level > 1 ? children : 0;
+  }
+  uint32_t voxel = tree.node_count();
   uint32_t place = 0;
   for (int level = tree.level();;) {
-    const uint8_t mask = tree.mask(node);
-    stack[level] = {0, 0, 0};
-    fill_group(world, place, 1, level + 1, 0);
+    Level& here = levels[level];
+    const uint8_t mask = tree.mask(here.node++);
+    const uint8_t material = mask == 0 ? tree.material_of_block(here.block++) : uint8_t{0};
+    fill_group(world, place, 1, level + 1, material);
     world->masks_[place] = mask;
     if (level == 1) {
       // Behind those of its brick that were there before.
       count_group(world, place);
-      if (mask == 0) {
-        change_blocks(world, place, 0, 1, tree.block_material(node));
-      }
-      const uint32_t first = tree.first_child(node);
+      change_blocks(world, place, 0, mask == 0 ? 1 : 0, material);
       for (uint32_t i = 0; i < bits::popcount8(mask); ++i) {
-        change_voxels(world, place, i, 0, 1, tree.voxel_material(first + i));
+        change_voxels(world, place, i, 0, 1, tree.voxel_material(voxel++));
       }
-    } else if (mask == 0) {
-      store(world->block_ranks_, place, tree.block_material(node));
-    } else {
-      const uint32_t group = take_group(world, level - 1);
-      store(world->ranks_, place, group - 1);
-      stack[level] = {tree.first_child(node), group, mask};
+    } else if (mask != 0) {
+      here.place = take_group(world, level - 1);
+      here.rest = bits::popcount8(mask);
+      store(world->ranks_, place, here.place - 1);
     }
-    while (stack[level].rest == 0) {
+    while (levels[level].rest == 0) {
       if (++level > tree.level()) {
         return;
       }
     }
-    OpenNode& open = stack[level];
-    open.rest = static_cast<uint8_t>(open.rest & (open.rest - 1U));
-    node = open.child++;
-    place = open.place++;
+    --levels[level].rest;
+    place = levels[level].place++;
     --level;
   }
 }

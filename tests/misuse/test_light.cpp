@@ -9,6 +9,7 @@
 #include "thimble/light/render.h"
 #include "thimble/light/scene.h"
 #include "thimble/light/water.h"
+#include "thimble/tree/edited_world.h"
 
 namespace {
 
@@ -214,6 +215,8 @@ TEST_CASE("misuse: light by maps, up to level 8 and beyond -> refused, or drawn 
     }
     if (status == Status::kOk) {
       (void)sun.prove(odd.any<std::uint32_t>());
+      EditedWorld world;  // another one, or none
+      (void)sun.follow(world, odd.any<std::uint32_t>());
     }
     const Camera camera = is_deep && odd.one_in(2) ? deep.near(odd) : odd_camera(odd, tree.level());
     const Shading shading = odd_shading(odd, Span<const Rgb8>(palette));

@@ -316,6 +316,49 @@ TEST_CASE("misuse: damaged compact, shared and brick bytes -> opened or refused,
   });
 }
 
+/// A world of any room, edited with anything; of a damaged tree, too. What it then holds can be packed.
+void edit_at_random(OddValues& odd, const CompactTree& tree) {
+  EditRoom room = EditedWorld::room_of(tree);
+  for (std::uint32_t* const part : {&room.nodes, &room.leaves, &room.bricks, &room.pages}) {
+    *part += odd.one_in(20) ? odd.any<std::uint32_t>() : static_cast<std::uint32_t>(odd.between_32(0, 40));
+  }
+  const std::size_t wanted = edited_world_bytes(tree.level(), room);
+  if (wanted > std::size_t{1} << 24) {
+    return;
+  }
+  ExactBytes bytes(odd.one_in(8) ? odd_size(odd, wanted) : wanted);
+  EditedWorld world;
+  if (EditedWorld::make(tree, room, bytes.bytes(), &world) != Status::kOk) {
+    CHECK(world.empty());
+    return;
+  }
+  ExactBytes entries(odd.bits() % 3000);
+  EditJournal journal(entries.bytes());
+  const auto number = [&] {
+    return odd.one_in(9) ? odd.any<std::int32_t>() : odd.between_32(0, (1 << tree.level()) - 1);
+  };
+  for (int edit = 0; edit < 12; ++edit) {
+    const Vec3i at{number(), number(), number()};
+    const auto side = [&] { return odd.one_in(9) ? odd.any<std::int32_t>() : odd.between_32(-1, 7); };
+    const auto plus = [](std::int32_t a, std::int32_t b) {
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+    };
+    const Vec3i to{plus(at.x, side()), plus(at.y, 5), plus(at.z, 3)};
+    (void)world.set(at, odd.any<std::uint8_t>());
+    (void)world.clear({number(), number(), number()});
+    (void)world.edit({at, to}, odd.one_in(2) ? EditShape::kBox : EditShape::kBall, odd.between_32(-2, 257),
+                     &journal);
+    if (odd.one_in(3)) {
+      (void)world.undo(&journal);
+    }
+  }
+  std::size_t size = 0;
+  REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
+  ExactBytes packed(size);
+  REQUIRE(world.pack(packed.bytes()) == Status::kOk);
+  CHECK(CompactTree::validate(packed.bytes()) == nullptr);
+}
+
 TEST_CASE(
     "misuse: maps of level 9 and 10 of sound and damaged trees -> made, opened or refused, in their bytes") {
   int made_of_damaged = 0;
@@ -345,7 +388,11 @@ TEST_CASE(
 
     const ExactBytes bad_tree = damaged(odd, world.compact_bytes.bytes());
     CompactTree opened_tree;
+    if (odd.one_in(3)) {
+      edit_at_random(odd, world.compact);
+    }
     if (CompactTree::open(bad_tree.bytes(), &opened_tree) == Status::kOk) {
+      edit_at_random(odd, opened_tree);
       const std::size_t most = most_brick_map_bytes(opened_tree);
       ExactBytes bricks(odd_size(odd, most));
       const Status of_damaged = BrickMap::make(opened_tree, bricks.bytes(), &map);
