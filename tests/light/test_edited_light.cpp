@@ -2,6 +2,7 @@
 // of a tree built anew, whatever was edited since, and however little of it was proven again.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -13,7 +14,7 @@
 #include "thimble/light/map_render.h"
 #include "thimble/tree/edited_world.h"
 
-namespace thimble::tests {
+namespace thimble::tests::edited_light {
 namespace {
 
 constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
@@ -162,4 +163,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace thimble::tests
+}  // namespace thimble::tests::edited_light
