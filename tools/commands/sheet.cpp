@@ -154,27 +154,17 @@ std::string cut_to(const std::string& text, std::size_t columns) {
 
 void draw_tile(const Tile& tile, std::int32_t side_px, std::int32_t x, std::int32_t y, host::Canvas* canvas) {
   const auto columns = static_cast<std::size_t>(side_px / host::kGlyphWidthPx);
-  const SmallPicture& picture = tile.picture;
-  if (picture.error.empty()) {
-    const std::uint8_t* pixel = picture.image.pixels.data();
-    for (std::int32_t row = 0; row < side_px; ++row) {
-      for (std::int32_t column = 0; column < side_px; ++column, pixel += 3) {
-        canvas->row(y + row)[x + column] = {pixel[0], pixel[1], pixel[2]};
-      }
-    }
-  } else {
+  const std::uint8_t* rgb = tile.picture.image.pixels.data();
+  host::Canvas why;  // at whose edges the sentence is cut off
+  if (!tile.picture.error.empty()) {
     constexpr std::int32_t kMarginPx = 2 * host::kGlyphWidthPx;
-    canvas->fill(x, y, side_px, side_px, kNoPicture);
-    std::string why = host::folded(printable(picture.error), columns - 4);
-    const auto most_lines = static_cast<std::size_t>((side_px - 2 * kMarginPx) / host::kGlyphHeightPx);
-    for (std::size_t line = 0, end = 0; line < most_lines && end != std::string::npos; ++line) {
-      end = why.find('\n', line == 0 ? 0 : end + 1);
-      if (line + 1 == most_lines && end != std::string::npos) {
-        why.resize(end);
-      }
-    }
-    host::draw_text(canvas, x + kMarginPx, y + kMarginPx, 1, kWarning, why);
+    why.resize(side_px, side_px);
+    why.fill(0, 0, side_px, side_px, kNoPicture);
+    host::draw_text(&why, kMarginPx, kMarginPx, 1, kWarning,
+                    host::folded(printable(tile.picture.error), columns - 4));
+    rgb = reinterpret_cast<const std::uint8_t*>(why.pixels.data());
   }
+  host::draw_picture(canvas, {x, y, side_px, side_px, 1}, {rgb, side_px, side_px}, {});
   const auto write = [&](int line, Rgb8 color, const std::string& text) {
     host::draw_text(canvas, x, y + side_px + 4 + line * host::kGlyphHeightPx, 1, color, text);
   };
