@@ -281,8 +281,9 @@ TEST_CASE(
   CHECK(read_text(folder.path("l.svg")).find("bounces 8") != std::string::npos);
 
   const auto rays_drawn = [&](const std::string& bounces) {
-    check_done({"render", path, "--size", "24x18", "--shade", "color", "--effects", "auto", "--quiet",
-                "--bounces", bounces, "-o", folder.path("l.ppm"), "--stats", folder.path("l.json")});
+    check_done(Words{"render", "--view", "paper", "--fov", "60"} + view +
+               Words{"--effects", "auto", "--bounces", bounces, "--quiet", "-o", folder.path("l.ppm"),
+                     "--stats", folder.path("l.json")});
     return Json::parse(read_text(folder.path("l.json")))["rays"];
   };
   std::map<std::string, int> groups;
