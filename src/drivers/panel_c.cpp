@@ -9,7 +9,7 @@ namespace {
 template <class Panel, class Handle, class... Arguments>
 bool begin_panel(Handle* handle, const thimble_panel_bus_t* bus, int32_t quarter_turns,
                  const Arguments&... arguments) {
-  static_assert(sizeof(Panel) <= sizeof(Handle) && alignof(Panel) <= alignof(Handle));
+  static_assert(sizeof(Panel) <= sizeof(Handle));
   static_assert(__is_trivially_copyable(Panel), "C copies handles as bytes");
   if (handle == nullptr || bus == nullptr || bus->command == nullptr || bus->data == nullptr ||
       bus->wait_ms == nullptr || quarter_turns < 0 || quarter_turns > 3) {

@@ -71,8 +71,7 @@ list=faults
 for app in $apps; do
   list="$list;$app"
 done
-scene=$(sh "$here/scene.sh" "$board")
-if ! FRAMES=4 sh platform/build.sh "$board" "$list" "$scene" >"$work/build.log" 2>&1; then
+if ! FRAMES=4 sh platform/build.sh "$board" "$list" demo >"$work/build.log" 2>&1; then
   cat "$work/build.log"
   fail all "does not build"
   cat "$results"

@@ -68,7 +68,7 @@ stop() {
   wait $machine 2>/dev/null || true
   machine=
 }
-scene=$(sh tests/boards/scene.sh "$board")
+scene=demo
 effects=$(fact DEMO_EFFECTS)
 effects=${effects:-none}
 

@@ -15,7 +15,7 @@ value() {
   sed -n "s/^$2,\([0-9]*\).*/\1/p" "$1/$board/bench.log"
 }
 for board in ${*:-lm3s6965evb microbit}; do
-  scene=$(sh tests/boards/scene.sh "$board")
+  scene=demo
   all=build/formats
   THIMBLE_FIRMWARE=$all PANEL_FORMATS=0x3fe0 sh platform/build.sh "$board" 'formats;bench' "$scene" >/dev/null
   log=$all/$board/formats.log

@@ -1,12 +1,15 @@
 #!/bin/sh
-# What `thimble image` writes shows, frame for frame, what `make firmware SCENE=` builds: microbit and sifive_e tell the CRCs of
-# three frames, lm3s6965evb, pico and gba send their picture over the UART. A scene that is damaged, cut off or not there is
-# said so, and the built-in one shown.      images.sh BOARD, after board.sh has built it
+# What `thimble image` writes shows, frame for frame, what `make firmware SCENE=` builds, of each application that has a program
+# for the board: `demo` tells the CRCs of three frames, or sends its picture over the UART, `dig` the CRC of its third, `water`
+# what it drew and its water. A scene that is damaged, cut off or not there is said so, and the built-in one shown.
+#   images.sh BOARD [--write]      after board.sh has built it; --write, with LONG=1: its rows of tests/golden/image_frames.csv anew
 set -eu
 cd "$(dirname "$0")/../.."
 export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
 board=$1
+golden=tests/golden/image_frames.csv
 . platform/board_facts.sh
+. tests/boards/blocks.sh
 thimble=build/release/thimble
 work=$PWD/$THIMBLE_FIRMWARE/images/$board
 ending=elf
@@ -22,86 +25,125 @@ fail() {
   printf '%-18s %-10s FAILED: %s\n' "$board" images "$1"
   failed=1
 }
-# show NAME: what the emulated image of that name shows: CRCs of frames, or a picture; and what it says, in NAME.log.
+# show NAME APP: what the emulated image shows, in NAME.shown: CRCs, or a picture; and what it says, in NAME.log.
 show() {
-  if [ "$(fact DISPLAY)" = none ]; then
+  if [ "$2" != demo ]; then
+    timeout "${THIMBLE_EMULATOR_LIMIT_S:-240}" sh platform/emulate.sh "$board" "$2" </dev/null >"$work/$1.log" 2>/dev/null || fail "$2: $1 ends with status $?"
+    grep -a '^last crc\|^frames ' "$work/$1.log" | tr -d '\r' >"$work/$1.shown" || fail "$2: $1 tells of no frame"
+  elif [ "$(fact DISPLAY)" = none ]; then
     CRC=1 timeout 120 sh platform/emulate.sh "$board" demo </dev/null >"$work/$1.log" 2>/dev/null || fail "$1 ends with status $?"
     grep '^frame' "$work/$1.log" >"$work/$1.shown" || fail "$1 tells of no frame"
-  elif ! SHOT=$work/$1.png timeout 240 sh platform/emulate.sh "$board" demo >"$work/$1.log" 2>&1; then
+  elif ! SHOT=$work/$1.ppm timeout "${THIMBLE_EMULATOR_LIMIT_S:-240}" sh platform/emulate.sh "$board" demo >"$work/$1.log" 2>&1; then
     fail "$1 sends no picture"
   else
-    mv "$work/$1.png" "$work/$1.shown"
+    mv "$work/$1.ppm" "$work/$1.shown"
   fi
 }
+in_images() {
+  (
+    THIMBLE_FIRMWARE=$THIMBLE_FIRMWARE/images
+    "$@"
+    exit $failed
+  ) || failed=1
+}
+# image ENDING: as $work/$app.emulated.ENDING
+image() {
+  "$thimble" image "$scene" --board "$board" --app "$app" ${effects:+--effects "$effects"} --images "$work/programs" \
+    -o "$work/$app.emulated.$1" --quiet || fail "$app: no .$1 is written"
+}
+objcopy=arm-none-eabi-objcopy
+[ "$(fact ARCH)" != riscv ] || objcopy=riscv64-unknown-elf-objcopy
+printf 'yes!' >"$work/yes"
+# programs PROGRAM...: builds them, for emulators, which they are to tell their exit status.
+programs() {
+  if ! FRAMES=$frames IMAGES=$work/programs PROGRAMS=$* sh platform/images.sh "$board" >"$work/build.log" 2>&1; then
+    tail -n 5 "$work/build.log"
+    fail "$*: does not build"
+    exit 1
+  fi
+  for built in "$work/programs/"*.elf.gz; do
+    [ -e "$built" ] || continue
+    gunzip "$built"
+    $objcopy --update-section ".semihosting=$work/yes" "${built%.gz}"
+    cp "${built%.gz}" "$work/alone.elf"
+    gzip -9n "${built%.gz}"
+  done
+}
+# compare: the image and the firmware of $app with $scene, $effects and $frames, and both with the golden row.
+compare() {
+  image "$ending"
+  in_images show image "$app"
+  if ! EFFECTS=$effects FRAMES=$frames PLACE=flash sh platform/build.sh "$board" "$app" "$scene" >"$work/build.log" 2>&1; then
+    tail -n 5 "$work/build.log"
+    fail "$app: the firmware does not build"
+  fi
+  show firmware "$app"
+  cmp -s "$work/image.shown" "$work/firmware.shown" || fail "$app: the image shows something else than the firmware"
+  ! grep -aq '^scene behind' "$work/image.log" || fail "$app: the image does not find its scene"
+  crc=$(gzip -1c "$work/image.shown" | tail -c 8 | od -An -tx4 -N4 | tr -d ' ')
+  echo "$board,$app,$crc" >>"$work/rows"
+  grep -qx "$board,$app,$crc" $golden || [ "$write" = --write ] || fail "$app: shows $crc, which is not in $golden"
+}
+
+write=${2:-}
 # With light that is slow the picture stands, so that it does not depend on when it is requested.
 scene=tools/gallery/scenes/castle.vox
 effects=direct-light,shadows,fog
 set=sun
 frames=0
+[ "$(fact DISPLAY)" != none ] || frames=3
 case $board in
   microbit)
     set=all
     effects=
-    frames=3
     scene=$work/blocks.scene
-    cat >"$scene" <<'TEXT'
-depth 5
-camera eye 40 -14 26 target 15 16 6 fov 40
-sun toward 6 -5 9
-lamp at 20 10 12 color 255 206 140 brightness 1.5 reach 26
-occlusion rays 4 reach 6
-material floor color 190 180 160
-material steel metal color 120 160 226
-box floor from 0 0 0 to 32 32 2
-box floor from 0 30 2 to 32 32 20
-ball steel at 18 14 9 radius 7
-TEXT
+    { blocks && printf 'lamp at 20 10 12 color 255 206 140 brightness 1.5 reach 26\nocclusion rays 4 reach 6\n'; } >"$scene"
     ;;
-  sifive_e)
-    effects=
-    frames=3
-    ;;
+  sifive_e) effects= ;;
 esac
-if ! FRAMES=$frames IMAGES=$work/programs PROGRAMS=demo-$set sh platform/images.sh "$board" >"$work/build.log" 2>&1; then
-  tail -n 5 "$work/build.log"
-  fail "the program does not build"
-  exit 1
+# Those that tell what they drew, of a scene that small RAM holds.
+of_demo="$scene $effects $frames"
+frames=3
+apps='dig water'
+# A frame of water takes half a minute there.
+if [ "$(fact EMULATOR)" = rp2040js ]; then
+  frames=1
+  [ -n "${LONG:-}" ] || apps=dig
 fi
-# For emulators it is to tell its exit status.
-gunzip "$work/programs/$board-demo-$set.elf.gz"
-objcopy=arm-none-eabi-objcopy
-[ "$(fact ARCH)" != riscv ] || objcopy=riscv64-unknown-elf-objcopy
-printf 'yes!' >"$work/yes"
-$objcopy --update-section ".semihosting=$work/yes" "$work/programs/$board-demo-$set.elf"
-cp "$work/programs/$board-demo-$set.elf" "$work/alone.elf"
-gzip -9n "$work/programs/$board-demo-$set.elf"
-# image ENDING: as $work/demo.emulated.ENDING
-image() {
-  "$thimble" image "$scene" --board "$board" ${effects:+--effects "$effects"} --images "$work/programs" -o "$work/demo.emulated.$1" --quiet ||
-    fail "no .$1 is written"
-}
-image "$ending"
-(
-  THIMBLE_FIRMWARE=$THIMBLE_FIRMWARE/images
-  show image
-  exit $failed
-) || failed=1
-if ! EFFECTS=$effects FRAMES=$frames PLACE=flash sh platform/build.sh "$board" demo "$scene" >"$work/build.log" 2>&1; then
-  tail -n 5 "$work/build.log"
-  fail "the firmware does not build"
+programs 'demo;dig-plain' water-all
+for app in $apps; do
+  [ -e "$work/programs/$board-$app-$([ $app = dig ] && echo plain || echo all).elf.gz" ] || continue
+  scene=spheres,depth=5 effects=none
+  if [ $app = water ]; then
+    scene=$work/pond.scene effects=
+    { blocks && echo "$some_water"; } >"$scene"
+  fi
+  compare
+done
+rm -f "$work/programs/"*
+read -r scene effects frames <<TEXT
+$of_demo
+TEXT
+[ -n "$frames" ] || { frames=$effects && effects=; }
+app=demo
+programs demo-$set
+if [ -e "$work/programs/$board-demo-$set.elf.gz" ]; then
+  compare
 fi
-show firmware
-cmp -s "$work/image.shown" "$work/firmware.shown" || fail "the image shows something else than the firmware"
-grep -q '^scene behind' "$work/image.log" && fail "the image does not find its scene"
+if [ "$write" = --write ]; then
+  { grep -v "^$board," $golden && cat "$work/rows"; } >"$work/golden"
+  { sed '/^board,/q' "$work/golden" && sed '1,/^board,/d' "$work/golden" | sort; } >$golden
+fi
+shown=$(cut -d , -f 2 "$work/rows" 2>/dev/null | tr '\n' ' ')
 # What other files of it hold is the same.
-if [ "$ending" = elf ]; then
+if [ "$ending" = elf ] && [ -n "$shown" ]; then
   image bin
   image hex
   $objcopy -I ihex -O binary "$work/demo.emulated.hex" "$work/of_hex.bin"
   cmp -s "$work/of_hex.bin" "$work/demo.emulated.bin" || fail "the .hex holds something else than the .bin"
 fi
 if [ "$board" != microbit ]; then
-  [ $failed = 1 ] || printf '%-18s %-10s %s\n' "$board" images "shows what the firmware does"
+  [ $failed = 1 ] || printf '%-18s %-10s %s\n' "$board" images "show what the firmware does: ${shown:-no program has room}"
   exit $failed
 fi
 
@@ -110,12 +152,12 @@ THIMBLE_FIRMWARE=$THIMBLE_FIRMWARE/images
 cp "$work/demo.emulated.elf" "$work/whole.elf"
 size=$(wc -c <"$work/whole.elf")
 refused() {
-  show "$1"
+  show "$1" demo
   grep -q "^scene behind the program: $2.*; shown is the built-in one" "$work/$1.log" || fail "$1: it does not say why"
   cmp -s "$work/$1.shown" "$work/none.shown" || fail "$1: it does not show the built-in scene"
 }
 cp "$work/alone.elf" "$work/demo.emulated.elf"
-show none
+show none demo
 refused none "there is none"
 cmp -s "$work/none.shown" "$work/image.shown" && fail "the built-in scene is the other one"
 cp "$work/whole.elf" "$work/demo.emulated.elf"

@@ -12,6 +12,7 @@ work=$THIMBLE_FIRMWARE/$board
 thimble=build/release/thimble
 measured=$THIMBLE_FIRMWARE/$board.measured
 failed=0
+. tests/boards/blocks.sh
 fail() {
   echo "FAILED: own scene on $board: $*"
   failed=1
@@ -100,20 +101,6 @@ too_large() {
   say "a scene that is too large beside demo is refused with what makes it fit; coarsened it leaves $left bytes"
 }
 
-# blocks: a room in the sun, for which a scene adds what it is about.
-blocks() {
-  cat <<'TEXT'
-depth 5
-camera eye 40 -14 26 target 15 16 6 fov 40
-sun toward 6 -5 9
-material floor color 190 180 160
-material steel color 120 160 226
-box floor from 0 0 0 to 32 32 2
-box floor from 0 30 2 to 32 32 20
-ball steel at 18 14 9 radius 7
-box steel from 3 18 2 to 12 27 14
-TEXT
-}
 # bake_own [SCENE]: into the header, for $effects.
 bake_own() {
   "$thimble" bake "${1:-$work/own.scene}" --board "$board" --effects "$effects" -o "$work/own.h" --quiet
@@ -153,7 +140,7 @@ lamp() {
 }
 
 water() {
-  { blocks && echo 'water level 6 floor 2 color 84 176 190 index 1.333 density 0.05'; } >"$work/own.scene"
+  { blocks && echo "$some_water"; } >"$work/own.scene"
   effects=direct-light,shadows,water,sky,ripples
   draws_by_the_map 17035 sun-water "water with ripples, the sun and the sky"
 }

@@ -43,7 +43,12 @@ if [ "${1:-}" = --job ]; then
       examples | emulate | frames) ;;
       *) sh "$here/scenes.sh" "$2" || status=1 ;;
     esac
-    case $2 in lm3s6965evb | microbit | sifive_e | pico | gba) sh "$here/images.sh" "$2" || status=1 ;; esac
+    # LONG=1: all boards.
+    case $2 in
+      lm3s6965evb | microbit | sifive_e | pico | gba) sh "$here/images.sh" "$2" || status=1 ;;
+      examples | emulate | frames) ;;
+      *) [ -z "${LONG:-}" ] || sh "$here/images.sh" "$2" || status=1 ;;
+    esac
     # One board of each kind of core and start-up.
     case $2 in lm3s6965evb | sifive_e | raspi0 | pico | gba) sh "$here/new.sh" "$2" || status=1 ;; esac
   } >"$log" 2>&1

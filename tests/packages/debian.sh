@@ -31,6 +31,14 @@ for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/panel.
   [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
 done
 env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "$WORK/castle.png" || fail "the command does not draw"
+# Templates come along, and programs for boards where `make images` has built them.
+env -i PATH="$WORK/root/usr/bin" thimble new "$WORK/project" --board pico --panel ssd1306 castle --quiet && [ -s "$WORK/project/main.cpp" ] ||
+  fail "the command writes no project"
+if [ -e build/images/pico-demo-sun.elf.gz ]; then
+  env -i PATH="$WORK/root/usr/bin" thimble image castle --board pico --quiet -o "$WORK/castle.uf2" || fail "the command makes no image"
+  logged build/release/thimble image castle --board pico --quiet -o "$WORK/here.uf2"
+  cmp "$WORK/castle.uf2" "$WORK/here.uf2" || fail "its image is another one"
+fi
 # As a file manager runs it: the entry's own line, with its letters replaced.
 thumbnailer=$(sed -n 's/^Exec=//p' "$WORK/root/usr/share/thumbnailers/thimble.thumbnailer" |
   sed "s|%s|64|; s|%i|$WORK/root/usr/share/thimble/scenes/castle.vox|; s|%o|$WORK/thumbnail.png|")

@@ -15,8 +15,6 @@ inline constexpr uint32_t kSystCsrInterrupt = 1U << 1;
 inline constexpr uint32_t kSystCsrCoreClock = 1U << 2;
 
 // System control block.
-inline constexpr uintptr_t kIcsr = 0xE000ED04;  ///< interrupt control and state
-inline constexpr uint32_t kIcsrSystPending = 1U << 26;
 inline constexpr uintptr_t kShcsr =
     0xE000ED24;  ///< system handlers: which faults have a handler of their own
 inline constexpr uint32_t kShcsrFaults = 7U << 16;
@@ -26,8 +24,6 @@ inline constexpr uint32_t kCfsrBusAddressValid = 1U << 15;
 inline constexpr uint32_t kCfsrStacking = 1U << 4 | 1U << 12;  ///< the push of an exception failed
 inline constexpr uintptr_t kMmfar = 0xE000ED34;                ///< address of a memory management fault
 inline constexpr uintptr_t kBfar = 0xE000ED38;                 ///< address of a bus fault
-inline constexpr uintptr_t kCpacr = 0xE000ED88;                ///< coprocessor access
-inline constexpr uint32_t kCpacrFpu = 0xFU << 20;
 
 // Memory protection unit.
 inline constexpr uintptr_t kMpuType = 0xE000ED90;
