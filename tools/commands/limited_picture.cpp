@@ -72,12 +72,11 @@ struct LimitedPicture::Shared {
       command.view.side = NamedView::kBest;
       command.view.fov_degrees = kPictureFov;
       command.view.width_px = command.view.height_px = side_px;
-      auto source = command.scene.open();
-      const auto depth = static_cast<int>(std::bit_width(static_cast<unsigned>(side_px - 1)));
-      if (limits.coarse && source->is_mesh() && source->level() > depth) {
-        command.scene.arguments.depth = depth;
-        source = command.scene.open();
+      if (limits.coarse) {
+        int& depth = command.scene.arguments.mesh_depth;
+        depth = std::min(depth, static_cast<int>(std::bit_width(static_cast<unsigned>(side_px - 1))));
       }
+      const auto source = command.scene.open();
       const LookPicture look = draw_look(command, *source);
       voxels = look.stats.voxels;
       std::uint8_t* const behind = std::copy(look.image.pixels.begin(), look.image.pixels.end(), pixels());

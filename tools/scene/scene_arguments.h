@@ -23,6 +23,7 @@ struct SceneArguments {
   std::uint16_t full_color = 0;          ///< --colors
   std::optional<double> fit_percent{};   ///< --fit
   std::optional<std::array<double, 6>> clip{};  ///< --clip: the box's low corner, its high one
+  int mesh_depth = 9;                           ///< of a mesh, without --depth
 };
 
 /// What is built of it, and traced.

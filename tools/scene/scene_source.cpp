@@ -261,7 +261,6 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
 }
 
 std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments& arguments) {
-  constexpr int kDefaultDepth = 9;
   const auto mesh = std::make_shared<const TriangleMesh>(std::move(read));
   const bool z_up = arguments.z_up || mesh->is_z_up;
   if (mesh->triangles.empty()) {
@@ -269,7 +268,7 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
   }
   SourceFacts facts;
   facts.kind = "triangle mesh, voxelised";
-  facts.level = arguments.depth.value_or(kDefaultDepth);
+  facts.level = arguments.depth.value_or(arguments.mesh_depth);
   const auto colors = std::make_shared<const PaletteMap>(mesh_colors(*mesh, facts.level, z_up));
   facts.points = mesh->positions.size();
   facts.is_mesh = true;
