@@ -451,14 +451,44 @@ Status Renderer::draw(const Camera& camera, const Shading& shading, const Band& 
   return Status::kOk;
 }
 
+namespace {
+
+Status check_lit(const LitFrame& frame) {
+  if ((frame.effects & ~kEffectsInKernels) != 0) {
+    return Status::kBadArgument;
+  }
+  return frame.scene.lights.size > kMaxLights || frame.scene.surfaces.size > kMaxSurfaces
+             ? Status::kOutOfRange
+             : Status::kOk;
+}
+
+}  // namespace
+
+Status Renderer::draw_places(const LitFrame& frame, Span<std::uint32_t> places) {
+  const Status status = frame.camera.level() != state_->level ? Status::kBadArgument : check_lit(frame);
+  Parameters parameters = state_->parameters;
+  set_frame(frame.camera, frame.shading, &parameters);
+  set_light(frame, &parameters);
+  const bool pairs = needs_pairs(state_->level, largest_direction(frame));
+  for (std::size_t first = 0; first < places.size && status == Status::kOk; first += kRaysAtATime) {
+    const std::size_t count = std::min<std::size_t>(kRaysAtATime, places.size - first);
+    Slot& slot = state_->slots[0];
+    state_->fit(&slot, 4 * count);
+    std::memcpy(slot.host.words(), places.data + first, 4 * count);
+    set_places(static_cast<std::uint32_t>(count), kRaysARow, &parameters);
+    state_->start(0, parameters, pairs, 4 * count, 4 * count);
+    state_->finish(0);
+    std::memcpy(places.data + first, slot.host.words(), 4 * count);
+  }
+  return status;
+}
+
 Status Renderer::draw_lit(const LitFrame& frame, const Band& band, Bytes shares, LitCounts* counts) {
   std::size_t stride = 0;
-  const Status status = check_band(frame.camera, state_->level, band, &stride);
-  if ((frame.effects & ~kEffectsInKernels) != 0 || status != Status::kOk) {
-    return status != Status::kOk ? status : Status::kBadArgument;
-  }
-  if (frame.scene.lights.size > kMaxLights || frame.scene.surfaces.size > kMaxSurfaces) {
-    return Status::kOutOfRange;
+  Status status = check_band(frame.camera, state_->level, band, &stride);
+  status = status != Status::kOk ? status : check_lit(frame);
+  if (status != Status::kOk) {
+    return status;
   }
   const std::int32_t width = frame.camera.width_px();
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(band.rows);

@@ -65,6 +65,8 @@ class Renderer {
   /// gets a byte a pixel. kBadArgument for effects that are not in `kEffectsInKernels`. All visits are counted as those
   /// of primary rays.
   Status draw_lit(const LitFrame& frame, const Band& band, Bytes shares = {}, LitCounts* counts = nullptr);
+  /// Single pixels of such a picture: x | y << 16 each, in whose place comes 0x00BBGGRR, with the share on top.
+  Status draw_places(const LitFrame& frame, Span<std::uint32_t> places);
   /// As `closest_hit` for each ray; `visits` are steps of the kernel. Throws DeviceError.
   Status trace(Span<const Ray> rays, Span<Hit> hits);
 

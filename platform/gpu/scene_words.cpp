@@ -14,7 +14,7 @@ using namespace kernel;
 static_assert(kParameterWords == kWordsOfParameters);
 static_assert(kDirectLight == Effect::kDirectLight && kShadows == Effect::kShadows &&
               kAmbientOcclusion == Effect::kAmbientOcclusion && kEmission == Effect::kEmission &&
-              kSkyEffect == Effect::kSky);
+              kSkyEffect == Effect::kSky && kSmoothNormals == Effect::kSmoothNormals);
 static_assert(kEmits == static_cast<std::uint32_t>(SurfaceKind::kEmit));
 static_assert(kPrimaryRay == static_cast<int>(LitRayKind::kPrimary) &&
               kShadowRay == static_cast<int>(LitRayKind::kShadow) &&
@@ -217,6 +217,13 @@ void set_light(const LitFrame& frame, Parameters* parameters) {
   }
 }
 
+void set_places(std::uint32_t count, std::uint32_t width, Parameters* parameters) {
+  Parameters& to = *parameters;
+  to[kPlaces] = count;
+  to[kWidth] = width;
+  to[kHeight] = (count + width - 1) / width;
+}
+
 void set_rays(std::uint32_t count, std::uint32_t width, Parameters* parameters) {
   Parameters& to = *parameters;
   to[kMode] = kModeRays;
@@ -273,7 +280,9 @@ Vec3i largest_direction(Span<const Ray> rays) {
 Vec3i largest_direction(const LitFrame& frame) {
   Vec3i largest = largest_direction(frame.camera);
   for (int axis = 0; axis < 3; ++axis) {
-    set_direction(kOcclusionLength, &largest[axis]);  // no other direction of a pattern is longer
+    // No other direction of a pattern is longer, but those that are turned to a slope.
+    set_direction((frame.effects & Effect::kSmoothNormals) != 0 ? kMaxShort : kOcclusionLength,
+                  &largest[axis]);
     if (frame.backdrop != nullptr) {
       set_direction(frame.backdrop->toward_sun[axis], &largest[axis]);
     }

@@ -36,7 +36,7 @@ void set_frame(const Camera& camera, const Shading& shading, Parameters* paramet
 /// The effects that kernels draw.
 inline constexpr EffectSet kEffectsInKernels = Effect::kDirectLight | Effect::kShadows |
                                                Effect::kAmbientOcclusion | Effect::kEmission | Effect::kSky |
-                                               Effect::kEmitterLight;
+                                               Effect::kSmoothNormals | Effect::kEmitterLight;
 /// What stands behind a lit picture: pixels get the share of its light that comes past the scene. 254: all of it; 255:
 /// there is something before it.
 struct Backdrop {
@@ -56,6 +56,8 @@ struct LitFrame {
 };
 /// Adds its parameters.
 void set_light(const LitFrame& frame, Parameters* parameters);
+/// Single pixels of it instead: `count` of them, in rows of `width`.
+void set_places(std::uint32_t count, std::uint32_t width, Parameters* parameters);
 /// The same for a list of `count` rays, in rows of `width`.
 void set_rays(std::uint32_t count, std::uint32_t width, Parameters* parameters);
 /// A ray as a record of such a list, and the hit that the kernel puts in its place.

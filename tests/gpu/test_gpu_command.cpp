@@ -79,8 +79,8 @@ TEST_CASE("gpu command: lit pictures, with their backgrounds, samples and parts 
   const TemporaryFolder folder;
   const std::vector<Words> pictures{{"castle"},
                                     {"fox", "--background", "none", "--projection", "orthographic"},
-                                    {"oled", "--samples", "9"},
-                                    {"spheres", "--ground", "off", "--normals", "face"},
+                                    {"oled", "--samples", "9", "--normals", "smooth"},
+                                    {"spheres", "--ground", "off"},
                                     {"castle", "--effects", "direct-light,shadows,sky"},
                                     {"house", "--effects", "direct-light,shadows,emission,sky"}};
   for (const Words& picture : pictures) {
@@ -107,7 +107,7 @@ TEST_CASE("gpu command: what it does not draw -> status 2, a sentence, no file")
                                    {"spheres", "--memory", "8M"},
                                    {"spheres", "--board", "mps2-an500"},
                                    {"spheres", "--structure", "pool"},
-                                   {"castle", "--effects", "all"}};
+                                   {"room"}};
   for (const Words& words : refused) {
     const CommandResult result =
         run_command(joined(joined({"render"}, words), {"--engine", "gpu", "-o", folder.path("p.ppm")}));

@@ -21,30 +21,34 @@ using namespace gpu::kernel;
 // What follows uses what stands before.
 // clang-format off
 struct OctreeKernel {
+  explicit OctreeKernel(const Buffers& to) : buffers(to) {}
   const Buffers& buffers;
 #include "gpu/kernel/numbers.inc"
 #include "gpu/kernel/picture.inc"
 #include "gpu/kernel/octree.inc"
 #include "gpu/kernel/invocation.inc"
 #include "gpu/kernel/optics.inc"
+#include "gpu/kernel/slope.inc"
 #include "gpu/kernel/light.inc"
 };
 #undef State
 #define PAIRS
 struct OctreePairsKernel {
+  explicit OctreePairsKernel(const Buffers& to) : buffers(to) {}
   const Buffers& buffers;
 #include "gpu/kernel/numbers.inc"
 #include "gpu/kernel/picture.inc"
 #include "gpu/kernel/octree.inc"
 #include "gpu/kernel/invocation.inc"
 #include "gpu/kernel/optics.inc"
+#include "gpu/kernel/slope.inc"
 #include "gpu/kernel/light.inc"
 };
 // clang-format on
 
 template <class Kernel>
 void run_all(const Buffers& buffers) {
-  Kernel kernel{buffers};
+  Kernel kernel(buffers);
   for (uint y = 0; y < buffers.parameters[kHeight]; ++y) {
     for (uint x = 0; x < buffers.parameters[kWidth]; ++x) {
       buffers.parameters[kMode] == kModeLit ? kernel.lit_invocation(x, y) : kernel.invocation(x, y);

@@ -26,6 +26,9 @@ class GpuEngine final : public LitStreams {
   GpuEngine(const CompactTree& tree, Span<const Rgb8> palette, int threads);
   ~GpuEngine() override;
 
+  /// The device's name, and whether it is a software driver.
+  const std::string& device() const;
+  bool is_software() const;
   const char* name() const override { return "gpu"; }
   int threads() const override { return threads_; }
   /// What copying took.
@@ -44,6 +47,9 @@ class GpuEngine final : public LitStreams {
   bool finds_shares() const override { return true; }
   Status render_before(const Ground& ground, EffectSet effects, const Camera& camera, const Shading& shading,
                        const LitScene& scene, const Band& band, Bytes shares, LitCounts* counts) override;
+  Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
+                       Span<const SamplePlace> places, const Ground* ground, Bytes rgb, Bytes shares,
+                       LitCounts* counts) override;
 
  private:
   struct State;

@@ -3,7 +3,9 @@
 
 namespace thimble::tools {
 
-struct GpuEngine::State {};
+struct GpuEngine::State {
+  std::string device;
+};
 
 bool GpuEngine::is_in_build() {
   return false;
@@ -20,6 +22,13 @@ EffectSet GpuEngine::effects() {
 GpuEngine::GpuEngine(const CompactTree& /*tree*/, Span<const Rgb8> /*palette*/, int threads)
     : threads_(threads) {}
 GpuEngine::~GpuEngine() = default;
+
+const std::string& GpuEngine::device() const {
+  return state_->device;
+}
+bool GpuEngine::is_software() const {
+  return true;
+}
 
 std::int32_t GpuEngine::most_rows(std::int32_t /*width_px*/) {
   return 1;
@@ -42,6 +51,13 @@ Status GpuEngine::render(EffectSet /*effects*/, const Camera& /*camera*/, const 
 Status GpuEngine::render_before(const Ground& /*ground*/, EffectSet /*effects*/, const Camera& /*camera*/,
                                 const Shading& /*shading*/, const LitScene& /*scene*/, const Band& /*band*/,
                                 Bytes /*shares*/, LitCounts* /*counts*/) {
+  return Status::kBadArgument;
+}
+
+Status GpuEngine::render_pixels(EffectSet /*effects*/, const Camera& /*camera*/, const Shading& /*shading*/,
+                                const LitScene& /*scene*/, Span<const SamplePlace> /*places*/,
+                                const Ground* /*ground*/, Bytes /*rgb*/, Bytes /*shares*/,
+                                LitCounts* /*counts*/) {
   return Status::kBadArgument;
 }
 

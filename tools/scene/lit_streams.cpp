@@ -23,7 +23,8 @@ class WideLitStreams final : public LitStreams {
     return wide::render_lit(effects, map_, camera, shading, scene, band, workspace_, &threads_, counts);
   }
   Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                       Span<const SamplePlace> places, Bytes rgb, LitCounts* counts) override {
+                       Span<const SamplePlace> places, const Ground* /*ground*/, Bytes rgb, Bytes /*shares*/,
+                       LitCounts* counts) override {
     places_.resize(places.size);
     std::transform(places.data, places.data + places.size, places_.begin(), [](const SamplePlace& place) {
       return wide::PixelPlace{place.x, place.y};

@@ -50,12 +50,11 @@ class LitStreams {
     return Status::kBadArgument;
   }
 
-  /// The same of single pixels, three bytes each.
-  virtual Status render_pixels(EffectSet /*effects*/, const Camera& /*camera*/, const Shading& /*shading*/,
-                               const LitScene& /*scene*/, Span<const SamplePlace> /*places*/, Bytes /*rgb*/,
-                               LitCounts* /*counts*/) {
-    return Status::kBadArgument;
-  }
+  /// The same of single pixels, three bytes each; with `ground`, which may be null, as `render_before`. Where it
+  /// `finds_shares` nothing is counted.
+  virtual Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading,
+                               const LitScene& scene, Span<const SamplePlace> places, const Ground* ground,
+                               Bytes rgb, Bytes shares, LitCounts* counts) = 0;
   /// Whether each ray meets anything, 1 or 0, as the core's `any_hit`. This and the next: any number of threads at a
   /// time, each with rays of its own. An error of a ray is the call's; the others are answered.
   virtual Status any_hit(Span<const Ray> /*rays*/, Span<std::uint8_t> /*hits*/) const {

@@ -138,7 +138,7 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
     });
   };
   std::vector<std::uint8_t> shares(places.size);
-  (void)each([&](std::size_t /*task*/, std::size_t first, std::size_t end) {
+  const auto find = [&](std::size_t /*task*/, std::size_t first, std::size_t end) {
     std::array<Ray, kAtOnce> rays;
     for (std::size_t i = first; i < end; ++i) {
       rays[i - first] = camera.ray(places.data[i].x, places.data[i].y);
@@ -146,7 +146,13 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
     find_light_behind(*canvas_.tree, *canvas_.look, canvas_.streams, {rays.data(), end - first},
                       shares.data() + first);
     return Status::kOk;
-  });
+  };
+  if (!finds_shares_) {
+    (void)each(find);
+  }
+  const auto is_traced = [&](std::size_t i) {
+    return finds_shares_ || counts != nullptr || shares[i] == kNothingBehind;
+  };
   // Where light behind is seen these rays hit nothing: they are traced only to be counted.
   std::vector<SamplePlace> wanted;
   std::vector<std::size_t> before(static_cast<std::size_t>(tasks));  // colours of the tasks before
@@ -154,18 +160,19 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
     if (i % kAtOnce == 0) {
       before[i / kAtOnce] = wanted.size();
     }
-    if (counts != nullptr || shares[i] == kNothingBehind) {
+    if (is_traced(i)) {
       wanted.push_back(places.data[i]);
     }
   }
-  const Status status = trace_places(camera, {wanted.data(), wanted.size()}, colors, counts);
+  const Status status = trace_places(camera, {wanted.data(), wanted.size()}, colors,
+                                     Bytes(shares.data(), shares.size()), counts);
   if (status != Status::kOk) {
     return status;
   }
   return each([&](std::size_t task, std::size_t first, std::size_t end) {
     const std::uint8_t* color = colors.data + 3 * before[task];
     for (std::size_t i = first; i < end; ++i) {
-      const bool has_color = counts != nullptr || shares[i] == kNothingBehind;
+      const bool has_color = is_traced(i);
       const Rgb8 behind =
           backdrop_color(canvas_.look->background, places.data[i].py, canvas_.framing->camera.height_px());
       const Sample sample =
@@ -178,9 +185,10 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
 }
 
 Status LookRows::trace_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
-                              LitCounts* counts) const {
+                              Bytes shares, LitCounts* counts) const {
   if (canvas_.streams != nullptr) {
-    return canvas_.streams->render_pixels(canvas_.look->effects, camera, shading_, scene_, places, colors,
+    return canvas_.streams->render_pixels(canvas_.look->effects, camera, shading_, scene_, places,
+                                          finds_shares_ ? &canvas_.look->ground : nullptr, colors, shares,
                                           counts);
   }
   return each_until_error(static_cast<std::int32_t>(places.size), canvas_.threads,

@@ -79,7 +79,7 @@ class LookRows {
   // Also the shares, if `finds_shares_`.
   Status trace_colors(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
                       Bytes shares, LitCounts* counts) const;
-  Status trace_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
+  Status trace_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors, Bytes shares,
                       LitCounts* counts) const;
   void find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes shares) const;
   void finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const;

@@ -273,8 +273,8 @@ BandPainter lit_edge_painter(const BuiltScene& built, const Camera& camera, cons
     engine.threads = picture.streams->threads();
     engine.draw_places = [shading, picture](const Camera& view, Span<const SamplePlace> places, Bytes samples,
                                             PaintCounts* counts) {
-      return picture.streams->render_pixels(picture.effects, view, shading, picture.scene, places, samples,
-                                            &counts->lit);
+      return picture.streams->render_pixels(picture.effects, view, shading, picture.scene, places, nullptr,
+                                            samples, {}, &counts->lit);
     };
   }
   return edge_painter(built, camera, fine, format, engine);

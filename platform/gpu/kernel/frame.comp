@@ -18,6 +18,7 @@ layout(std430, binding = 2) buffer Output { uint words[]; } result;
 #include "octree.inc"
 #ifdef LIT
 #include "optics.inc"
+#include "slope.inc"
 #include "light.inc"
 void main() { lit_invocation(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y); }
 #else
