@@ -360,6 +360,14 @@ void EngineOptions::add_board_engines_to(CLI::App& app) {
   add_threads(app, &threads, "threads that draw with the wide engine");
 }
 
+void EngineOptions::add_view_engines_to(CLI::App& app) {
+  add_engine(
+      app, &name, {"auto", "gpu", "wide"}, "draws",
+      "what draws the scene's own look. gpu: the best Vulkan device, on which the scene stays; wide: this "
+      "machine's processors; auto: a GPU, where there is one, it draws what the scene calls for and its "
+      "first picture is the core's, else wide; the pictures are the same");
+}
+
 TraceOptions EngineOptions::trace_options() const {
   TraceOptions options;
   options.width = name == "ray32" ? Width::k32 : Width::k64;

@@ -94,6 +94,8 @@ struct EngineOptions {
   void add_ray_engines_to(CLI::App& app);
   /// For applications on a simulated board, where the core draws as the board has it draw.
   void add_board_engines_to(CLI::App& app);
+  /// For the viewer.
+  void add_view_engines_to(CLI::App& app);
   /// For single rays, whatever the engine.
   TraceOptions trace_options() const;
   /// The GPU with the scene on it where it is to draw, else null. Throws InputError when it cannot be had.

@@ -18,6 +18,7 @@ struct ViewCommand {
   SceneOptions scene;
   viewer::ViewerOptions viewer;
   EffectWishes effects;
+  EngineOptions engine;
   ShadeMode shade = ShadeMode::kDepth;
   int bench_frames = 0;
   int across = 2;  ///< --samples, where it is given
@@ -38,6 +39,10 @@ void run(const ViewCommand& command) {
                                                 : effects_text(look.effects->effects);
   }
   look.bounces = command.effects.bounces;
+  look.engine = command.engine.name;
+  if (look.engine == "gpu" && (look.shade || look.effects)) {
+    refuse_usage("--engine gpu draws the scene's own look, without --shade and --effects");
+  }
   look.smooth = command.effects.choice.smooth;
   if (command.effects.named() && look.shade && command.shade != ShadeMode::kColor) {
     refuse_usage("--shade " + look.shade_word + " shows no light, and so no --effects");
@@ -77,6 +82,7 @@ void add_view_command(CLI::App& app) {
       command->viewer.look.at_edges = command->at_edges;
     }
   });
+  command->engine.add_view_engines_to(*sub);
   add_threads(*sub, &options.threads, "threads that read and draw");
   add_whole_option(
       *sub, "--bench", "N", 1, 100000, &command->bench_frames,

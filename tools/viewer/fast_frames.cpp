@@ -63,7 +63,8 @@ bool FastFrames::draw_lit(const FinishedPicture& picture, std::vector<std::uint8
   seconds_ = clock() - start;
   lit_pace_.take(seconds_, most_seconds);
   if (in_time) {
-    engine_ = "lit";
+    const std::string gpu = picture.gpu();
+    engine_ = gpu.empty() ? "lit" : gpu;
     enlarge(picture, step, rgb);
   }
   return in_time;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "scene/host_memory.h"
@@ -90,7 +91,7 @@ class FastFrames {
                 const std::function<double()>& clock);
 
   /// Of the last frame.
-  const char* engine() const { return engine_; }
+  const std::string& engine() const { return engine_; }
   int step() const { return last_step_; }
   double seconds() const { return seconds_; }
 
@@ -111,7 +112,7 @@ class FastFrames {
   LitPace lit_pace_;
   std::vector<std::uint8_t> small_;
   std::vector<std::uint8_t> behind_small_;
-  const char* engine_ = "rays";
+  std::string engine_ = "rays";
   int last_step_ = 1;
   double seconds_ = 0;
 };

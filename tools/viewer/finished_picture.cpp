@@ -23,7 +23,7 @@ void check(Status status) {
 }  // namespace
 
 FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWishes& wishes)
-    : scene_(std::move(scene)), lighting_(scene_->source->lighting()) {
+    : scene_(std::move(scene)), engine_(wishes.engine), lighting_(scene_->source->lighting()) {
   lighting_.rest.bounces = wishes.bounces.value_or(lighting_.rest.bounces);
   lighting_.find_glow(scene_->tree());
   used_ = used_materials(scene_->tree());
@@ -73,8 +73,60 @@ void FinishedLook::choose(const LookWishes& wishes) {
   }
 }
 
+// Takes a GPU of its own, with --engine gpu a software driver, too, where a small picture of this view has the pixels that
+// the core's has.
+void FinishedLook::try_gpu(const Look& look, const Camera& camera, const Shading& shading,
+                           int threads) const {
+  constexpr std::int32_t kMostPx = 64;
+  gpu_tried_ = true;
+  const std::vector<Rgb8>& palette = scene_->built->palette();
+  auto gpu =
+      std::make_unique<GpuEngine>(scene_->tree(), Span<const Rgb8>(palette.data(), palette.size()), threads);
+  if (engine_ != "gpu" && gpu->is_software()) {
+    return;
+  }
+  const Camera thin =
+      camera.thinned((std::max(camera.width_px(), camera.height_px()) + kMostPx - 1) / kMostPx);
+  std::vector<std::uint8_t> pixels[2];
+  for (std::size_t by_gpu = 0; by_gpu < 2; ++by_gpu) {
+    pixels[by_gpu].resize(band_bytes(PixelFormat::kRgb888, thin.width_px(), thin.height_px()));
+    const Band band{Bytes(pixels[by_gpu].data(), pixels[by_gpu].size()), PixelFormat::kRgb888, 0, 0,
+                    thin.height_px()};
+    const LitScene scene = look.lit_scene();
+    check(by_gpu != 0 ? gpu->render(look.effects, thin, shading, scene, band, nullptr)
+                      : render_lit_band(look.effects, scene_->tree(), thin, shading, scene, band));
+  }
+  if (pixels[0] == pixels[1]) {
+    gpu_ = std::move(gpu);
+    has_gpu_.store(true);
+  } else if (engine_ == "gpu") {
+    throw InputError("--engine gpu: " + gpu->device() + " draws other pixels than the core");
+  }
+}
+
+std::string FinishedLook::gpu() const {
+  return has_gpu_.load() ? gpu_->device() : "";
+}
+
 // Null where there is no room: then the core draws.
-LitStreams* FinishedLook::streams_for(EffectSet effects, const LitScene& scene, int threads) const {
+LitStreams* FinishedLook::streams_for(const Look& look, const Camera& camera, const Shading& shading,
+                                      int threads) const {
+  const EffectSet effects = look.effects;
+  const LitScene scene = look.lit_scene();
+  if (engine_ != "wide" && (effects & ~GpuEngine::effects()) == 0) {
+    try {
+      if (!gpu_tried_) {
+        try_gpu(look, camera, shading, threads);
+      }
+    } catch (const InputError&) {
+      if (engine_ == "gpu") {
+        throw;
+      }
+    }
+    if (gpu_ != nullptr) {
+      return gpu_.get();
+    }
+  }
   const std::size_t bytes = LitStreams::bytes(scene_->tree(), effects, scene, threads);
   if (bytes > streams_bytes_ || (effects & ~streams_effects_) != 0) {
     streams_bytes_ = bytes;
@@ -113,6 +165,12 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
 // The scene's own look, as render_look.cpp takes it.
 void FinishedPicture::take_own_look() {
   own_ = default_look(*look_->own_, look_->own_wishes_, framing_);
+  const EffectSet missing = own_->effects & ~GpuEngine::effects();
+  if (look_->engine_ == "gpu" && (own_->kind == LookKind::kStars || missing != Effect::kNone)) {
+    throw InputError("--engine gpu does not draw " + (own_->kind == LookKind::kStars
+                                                          ? std::string("points as stars")
+                                                          : "the effects " + effects_text(missing)));
+  }
   const std::int32_t across = own_->across;
   fine_ = framing_.camera;
   if (width_px() * across > kMaxPicturePx || height_px() * across > kMaxPicturePx ||
@@ -274,7 +332,7 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
   LookCanvas canvas{&look_->scene_->tree(), &*own_, &framing_, fine_, {}, threads->count()};
   const std::unique_lock<std::mutex> lock(look_->streams_mutex_, std::try_to_lock);
   if (lock.owns_lock()) {
-    canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads->count());
+    canvas.streams = look_->streams_for(*own_, camera(), shading_, threads->count());
   }
   expose(&canvas);
   const LookRows rows(canvas, fine_, exposure_);
@@ -319,7 +377,7 @@ bool FinishedPicture::paint_own(int threads, std::vector<std::uint8_t>* rgb, con
   if (has_rows) {
     expose(&canvas);
     if (lock.try_lock()) {
-      canvas.streams = look_->streams_for(own_->effects, own_->lit_scene(), threads);
+      canvas.streams = look_->streams_for(*own_, camera(), shading_, threads);
     }
   }
   const std::size_t line = 3 * static_cast<std::size_t>(width_px());

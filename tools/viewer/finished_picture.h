@@ -19,6 +19,7 @@
 
 #include "scene/default_look.h"
 #include "scene/framing.h"
+#include "scene/gpu_engine.h"
 #include "scene/host_memory.h"
 #include "scene/lit_description.h"
 #include "scene/lit_streams.h"
@@ -76,6 +77,7 @@ struct LookWishes {
   std::optional<bool> smooth;           ///< --normals
   std::optional<int> across;            ///< --samples are its square
   bool at_edges = false;                ///< --samples auto; `across` is then kEdgeGrid
+  std::string engine = "auto";          ///< --engine: of the scene's own look
 };
 
 /// What a scene's pictures have in common, whatever the camera.
@@ -90,6 +92,8 @@ class FinishedLook {
   const std::vector<std::string>& words() const { return words_; }
   /// Samples a pixel are its square. 1 where the scene's own look decides: it takes fewer in a large picture.
   int across() const { return across_; }
+  /// The GPU that draws, once it does; else "".
+  std::string gpu() const;
   /// Has the exposure of the frame before.
   void keep_exposure(const FinishedLook& before) const { exposure_.store(before.exposure_.load()); }
 
@@ -98,6 +102,7 @@ class FinishedLook {
   void choose(const LookWishes& wishes);
 
   std::shared_ptr<const OpenScene> scene_;
+  std::string engine_;
   std::optional<SceneFacts> own_;  // the scene's own look
   tools::LookWishes own_wishes_;
   LitDescription lighting_;
@@ -116,13 +121,18 @@ class FinishedLook {
   /// flickers.
   mutable std::atomic<std::uint32_t> exposure_{0};
 
-  // Lit pictures by streams of rays: made when the first is drawn, for one that draws at a time.
-  LitStreams* streams_for(EffectSet effects, const LitScene& scene, int threads) const;
-  mutable std::mutex streams_mutex_;  // of the next four
+  // Lit pictures by the GPU, with the scene on it, or by streams of rays: made when the first is drawn, for one that
+  // draws at a time.
+  LitStreams* streams_for(const Look& look, const Camera& camera, const Shading& shading, int threads) const;
+  void try_gpu(const Look& look, const Camera& camera, const Shading& shading, int threads) const;
+  mutable std::mutex streams_mutex_;  // of the next six
   mutable HostMemory streams_memory_;
   mutable std::size_t streams_bytes_ = 0;  // requested
   mutable EffectSet streams_effects_ = Effect::kNone;
   mutable std::unique_ptr<LitStreams> streams_;
+  mutable std::unique_ptr<GpuEngine> gpu_;  // once it was found to draw the core's pixels
+  mutable bool gpu_tried_ = false;
+  mutable std::atomic<bool> has_gpu_{false};  // for those that do not hold the mutex; then it stays
 };
 
 /// Frames the scene from the side from which `forward` leads to its middle.
@@ -160,6 +170,8 @@ class FinishedPicture {
   void show_water(const WaterSurface& water) { moving_water_ = water; }
   /// The water of the picture, or null.
   const WaterSurface* water() const;
+  /// As FinishedLook::gpu.
+  std::string gpu() const { return look_->gpu(); }
   /// Whether there is light on surfaces.
   bool is_lit() const { return own_ ? own_->kind == LookKind::kLit : look_->effects_ != Effect::kNone; }
   /// From now on this picture has the exposure of the last that was measured, as the frames of a film have.

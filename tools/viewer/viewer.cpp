@@ -82,8 +82,8 @@ class Viewer {
   void act(Action action);
   void look_around();
   void refine();
-  void draw_frame(bool may_be_lit);
-  bool draw_lit(FinishedPicture* picture);
+  void draw_frame(bool moves);
+  bool draw_lit(FinishedPicture* picture, bool moves);
   void show();
   void save();
   void write(const Refinement& finished, const SceneArguments& scene, const ViewWishes& wishes,
@@ -431,21 +431,22 @@ void Viewer::look_around() {
     changed_ = true;
   }
   if (changed_) {
-    draw_frame(!motion.any());
+    draw_frame(motion.any());
   }
 }
 
-// The frame of an animation that plays, with its light, where that is there before the next one.
-bool Viewer::draw_lit(FinishedPicture* picture) {
-  const double left = next_frame_at_ - now();
-  if (!plays_ || scene_->source->frames() <= 1 || left <= 0) {
+// With its light: what a GPU draws, and the frame of an animation that plays, where that is there before the next one.
+bool Viewer::draw_lit(FinishedPicture* picture, bool moves) {
+  const bool is_film = plays_ && scene_->source->frames() > 1;
+  const double left = is_film ? next_frame_at_ - now() : FastFrames::kFrameSeconds;
+  if (left <= 0 || ((moves || !is_film) && look_->gpu().empty())) {
     return false;
   }
   picture->keep_exposure();
   return frames_->draw_lit(*picture, &rgb_, left, now);
 }
 
-void Viewer::draw_frame(bool may_be_lit) {
+void Viewer::draw_frame(bool moves) {
   changed_ = false;
   const std::int32_t most = kMaxPicturePx / look_->across();
   const std::int32_t width = std::clamp(screen_->width_px(), 1, most);
@@ -469,7 +470,7 @@ void Viewer::draw_frame(bool may_be_lit) {
   if (pool_ != nullptr) {
     picture->show_water(pool_->surface());
   }
-  if (!may_be_lit || !draw_lit(picture.get())) {
+  if (!draw_lit(picture.get(), moves)) {
     frames_->draw(*picture, &rgb_);
   }
   picture_ = std::move(picture);
@@ -573,16 +574,16 @@ std::string Viewer::state_text() const {
   const double rate = frame_seconds_ > 0 ? 1 / frame_seconds_ : 0;
   if (is_refined_ && picture_->at_edges()) {
     std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, samples where edges are", rate,
-                  frames_->engine());
+                  frames_->engine().c_str());
   } else if (is_refined_) {
     const int samples = picture_->across() * picture_->across();
     std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, %d sample%s a pixel", rate,
-                  frames_->engine(), samples, samples == 1 ? "" : "s");
+                  frames_->engine().c_str(), samples, samples == 1 ? "" : "s");
   } else if (refinement_ != nullptr && refinement_->step() <= 1 && refinement_->percent() > 0) {
-    std::snprintf(text.data(), text.size(), "%.0f frames/s %s | %s %d%%", rate, frames_->engine(),
+    std::snprintf(text.data(), text.size(), "%.0f frames/s %s | %s %d%%", rate, frames_->engine().c_str(),
                   refinement_->step() == 0 ? "last pass" : "first pass", refinement_->percent());
   } else {
-    std::snprintf(text.data(), text.size(), "%.0f frames/s %s 1:%d", rate, frames_->engine(),
+    std::snprintf(text.data(), text.size(), "%.0f frames/s %s 1:%d", rate, frames_->engine().c_str(),
                   frames_->step());
   }
   return text.data();
@@ -730,8 +731,8 @@ std::string bench_viewer(const ViewerOptions& options, int frames) {
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(), "%llu,%dx%d,%d,%s,%d,%.1f,%.2f,%.2f,%.0f,%.0f",
                 static_cast<unsigned long long>(scene->built->voxels()), width, height, options.threads,
-                fast.engine(), fast.step(), 1 / median, 1000 * median, 1000 * times.back(), 1000 * lit,
-                1000 * finished);
+                fast.engine().c_str(), fast.step(), 1 / median, 1000 * median, 1000 * times.back(),
+                1000 * lit, 1000 * finished);
   const std::string& name = options.scene.scene;
   return (name.find_first_of(",\"") == std::string::npos ? name : in_quotes(name)) + "," + text.data();
 }
