@@ -127,6 +127,10 @@ TEXT
 [ -n "$frames" ] || { frames=$effects && effects=; }
 app=demo
 programs demo-$set
+if [ ! -e "$work/programs/$board-demo-$set.elf.gz" ]; then
+  set=plain effects=none
+  programs demo-plain 'demo;dig-plain'
+fi
 if [ -e "$work/programs/$board-demo-$set.elf.gz" ]; then
   compare
 fi
