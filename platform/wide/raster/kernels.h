@@ -203,10 +203,6 @@ uint32_t cull_run(const WideFrame& frame, const Run& run, const Depths& depths, 
 int find_children(const WideFrame& frame, const Block& block, unsigned mask, uint32_t first_child,
                   unsigned nearest, Block* children);
 
-/// Merges rows y0 .. y1 - 1 of `from` into those of `to`, keeping what is nearer. Both are the same picture, drawn with
-/// different boxes.
-void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to);
-
 /// Pixels and their nearest boxes. There is room for a whole vector behind the last pixel.
 inline constexpr uint32_t kMostPixels = 512;
 struct Pixels {

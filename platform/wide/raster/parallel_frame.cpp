@@ -4,12 +4,6 @@
 #include <atomic>
 
 namespace thimble::wide {
-namespace {
-
-// Pictures are merged so many rows at a time.
-constexpr int32_t kMergedRows = 32;
-
-}  // namespace
 
 Tiles::Tiles(int32_t rows, int threads, const float (&work)[CostEstimate::kParts]) : end_{rows} {
   if (threads == 1) {
@@ -45,76 +39,34 @@ Tiles::Tiles(int32_t rows, int threads, const float (&work)[CostEstimate::kParts
   }
 }
 
-uint64_t ParallelFrame::draw_tiles(const Tiles& tiles, uint32_t* splits) const {
+uint64_t draw_tiles(Threads* threads, const Tiles& tiles, const TileDrawer::Task& task,
+                    const TilePainter& painter, const Workspace& workspace, Stats* stats) {
+  const int count = threads == nullptr ? 1 : threads->count();
   TileDrawer::Others others(tiles.count());
-  if (thread_count() == 1) {
-    return draw_some(tiles, 0, &others);
-  }
   std::atomic<uint64_t> hits{0};
-  threads_->each(thread_count(), [&](int thread) { hits += draw_some(tiles, thread, &others); });
-  *splits = others.splits();
-  return hits;
-}
-
-// Draws and paints until nothing is left for this thread.
-uint64_t ParallelFrame::draw_some(const Tiles& tiles, int thread, TileDrawer::Others* others) const {
-  const Depths& depths = workspace_.depths(0);
-  const int32_t top = task_.frame.tile.y0;
-  uint64_t hits = 0;
-  TileDrawer drawer(task_, depths, workspace_.full_patches(), workspace_.batch(thread),
-                    thread_count() > 1 ? others : nullptr);
-  for (;;) {
-    const int number = others->next(&drawer);
-    if (number == TileDrawer::Others::kNothing) {
-      return hits;
+  const auto draw_some = [&](int thread) {
+    TileDrawer drawer(task, workspace.depths(), workspace.full_patches(), workspace.batch(thread),
+                      count > 1 ? &others : nullptr);
+    for (int number; (number = others.next(&drawer)) != TileDrawer::Others::kNothing; others.finish()) {
+      if (number != TileDrawer::Others::kGiven) {
+        const int32_t top = task.frame.tile.y0;
+        workspace.clear(tiles.begin(number), tiles.end(number) - tiles.begin(number));
+        drawer.start(top + tiles.begin(number), top + tiles.end(number));
+      }
+      drawer.draw();
+      hits += painter.paint_tile(drawer.frame(), workspace.depths());
     }
-    if (number != TileDrawer::Others::kGiven) {
-      const int32_t first = tiles.begin(number);
-      const int32_t rows = tiles.end(number) - first;
-      workspace_.clear(depths, top + first, rows);
-      workspace_.clear_patches(first, rows);
-      drawer.start(top + first, top + first + rows);
-    }
-    drawer.draw();
-    hits += painter_.paint_tile(drawer.frame(), depths);
-    others->finish();
+  };
+  if (count == 1) {
+    draw_some(0);
+  } else {
+    threads->each(count, draw_some);
   }
-}
-
-uint64_t ParallelFrame::draw_copies() const {
-  const Tile& tile = task_.frame.tile;
-  const int32_t rows = tile.y1 - tile.y0;
-  std::atomic<uint32_t> next_share{0};
-  threads_->each(thread_count(), [&](int thread) {
-    const Depths& depths = workspace_.depths(thread);
-    workspace_.clear(depths, tile.y0, rows);
-    TileDrawer drawer(task_, depths, nullptr, workspace_.batch(thread), nullptr, &next_share);
-    drawer.start(tile.y0, tile.y1);
-    drawer.draw();
-  });
-  std::atomic<uint64_t> hits{0};
-  threads_->each((rows - 1) / kMergedRows + 1, [&](int part) { hits += merge_and_paint(part); });
+  stats->splits = others.splits();
+  for (int thread = 0; thread < count; ++thread) {
+    stats->counts.add(workspace.batch(thread)->counts);
+  }
   return hits;
-}
-
-uint64_t ParallelFrame::merge_and_paint(int part) const {
-  WideFrame frame = task_.frame;
-  Tile& tile = frame.tile;
-  const int32_t end = tile.y1;
-  tile.y0 += part * kMergedRows;
-  tile.y1 = std::min(tile.y0 + kMergedRows, end);
-  for (int thread = 1; thread < thread_count(); ++thread) {
-    merge_rows(workspace_.depths(thread), tile.x1, tile.y0, tile.y1, workspace_.depths(0));
-  }
-  return painter_.paint_tile(frame, workspace_.depths(0));
-}
-
-Counts ParallelFrame::counts() const {
-  Counts all;
-  for (int thread = 0; thread < thread_count(); ++thread) {
-    all.add(workspace_.batch(thread)->counts);
-  }
-  return all;
 }
 
 }  // namespace thimble::wide

@@ -24,32 +24,10 @@ class Tiles {
   int32_t end_[kMaxThreads];
 };
 
-/// Draws and paints a frame, either tile by tile in one picture, or with a picture for each thread.
-class ParallelFrame {
- public:
-  /// `threads`: null where the calling thread draws alone.
-  ParallelFrame(Threads* threads, const TileDrawer::Task& task, const TilePainter& painter,
-                const Workspace& workspace)
-      : threads_(threads), task_(task), painter_(painter), workspace_(workspace) {}
-
-  /// Every thread draws and paints tiles, then parts of other threads' tiles, until none are left. Returns how many
-  /// pixels show something. `splits` gets how many parts changed hands.
-  uint64_t draw_tiles(const Tiles& tiles, uint32_t* splits) const;
-  /// Every thread draws its share of the list in a picture of its own; then the pictures are merged and painted.
-  /// Returns how many pixels show something.
-  uint64_t draw_copies() const;
-  /// What all threads counted.
-  Counts counts() const;
-
- private:
-  int thread_count() const { return threads_ == nullptr ? 1 : threads_->count(); }
-  uint64_t draw_some(const Tiles& tiles, int thread, TileDrawer::Others* others) const;
-  uint64_t merge_and_paint(int part) const;
-
-  Threads* threads_;
-  const TileDrawer::Task& task_;
-  const TilePainter& painter_;
-  const Workspace& workspace_;
-};
+/// Draws and paints a frame: every thread (null: the calling one alone) draws tiles, then parts of other threads' tiles,
+/// until none are left. Returns how many pixels show something. `stats` gets what all threads counted, and how many
+/// parts changed hands.
+uint64_t draw_tiles(Threads* threads, const Tiles& tiles, const TileDrawer::Task& task,
+                    const TilePainter& painter, const Workspace& workspace, Stats* stats);
 
 }  // namespace thimble::wide

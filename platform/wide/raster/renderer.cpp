@@ -10,10 +10,6 @@ static_assert(kMaxPicturePx <= 1 << kPlaceBits);
 
 namespace {
 
-// From so many boxes on, drawn in the order of the list, up to kMostCopies threads draw a picture each. Fewer boxes are
-// drawn in the time that merging the pictures takes.
-constexpr size_t kCopyBoxes = 150000;
-
 // A picture that shows fewer boxes than it has pieces (Depths::is_touched) is mostly empty.
 bool is_sparse(const VoxelLists& lists, const Camera& camera, const Band& band, bool by_blocks, int threads,
                const TilePainter& painter) {
@@ -66,13 +62,12 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 struct Plan {
   bool has_boxes;  // whether the list of boxes is drawn, not that of the surface
   Order order;
-  bool copies;  // whether each thread draws a picture of its own
   CostEstimate cost;
 };
 
 Plan plan_of(const VoxelLists& lists, const WideFrame& frame, const Options& options, int threads) {
   const Order wanted = options.order;
-  Plan plan{options.list == List::kBoxes && lists.has_boxes_beside(), wanted, false, {}};
+  Plan plan{options.list == List::kBoxes && lists.has_boxes_beside(), wanted, {}};
   const bool chooses = lists.has_boxes_beside() && options.list == List::kAuto;
   if (wanted == Order::kAuto || threads > 1 || chooses) {
     plan.cost = estimate_cost(plan.has_boxes ? lists.boxes_beside() : lists, frame, threads > 1);
@@ -87,8 +82,6 @@ Plan plan_of(const VoxelLists& lists, const WideFrame& frame, const Options& opt
   if (wanted == Order::kAuto) {
     plan.order = plan.cost.blocks_pay ? Order::kBlocks : Order::kFlat;
   }
-  plan.copies = threads > 1 && threads <= kMostCopies && plan.order != Order::kBlocks &&
-                lists.entries().size >= kCopyBoxes;
   return plan;
 }
 
@@ -119,28 +112,20 @@ Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& 
   }
   const bool by_blocks = plan.order == Order::kBlocks;
   const TilePainter painter(lists, camera, shading, band);
-  const Workspace space(
-      workspace,
-      {camera.width_px(), band.first_row, band.rows, threads, plan.copies ? threads : 1, by_blocks,
-       is_sparse(lists, camera, band, by_blocks, threads, painter), painter.gray_scale(), &shading});
+  const Workspace space(workspace, {camera.width_px(), band.first_row, band.rows, threads, by_blocks,
+                                    is_sparse(lists, camera, band, by_blocks, threads, painter),
+                                    painter.gray_scale(), &shading});
   const TileDrawer::Task task{lists, frame, by_blocks, lists.is_surface() ? &starts : nullptr};
-  const ParallelFrame parallel(options.threads, task, painter, space);
-  uint64_t hits = 0;
-  uint32_t splits = 0;
-  if (plan.copies) {
-    hits = parallel.draw_copies();
-  } else {
-    hits = parallel.draw_tiles(Tiles(band.rows, threads, by_blocks ? plan.cost.blocks : plan.cost.flat),
-                               &splits);
-  }
-  const Counts done = parallel.counts();
+  const Tiles tiles(band.rows, threads, by_blocks ? plan.cost.blocks : plan.cost.flat);
+  Stats done{{}, plan.order, 0, plan.has_boxes};
+  const uint64_t hits = draw_tiles(options.threads, tiles, task, painter, space, &done);
   if (counts != nullptr) {
     counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);
     counts->hits += hits;
-    counts->node_visits += done.nodes;
+    counts->node_visits += done.counts.nodes;
   }
   if (stats != nullptr) {
-    *stats = {done, plan.order, splits, plan.has_boxes};
+    *stats = done;
   }
   return Status::kOk;
 }

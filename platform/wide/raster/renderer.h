@@ -6,9 +6,9 @@
 /// elsewhere (kernels/judge-inl.h). Blocks of the tree are drawn front to back, and left out when all pixels that they
 /// could reach are covered.
 ///
-/// The core does not know of this renderer. It needs the voxel lists (voxel_lists.h), 8 1/8 bytes a pixel, as much
-/// again for each of two to four threads beyond the first, and 32 KiB a thread. Where the caller has less to give, or
-/// the camera is beyond what floats resolve, the core's own renderer is to draw the frame.
+/// The core does not know of this renderer. It needs the voxel lists (voxel_lists.h), 8 1/8 bytes a pixel and 32 KiB a
+/// thread. Where the caller has less to give, or the camera is beyond what floats resolve, the core's own renderer is
+/// to draw the frame.
 #pragma once
 
 #include "thimble/picture/render.h"

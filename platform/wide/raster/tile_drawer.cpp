@@ -28,7 +28,6 @@ constexpr float kSortedVoxelPx = 8.0F;  // where all are single voxels
 constexpr float kSortedDeepPx = 5.0F;
 constexpr float kDeepInPerspective = 3.0F;
 constexpr float kDeepInParallel = 1.0F;
-constexpr uint32_t kRunsPerShare = 2;
 constexpr uint32_t kMostLines = 64;
 // Tiles with fewer rows, or fewer remaining boxes, are not split.
 constexpr int32_t kLeastRows = 2 * kPatchRows;
@@ -111,8 +110,7 @@ void SortedRun::sort(const WideFrame& frame, const Block& block, uint32_t count)
   }
 }
 
-TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others,
-                       std::atomic<uint32_t>* next_share)
+TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others)
     : lists_(task.lists),
       frame_(task.frame),
       starts_(task.starts),
@@ -120,9 +118,7 @@ TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Ba
       full_(full),
       by_blocks_(task.by_blocks),
       batch_(batch),
-      others_(others),
-      next_share_(next_share),
-      share_(next_share == nullptr ? 0 : (*next_share)++) {}
+      others_(others) {}
 
 void TileDrawer::start(int32_t y0, int32_t y1) {
   frame_.tile.y0 = y0;
@@ -134,7 +130,7 @@ void TileDrawer::start(int32_t y0, int32_t y1) {
     world.level = static_cast<uint16_t>(tree.level() + 1);
     depth_ = find_children(frame_, world, 1, 0, 0, stack_);
   }
-  if (starts_ != nullptr && share_ == 0) {
+  if (starts_ != nullptr) {
     draw_starts();
   }
 }
@@ -187,7 +183,7 @@ void TileDrawer::draw() {
     const unsigned mask = lists_.children(block.node);
     if (!is_leaf(block, node, mask, is_tabled)) {
       push_children(block, node, mask);
-    } else if (is_ours()) {
+    } else {
       enqueue(block, node);
     }
   }
@@ -245,19 +241,6 @@ bool TileDrawer::is_flat(const Block& block) const {
 // Roughly how many pixels wide a voxel of the block is on the picture.
 float TileDrawer::voxel_px(const Block& block) const {
   return block.place.per_depth == 0 ? 1e9F : 2 * frame_.reach_x * block.place.per_depth;
-}
-
-// Whether the next run is one of ours. All threads pass the same runs in the same order; each takes the next free share
-// when it has drawn its last one, so every run is drawn once.
-bool TileDrawer::is_ours() {
-  if (next_share_ == nullptr) {
-    return true;
-  }
-  const uint32_t share = run_++ / kRunsPerShare;
-  if (share > share_) {
-    share_ = (*next_share_)++;
-  }
-  return share == share_;
 }
 
 // Pushes the children that may be seen; the last one pushed is the first one drawn.

@@ -43,11 +43,9 @@ class TileDrawer {
     const SolidStarts* starts;  ///< null where the lists leave nothing out
   };
 
-  /// `full`: see all_covered(); may be null where blocks are not used. `others`: null, or the threads that draw other
-  /// rows of the same depths and take some of ours when they have none left. `next_share`: null, or shared by several
-  /// threads that divide the runs of a list among them, each with depths of its own; not with blocks.
-  TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others,
-             std::atomic<uint32_t>* next_share = nullptr);
+  /// `full`: see all_covered(). `others`: null, or the threads that draw other rows of the same depths and take some of
+  /// ours when they have none left.
+  TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others);
 
   /// Begins a tile of rows y0 .. y1 - 1 of the picture.
   void start(int32_t y0, int32_t y1);
@@ -72,7 +70,6 @@ class TileDrawer {
   float voxel_px(const Block& block) const;
   // Whether the boxes of a block are drawn from front to back.
   bool is_worth_sorting(const Block& block, const BlockNode& node) const;
-  bool is_ours();
 
   void push_children(const Block& block, const BlockNode& node, unsigned mask);
   void enqueue(const Block& block, const BlockNode& node);
@@ -96,9 +93,6 @@ class TileDrawer {
   bool by_blocks_;
   Batch* batch_;
   Others* others_;
-  std::atomic<uint32_t>* next_share_;
-  uint32_t share_;
-  uint32_t run_ = 0;
   int depth_ = 0;  ///< blocks on stack_
   Block stack_[7 * kMaxLevel + 8];
   Block ahead_[kAhead];  ///< a ring of blocks whose boxes are being fetched, in the order of drawing

@@ -49,18 +49,15 @@ bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full) {
 }
 
 size_t Workspace::bytes(int32_t width_px, int32_t rows, int threads) {
-  const size_t copy = strips_of(width_px) * static_cast<size_t>(rows) * 32 * sizeof(uint64_t) +
-                      covered_words(width_px, rows) * sizeof(uint32_t) + 64;
-  return static_cast<size_t>(threads <= kMostCopies ? threads : 1) * copy +
-         strips_of(width_px) * patches_of(rows) + static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 128;
+  return strips_of(width_px) * static_cast<size_t>(rows) * 32 * sizeof(uint64_t) +
+         covered_words(width_px, rows) * sizeof(uint32_t) + strips_of(width_px) * patches_of(rows) +
+         static_cast<size_t>(threads) * (sizeof(Batch) + 64) + 192;
 }
 
 Workspace::Workspace(Bytes memory, const Layout& layout)
     : strips_(strips_of(layout.width_px)), rows_(layout.rows) {
   Arena arena(memory);
-  for (int copy = 0; copy < layout.copies; ++copy) {
-    depths_[copy] = make_depths(layout, &arena);
-  }
+  depths_ = make_depths(layout, &arena);
   full_patches_ = arena.take(strips_ * patches_of(rows_), 1).data;
   const Bytes batches = arena.take(static_cast<size_t>(layout.threads) * sizeof(Batch), alignof(Batch));
   for (int thread = 0; thread < layout.threads; ++thread) {
@@ -97,20 +94,15 @@ Depths Workspace::make_depths(const Layout& layout, Arena* arena) const {
   return depths;
 }
 
-void Workspace::clear(const Depths& depths, int32_t y, int32_t rows) const {
+void Workspace::clear(int32_t first, int32_t rows) const {
   for (size_t strip = 0; strip < strips_; ++strip) {
-    const size_t word = depths.word(static_cast<int32_t>(32 * strip), y);
-    if (depths.marks) {
-      memset(depths.covered + word, 0, static_cast<size_t>(rows) * sizeof(uint32_t));
+    const size_t word = depths_.word(static_cast<int32_t>(32 * strip), depths_.first_row + first);
+    if (depths_.marks) {
+      memset(depths_.covered + word, 0, static_cast<size_t>(rows) * sizeof(uint32_t));
     }
-    if (depths.gray_scale != nullptr && depths.is_touched == nullptr) {
-      memset(depths.gray + 32 * word, 0, static_cast<size_t>(rows) * 32);
+    if (depths_.gray_scale != nullptr && depths_.is_touched == nullptr) {
+      memset(depths_.gray + 32 * word, 0, static_cast<size_t>(rows) * 32);
     }
-  }
-}
-
-void Workspace::clear_patches(int32_t first, int32_t rows) const {
-  for (size_t strip = 0; strip < strips_; ++strip) {
     memset(full_patches_ + strip * patches_of(rows_) + static_cast<size_t>(first / kPatchRows), 0,
            patches_of(rows));
   }

@@ -1,4 +1,4 @@
-/// Lays out the workspace of one frame, pictures, patches and batches, and says which parts of a picture are covered.
+/// Lays out the workspace of one frame, the picture, patches and batches, and says which parts of a picture are covered.
 #pragma once
 
 #include "thimble/base/memory.h"
@@ -27,9 +27,6 @@ inline size_t patches_of(int32_t rows) {
 /// strip), so that large rectangles cost little.
 bool all_covered(const Depths& depths, const Rectangle& where, uint8_t* full);
 
-/// At most so many threads draw a picture of their own each: caches hold no more pictures.
-inline constexpr int kMostCopies = 4;
-
 class Workspace {
  public:
   struct Layout {
@@ -37,7 +34,6 @@ class Workspace {
     int32_t first_row;
     int32_t rows;
     int threads;
-    int copies;  ///< how many pictures there are: 1 .. kMostCopies
     bool by_blocks;
     bool is_sparse;               ///< whether codes are cleared where they are written (Depths::is_touched)
     const GrayScale* gray_scale;  ///< null: without greys
@@ -48,25 +44,24 @@ class Workspace {
   /// The most bytes that a layout takes.
   static size_t bytes(int32_t width_px, int32_t rows, int threads);
 
-  /// `memory` has room for bytes(). Batches are made empty; the caller clears pictures and patches.
+  /// `memory` has room for bytes(). Batches are made empty; the caller clears the picture and its patches.
   Workspace(Bytes memory, const Layout& layout);
 
-  const Depths& depths(int copy) const { return depths_[copy]; }
+  const Depths& depths() const { return depths_; }
   Batch* batch(int thread) const { return batches_ + thread; }
   /// See all_covered().
   uint8_t* full_patches() const { return full_patches_; }
 
-  /// Clears `rows` rows of a picture from row `y` on.
-  void clear(const Depths& depths, int32_t y, int32_t rows) const;
-  /// Clears the patches of `rows` rows; `first` counts from the workspace's first row and is a multiple of kPatchRows.
-  void clear_patches(int32_t first, int32_t rows) const;
+  /// Clears `rows` rows of the picture and their patches; `first` counts from the workspace's first row and is a
+  /// multiple of kPatchRows.
+  void clear(int32_t first, int32_t rows) const;
 
  private:
   Depths make_depths(const Layout& layout, Arena* arena) const;
 
   size_t strips_;
   int32_t rows_;
-  Depths depths_[kMostCopies];
+  Depths depths_;
   uint8_t* full_patches_;
   Batch* batches_;
 };

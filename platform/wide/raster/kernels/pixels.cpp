@@ -351,44 +351,6 @@ void unpack(const Depths& depths, Pixels* pixels) {
   }
 }
 
-// Merges the pixels of one word of coverage.
-void merge_word(const Depths& from, size_t word, const Depths& to) {
-  for (uint32_t bits = from.covered[word]; bits != 0; bits &= bits - 1) {
-    const uint32_t bit = bits & (0 - bits);
-    const size_t pixel = 32 * word + static_cast<size_t>(__builtin_ctz(bits));
-    if ((to.covered[word] & bit) == 0 || from.nearest[pixel] < to.nearest[pixel]) {
-      to.nearest[pixel] = from.nearest[pixel];
-    }
-  }
-  to.covered[word] |= from.covered[word];
-}
-
-void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to) {
-  const U32 d;
-  const hn::Rebind<uint8_t, U32> bytes;
-  const hn::Rebind<uint16_t, U32> shorts;
-  const size_t lanes = hn::Lanes(d);
-  for (int32_t left = 0; left < width_px; left += 32) {
-    const size_t first = to.word(left, y0);
-    const size_t end = to.word(left, y1);
-    for (size_t word = first; to.gray_scale == nullptr && word < end; ++word) {
-      merge_word(from, word, to);
-    }
-    for (size_t at = 32 * first; to.gray_scale != nullptr && at < 32 * end; at += lanes) {
-      const auto theirs = hn::PromoteTo(d, hn::LoadU(bytes, from.gray + at));
-      const auto ours = hn::PromoteTo(d, hn::LoadU(bytes, to.gray + at));
-      const auto their_sum = hn::PromoteTo(d, hn::LoadU(shorts, from.nearest_sum + at));
-      const auto our_sum = hn::PromoteTo(d, hn::LoadU(shorts, to.nearest_sum + at));
-      const auto is_nearer = hn::Or(hn::Eq(ours, hn::Zero(d)), hn::Lt(their_sum, our_sum));
-      const auto taken = hn::And(hn::Ne(theirs, hn::Zero(d)), is_nearer);
-      const auto gray = hn::BitCast(I32(), hn::IfThenElse(taken, theirs, ours));
-      const auto sum = hn::BitCast(I32(), hn::IfThenElse(taken, their_sum, our_sum));
-      hn::StoreU(hn::DemoteTo(shorts, sum), shorts, to.nearest_sum + at);
-      hn::StoreU(hn::DemoteTo(bytes, gray), bytes, to.gray + at);
-    }
-  }
-}
-
 const char* instruction_set() {
   return hwy::TargetName(HWY_TARGET);
 }
@@ -406,7 +368,6 @@ HWY_EXPORT(unpack);
 HWY_EXPORT(find_grays);
 HWY_EXPORT(put_colors);
 HWY_EXPORT(put_touched);
-HWY_EXPORT(merge_rows);
 HWY_EXPORT(find_faces);
 HWY_EXPORT(instruction_set);
 
@@ -429,9 +390,6 @@ uint32_t put_colors(const Depths& depths, int32_t y, int32_t width_px, const Cod
 uint32_t put_touched(const Depths& depths, int32_t width_px, const CodeBytes& bytes, uint8_t* to,
                      size_t stride) {
   return HWY_DYNAMIC_DISPATCH(put_touched)(depths, width_px, bytes, to, stride);
-}
-void merge_rows(const Depths& from, int32_t width_px, int32_t y0, int32_t y1, const Depths& to) {
-  HWY_DYNAMIC_DISPATCH(merge_rows)(from, width_px, y0, y1, to);
 }
 void find_faces(const WideFrame& frame, const Pixels& pixels, uint8_t* face) {
   HWY_DYNAMIC_DISPATCH(find_faces)(frame, pixels, face);
