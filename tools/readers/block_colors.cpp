@@ -179,164 +179,33 @@ bool has_any(std::string_view name, const std::array<std::string_view, kCount>& 
   return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return has(name, word); });
 }
 
-/// Names of the blocks from number `first` on, up to the next entry; the same for several where they look
-/// alike.
-struct Numbered {
-  unsigned first;
-  std::string_view name;
-};
-constexpr auto kNumbered = std::to_array<Numbered>({
-    {0, "air"},
-    {1, "stone"},
-    {2, "grass"},
-    {3, "dirt"},
-    {4, "cobble"},
-    {5, "plank"},
-    {6, "sapling"},
-    {7, "bedrock"},
-    {8, "water"},
-    {10, "lava"},
-    {12, "sand"},
-    {13, "gravel"},
-    {14, "gold"},
-    {15, "iron_ore"},
-    {16, "coal"},
-    {17, "log"},
-    {18, "leaves"},
-    {19, "sponge"},
-    {20, "glass"},
-    {21, "lapis"},
-    {23, "cobble"},
-    {24, "sandstone"},
-    {25, "plank"},
-    {26, "red_bed"},
-    {27, "rail"},
-    {29, "cobble"},
-    {30, "iron"},
-    {31, "tall_grass"},
-    {33, "cobble"},
-    {35, "wool"},
-    {36, "air"},
-    {37, "dandelion"},
-    {38, "poppy"},
-    {39, "brown_mushroom"},
-    {40, "mushroom"},
-    {41, "gold"},
-    {42, "iron"},
-    {43, "stone"},
-    {45, "brick"},
-    {46, "tnt"},
-    {47, "bookshelf"},
-    {48, "moss"},
-    {49, "obsidian"},
-    {50, "torch"},
-    {51, "fire"},
-    {52, "iron_ore"},
-    {53, "plank"},
-    {55, "redstone"},
-    {56, "diamond"},
-    {58, "plank"},
-    {59, "wheat"},
-    {60, "farmland"},
-    {61, "cobble"},
-    {63, "plank"},
-    {66, "rail"},
-    {67, "cobble"},
-    {68, "plank"},
-    {69, "cobble"},
-    {71, "iron"},
-    {72, "plank"},
-    {73, "redstone"},
-    {75, "torch"},
-    {77, "stone"},
-    {78, "snow"},
-    {79, "ice"},
-    {80, "snow"},
-    {81, "cactus"},
-    {82, "clay"},
-    {83, "reed"},
-    {84, "plank"},
-    {86, "pumpkin"},
-    {87, "netherrack"},
-    {88, "soul"},
-    {89, "glowstone"},
-    {90, "purple_stained"},
-    {91, "jack_o"},
-    {92, "snow"},
-    {93, "stone"},
-    {95, "stained"},
-    {96, "plank"},
-    {97, "stone_brick"},
-    {99, "brown_mushroom"},
-    {100, "mushroom"},
-    {101, "iron"},
-    {102, "glass"},
-    {103, "melon"},
-    {104, "crop"},
-    {106, "vine"},
-    {107, "plank"},
-    {108, "brick"},
-    {109, "stone_brick"},
-    {110, "mycelium"},
-    {111, "lily"},
-    {112, "nether_brick"},
-    {115, "nether"},
-    {116, "obsidian"},
-    {117, "iron_ore"},
-    {118, "cauldron"},
-    {119, "obsidian"},
-    {121, "end_stone"},
-    {122, "obsidian"},
-    {123, "redstone_lamp"},
-    {125, "plank"},
-    {127, "crop"},
-    {128, "sandstone"},
-    {129, "emerald"},
-    {130, "obsidian"},
-    {131, "iron"},
-    {133, "emerald"},
-    {134, "spruce_plank"},
-    {135, "birch_plank"},
-    {136, "jungle_plank"},
-    {137, "brown_wool"},
-    {138, "glass"},
-    {139, "cobble"},
-    {140, "brick"},
-    {141, "crop"},
-    {143, "plank"},
-    {144, "white_wool"},
-    {145, "anvil"},
-    {146, "plank"},
-    {147, "gold"},
-    {148, "iron"},
-    {149, "stone"},
-    {152, "redstone"},
-    {153, "netherrack"},
-    {154, "iron"},
-    {155, "quartz"},
-    {157, "rail"},
-    {158, "cobble"},
-    {159, "terracotta"},
-    {160, "stained"},
-    {161, "leaves"},
-    {162, "acacia_log"},
-    {163, "acacia_plank"},
-    {164, "dark_oak_plank"},
-    {165, "slime"},
-    {166, "barrier"},
-    {167, "iron"},
-    {168, "prismarine"},
-    {169, "sea_lantern"},
-    {170, "hay"},
-    {171, "carpet"},
-    {172, "terracotta"},
-    {173, "coal"},
-    {174, "ice"},
-    {175, "flower"},
-    {176, "wool"},
-    {179, "red_sand"},
-    {183, "plank"},
-});
+/// Names of the blocks from number 0 on, those behind the last as that; a dash is as the one before.
+constexpr std::string_view kBlocksByNumber =
+    "air stone grass dirt cobble plank sapling bedrock water - lava - sand gravel gold iron_ore coal "
+    "log leaves sponge glass lapis - cobble sandstone plank red_bed rail - cobble iron tall_grass - "
+    "cobble - wool air dandelion poppy brown_mushroom mushroom gold iron stone - brick tnt bookshelf "
+    "moss obsidian torch fire iron_ore plank - redstone diamond - plank wheat farmland cobble - plank "
+    "- - rail cobble plank cobble - iron plank redstone - torch - stone snow ice snow cactus clay "
+    "reed plank - pumpkin netherrack soul glowstone purple_stained jack_o snow stone - stained plank "
+    "stone_brick - brown_mushroom mushroom iron glass melon crop - vine plank brick stone_brick "
+    "mycelium lily nether_brick - - nether obsidian iron_ore cauldron obsidian - end_stone obsidian "
+    "redstone_lamp - plank - crop sandstone emerald obsidian iron - emerald spruce_plank birch_plank "
+    "jungle_plank brown_wool glass cobble brick crop - plank white_wool anvil plank gold iron stone - "
+    "- redstone netherrack iron quartz - rail cobble terracotta stained leaves acacia_log "
+    "acacia_plank dark_oak_plank slime barrier iron prismarine sea_lantern hay carpet terracotta coal "
+    "ice flower wool - - red_sand - - - plank";
+constexpr std::size_t kBlockNumbers = 184;
+
+constexpr std::array<std::string_view, kBlockNumbers> names_by_number() {
+  std::array<std::string_view, kBlockNumbers> names{};
+  std::string_view rest = kBlocksByNumber;
+  for (std::size_t i = 0; i < kBlockNumbers; ++i) {
+    const std::string_view word = rest.substr(0, rest.find(' '));
+    names[i] = word == "-" ? names[i - 1] : word;
+    rest.remove_prefix(word.size() + (word.size() < rest.size() ? 1 : 0));
+  }
+  return names;
+}
 
 }  // namespace
 
@@ -377,10 +246,8 @@ std::optional<Rgb> block_color(unsigned number, unsigned data) {
   if (std::find(kByDye.begin(), kByDye.end(), number) != kByDye.end()) {
     return kDyes[data & 15U].color;
   }
-  const auto after =
-      std::upper_bound(kNumbered.begin(), kNumbered.end(), number,
-                       [](unsigned wanted, const Numbered& entry) { return wanted < entry.first; });
-  return block_color(std::prev(after)->name);
+  static constexpr auto kNames = names_by_number();
+  return block_color(kNames[std::min<std::size_t>(number, kBlockNumbers - 1)]);
 }
 
 }  // namespace thimble::tools
