@@ -279,7 +279,7 @@ Notes notes_of_file(Reader reader, const std::string& file) {
 TEST_CASE("binvox: runs -> voxels, y fastest, then z, then x") {
   // Index = (x * 2 + z) * 3 + y; solid: x 0, z 1, y 0 and 1.
   const std::string file = binvox("1 2 3", std::string("\0\x03\x01\x02\0\x01", 6));
-  CHECK(looks_like_binvox(SharedBytes::own(file).bytes));
+  CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
   const auto voxels = read_voxels(read_binvox, file);
   REQUIRE(voxels.size() == 2);
   CHECK(voxels[0] == GridVoxel{0, 0, 1, {}});
@@ -731,7 +731,7 @@ TEST_CASE("qbcl: matrices of models and compounds -> voxels with y up; what is h
                               std::string("\0\xff\0\xff", 4) + little(2, 2) + std::string("\x03\0\0\x02", 4) +
                               std::string("\0\0\xff\x01", 4);
   const std::string file = qbcl(qbcl_node(0, qbcl_matrix(-5, columns)));
-  CHECK(looks_like_qbcl(SharedBytes::own(file).bytes));
+  CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
   const std::vector<GridVoxel> one{{0, 0, 0, {255, 0, 0}},
                                    {0, 0, 2, {0, 255, 0}},
                                    {1, 0, 0, {0, 0, 255}},
@@ -775,7 +775,7 @@ TEST_CASE("qbcl: damage -> a sentence, and nothing is believed") {
 
 TEST_CASE("kv6: columns -> voxels with z up; damage -> a sentence") {
   const std::string file = kv6(3, {2, 1});
-  CHECK(looks_like_kv6(SharedBytes::own(file).bytes));
+  CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
   CHECK(read_voxels(read_kv6, file) ==
         std::vector<GridVoxel>{{0, 0, 299, {3, 2, 1}}, {0, 0, 0, {6, 5, 4}}, {1, 0, 292, {9, 8, 7}}});
   CHECK(accepted_lengths(read_kv6, file).empty());
@@ -846,7 +846,7 @@ TEST_CASE("gox: layers -> voxels, the later over the earlier; copies moved; hidd
   const std::string hidden = gox_entry("visible", std::string(1, '\0'));
   const std::string first = gox_layer(gox_place(0, 0), gox_entry("id", little(7, 4)) + visible);
   const std::string file = gox(blocks + first);
-  CHECK(looks_like_gox(SharedBytes::own(file).bytes));
+  CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
   const std::vector<GridVoxel> one{{3, 0, 0, {0, 255, 0}}, {0, 2, 3, {255, 0, 0}}};
   CHECK(read_voxels(read_gox, file) == one);
   CHECK(accepted_lengths(read_gox, file).empty());

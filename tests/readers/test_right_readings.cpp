@@ -126,7 +126,16 @@ TEST_CASE("colours: what full is follows the file's highest, noted where it is a
   CHECK(notes_hold(mesh, "--colors"));
   CHECK(std::get<TriangleMesh>(read(read_off, corners, 255)).colors.front() == Rgb{1, 0, 0});
 
-  CHECK_THROWS_WITH_AS(read_any({"a.obj", {}, ArrayAs::kByShape, 255}, SharedBytes::own("v 0 0 0\n")),
+  const auto vertices = [](const std::string& red) {
+    return "v 0 0 0 " + red + " 0 0\nv 1 0 0 0 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n";
+  };
+  CHECK(std::get<TriangleMesh>(read(read_obj, vertices("1"), 0)).colors.front() == kRed);
+  CHECK(notes_hold(read(read_obj, vertices("1"), 0), "--colors"));
+  CHECK(std::get<TriangleMesh>(read(read_obj, vertices("0.5"), 0)).colors.front() == Rgb{128, 0, 0});
+  CHECK(std::get<TriangleMesh>(read(read_obj, vertices("51"), 0)).colors.front() == Rgb{51, 0, 0});
+  CHECK(std::get<TriangleMesh>(read(read_obj, vertices("1"), 255)).colors.front() == Rgb{1, 0, 0});
+
+  CHECK_THROWS_WITH_AS(read_any({"a.stl", {}, ArrayAs::kByShape, 255}, SharedBytes::own("solid\n")),
                        doctest::Contains("--colors is for formats"), InputError);
 }
 
@@ -248,10 +257,80 @@ TEST_CASE(
   CHECK(notes_hold(tail, "2 bytes behind the last of the 1 triangles"));
   CHECK(notes_hold(source_of(read_stl, binary + triangle + triangle), "50 bytes behind"));
   CHECK(contains(error_of(read_stl, binary), "counts 1 triangles, but the file has room for 0"));
+  CHECK(contains(error_of(read_stl, std::string(84, '\0') + triangle), "counts no triangles, but 50 bytes"));
+  triangle.back() = '\x80';
+  CHECK(notes_hold(source_of(read_stl, binary + triangle), "1 triangle has attributes, which may be colors"));
   const std::string text =
       "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
       "0\nendloop\nendfacet\nendsolid\n";
   CHECK(read_mesh(read_stl, "\xEF\xBB\xBF" + text).triangles.size() == 1);
+}
+
+TEST_CASE(
+    "ply: names in capitals, lines that hold more than the header says, text behind all -> read and noted") {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float X\nproperty float Y\nproperty float Z\n";
+  const std::string faces = "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string wide = head + faces + "0 0 0 9\n1 0 0 9 9\n0 1 0\n3 0 1 2 7\n3 0 2 1\n";
+  const Source mesh = source_of(read_ply, wide);
+  CHECK(std::get<TriangleMesh>(mesh).triangles ==
+        std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 1}});
+  CHECK(notes_of(mesh) == Notes{"its lines hold more values than the header declares; those are not read"});
+  CHECK(notes_hold(source_of(read_ply, wide + "made by a program\n"), "line 15: 'made' and what follows"));
+  // Without a line each, the words count, and a list may take several lines.
+  const Source words = source_of(read_ply, head + faces + "0 0 0 1 0 0\n0 1 0 3\n0 1 2 3 0 2 1\n");
+  CHECK(std::get<TriangleMesh>(words).triangles == std::get<TriangleMesh>(mesh).triangles);
+  CHECK(notes_of(words).empty());
+  const Source points = source_of(read_ply, head + "end_header\n0 0 0 9\n1 0 0 9\n2 0 0 9\n");
+  CHECK(points_of(points) == 3);
+  CHECK(notes_hold(points, "more values than the header declares"));
+}
+
+TEST_CASE("ply: colours of faces -> theirs, where vertices and pictures have none") {
+  const auto file = [](const std::string& of_vertices, const std::string& type, const std::string& body) {
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
+           of_vertices + "element face 2\nproperty list uchar int vertex_indices\nproperty " + type +
+           " red\nproperty " + type + " green\nproperty " + type + " blue\nend_header\n" + body;
+  };
+  const std::string places = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  CHECK(read_mesh(read_ply, file("", "uchar", places + "4 0 1 2 3 255 0 0\n3 0 1 2 0 0 255\n")).face_colors ==
+        Colors{kRed, kRed, kBlue});
+  CHECK(read_mesh(read_ply, file("", "float", places + "3 0 1 2 0 0.5 0\n3 0 1 2 1 0 0\n")).face_colors ==
+        Colors{{0, 128, 0}, kRed});
+  const std::string colored = "0 0 0 0 0 255\n1 0 0 0 0 255\n1 1 0 0 0 255\n0 1 0 0 0 255\n";
+  const Source both =
+      source_of(read_ply, file("property uchar red\nproperty uchar green\nproperty uchar blue\n", "uchar",
+                               colored + "3 0 1 2 255 0 0\n3 0 1 2 255 0 0\n"));
+  CHECK(std::get<TriangleMesh>(both).face_colors.empty());
+  CHECK(std::get<TriangleMesh>(both).colors.front() == kBlue);
+  CHECK(notes_hold(both, "the colors of its faces are not drawn, but those of its vertices"));
+}
+
+TEST_CASE("obj: lines, points, curves, and Tr without d -> noted") {
+  const std::string face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  CHECK(notes_of(source_of(read_obj, face)).empty());
+  CHECK(notes_hold(source_of(read_obj, face + "l 1 2\np 1\ncurv 0 1 1 2\n"), "3 in all) are not drawn"));
+  const TemporaryFolder folder;
+  const auto notes = [&](const std::string& material) {
+    folder.write("a.mtl", "newmtl a\nKd 1 0 0\n" + material);
+    const std::string path = folder.write("a.obj", "mtllib a.mtl\nusemtl a\n" + face);
+    return notes_of(read_obj(SharedBytes::own("mtllib a.mtl\nusemtl a\n" + face), {path}, {}));
+  };
+  CHECK(notes("Tr 1\n") == Notes{"1 material has Tr and no d: Tr is not read, since programs contradict each "
+                                 "other in it"});
+  CHECK(notes("Tr 1\nd 1\n").empty());
+  CHECK(notes("Tr 0\n").empty());
+}
+
+TEST_CASE("xyz: what a header names and nothing is taken from, and one without x, y and z -> noted") {
+  CHECK(notes_of(source_of(read_xyz, "x,y,z,intensity\n1,2,3,4\n")) ==
+        Notes{"the column 'intensity' is not read"});
+  CHECK(notes_hold(source_of(read_xyz, "x,y,z,r,g,b,a,nx\n1,2,3,4,5,6,7,8\n"),
+                   "the column 'a' and 1 more are"));
+  CHECK(notes_hold(source_of(read_xyz, "lon,lat,height\n1,2,3\n"), "line 1 names no columns x, y and z"));
+  CHECK(notes_of(source_of(read_xyz, "X Y Z\n1 2 3\n")).empty());
+  CHECK(colors_of(source_of(read_xyz, "//X Y Z Rf Gf Bf\n0 0 0 0.5 0 0\n1 1 1 1 0 0\n")) ==
+        Colors{{128, 0, 0}, kRed});
 }
 
 TEST_CASE("pcd: names in capitals, and colours in three fields of bytes or floats -> read") {
@@ -262,6 +341,12 @@ TEST_CASE("pcd: names in capitals, and colours in three fields of bytes or float
     const std::string head = "FIELDS x y z r g b\nSIZE 4 4 4 4 4 4\nTYPE F F F " + std::string(type) + "\n";
     CHECK(colors_of(source_of(read_pcd, head + sizes + "0 0 0 255 0 0\n5 5 5 0 0 255\n")) ==
           Colors{kRed, kBlue});
+  }
+  for (const bool is_turned : {false, true}) {
+    const Source cloud = source_of(read_pcd, "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nVIEWPOINT 0 0 " +
+                                                 std::string(is_turned ? "2" : "0.0") + " 1 0 0 0\n" + sizes +
+                                                 "0 0 0\n5 5 5\n");
+    CHECK(notes_hold(cloud, "without the header's VIEWPOINT") == is_turned);
   }
   const std::string binary =
       "FIELDS x y z r g b\nSIZE 4 4 4 1 1 1\nTYPE F F F U U U\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary\n";

@@ -288,7 +288,7 @@ TEST_CASE("las: all versions and formats -> positions and colours") {
       CAPTURE(format);
       const std::string file =
           las(minor, format, {{2, 4, -6, 65535, 0, 32768}, {1, 1, 1, 1, 2, 3, true}, {7, 8, 9}});
-      CHECK(looks_like_las(SharedBytes::own(file).bytes));
+      CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
       const auto points = read_points(read_las, file);
       REQUIRE(points.size() == 2);
       CHECK(points[0].x == 101);
@@ -441,10 +441,38 @@ TEST_CASE(
     return mesh.notes;
   };
   CHECK(notes(R"("KHR_materials_unlit","KHR_mesh_quantization")").empty());
+  CHECK(contains(error_of(read_gltf, file(R"("KHR_materials_none")")), "extension 'KHR_materials_none'"));
   CHECK(notes(R"("KHR_lights_punctual")") ==
-        Notes{"it requires looks that are not drawn: 'KHR_lights_punctual'"});
+        Notes{"what it says by the extension 'KHR_lights_punctual' is not drawn"});
   CHECK(notes(R"("KHR_texture_basisu","KHR_materials_clearcoat","KHR_lights_punctual")") ==
-        Notes{"it requires looks that are not drawn: 'KHR_texture_basisu' and 2 more"});
+        Notes{"what it says by the extension 'KHR_lights_punctual' and 2 more is not drawn"});
+}
+
+TEST_CASE("gltf: what a file has and is not drawn -> a note each; another version -> refused") {
+  const auto notes = [](const std::string& more, const std::string& accessors, const std::string& from,
+                        const std::string& to) {
+    std::string json = gltf_with(more, accessors, "", R"([{"mesh":0}])");
+    REQUIRE(contains(json, from));
+    json.replace(json.find(from), from.size(), to);
+    return read_mesh(read_gltf, glb(json, triangle_buffer())).notes;
+  };
+  const std::string part = R"("primitives":[)";
+  CHECK(notes("", "", part, part).empty());
+  CHECK(notes(R"("extensionsUsed":["KHR_materials_transmission"],)", "", part, part) ==
+        Notes{"what it says by the extension 'KHR_materials_transmission' is not drawn"});
+  CHECK(notes("", "", part, part + R"({"mode":1,"attributes":{"POSITION":0}},)") ==
+        Notes{"the lines of 1 primitive are not drawn"});
+  CHECK(notes("", "", part, part + R"({"mode":0,"attributes":{"POSITION":0}},)") ==
+        Notes{"the points beside triangles of 1 primitive are not drawn"});
+  CHECK(notes("", "", part, part + R"({"targets":[{}],"attributes":{"POSITION":0}},)") ==
+        Notes{"the morph targets of 1 primitive are not drawn"});
+  const std::string two = R"(,{"bufferView":0,"componentType":5126,"count":2,"type":"VEC3"})";
+  CHECK(notes("", two, R"("POSITION":0)", R"("POSITION":0,"COLOR_0":2)") ==
+        Notes{"the colors, which not all vertices have, of 1 primitive are not drawn"});
+  const std::string four = R"(,{"bufferView":0,"componentType":5121,"count":4,"type":"SCALAR"})";
+  CHECK(notes("", four, R"("indices":1)", R"("indices":2)") ==
+        Notes{"the last corners, too few for a triangle, of 1 primitive are not drawn"});
+  CHECK(contains(error_of(read_gltf, R"({"asset":{"version":"1.0"},"meshes":{"a":{}}})"), "version '1.0'"));
 }
 
 TEST_CASE("gltf: instances of a mesh -> all of them, each in its place") {

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include <sys/stat.h>
 #include <zlib.h>
 
 #include "readers/file_bytes.h"
@@ -538,6 +539,10 @@ TEST_CASE("scene: scenes that multiply -> refused before they are streamed") {
   folder.write("big.scene", "material m\nbox m from 0 0 0 to 512 512 64\n");
   CHECK(contains(open_error(folder.write("bigger.scene", many("model big.scene"))),
                  "more than the limit of 2,147,483,648 voxels"));
+  CHECK(contains(open_error(folder.write("points.scene", "model points:1\nmodel points:134217728\n")),
+                 "line 2, column 7: points:134217728: with this the scene's generators make more than the"));
+  REQUIRE(mkfifo(folder.path("pipe.vox").c_str(), 0600) == 0);
+  CHECK(contains(open_error(folder.write("pipe.scene", "model pipe.vox\n")), "pipe.vox: is no regular file"));
 }
 
 TEST_CASE("scene: models that cannot be read, .gz, options -> as for the command's own SCENE") {
@@ -558,7 +563,6 @@ TEST_CASE("scene: models that cannot be read, .gz, options -> as for the command
   gzclose(file);
   CHECK(open_file(folder.path("z.scene.gz"))->level() == 3);
   CHECK((find_reader("a.SCENE.gz", {})->read == read_scene_text));
-  CHECK(contains(reader_endings(), ".scene"));
 }
 
 TEST_CASE("scene: the command -> one sentence with file, line and column, status 1; --memory holds") {

@@ -47,7 +47,7 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
            ".npy and .npz: an array of H x W numbers is heights at any W");
   add_whole_option(
       app, "--colors", "FULL", 1, 65535, &arguments.full_color,
-      "points, .ply and .off: what a full red, green or blue is in the file (default: 1 where none is "
+      "points, .obj, .ply and .off: what a full red, green or blue is in the file (default: 1 where none is "
       "above it, else 255, else 65535)");
   add_flag(app, "--z-up", &arguments.z_up, "meshes: z is up in the file (default: y is, but in .stl)");
   add_real_option(

@@ -1,7 +1,7 @@
 // `.binvox` grids: one bit a voxel, run by run.
 //
 // What is read: the line `#binvox 1`, the lines `dim`, `translate` and `scale` in any order (the last two
-// are held to nothing and not used), `data`, and pairs of bytes, a value (0 or 1) and how often it comes (1
+// are held to nothing and not used), comments after a #, `data`, and pairs of bytes, a value (0 or 1) and how often it comes (1
 // to 255). Y comes fastest, then z, then x.
 //
 // The axes are those of the mesh that the grid was made from, and the file does not say which of them is up;
@@ -65,9 +65,7 @@ class BinvoxGrid final : public VoxelGrid {
 
  private:
   void header() {
-    if (!looks_like_binvox(file_.bytes)) {
-      throw InputError("is not a binvox file: it does not begin with \"#binvox\"");
-    }
+    ByteReader(file_.bytes).expect(kBinvoxMagic, "binvox file");
     LineReader lines(file_.text());
     std::string_view line;
     lines.next(line);
@@ -90,7 +88,7 @@ class BinvoxGrid final : public VoxelGrid {
           }
           side = static_cast<std::uint32_t>(value);
         }
-      } else if (more && word != "translate" && word != "scale" && !word.empty()) {
+      } else if (more && word != "translate" && word != "scale" && !word.empty() && !word.starts_with('#')) {
         fail_at_line(lines.line_number(), quoted(word) + " is not dim, translate, scale or data");
       }
     }
@@ -106,10 +104,6 @@ class BinvoxGrid final : public VoxelGrid {
 };
 
 }  // namespace
-
-bool looks_like_binvox(std::span<const std::uint8_t> bytes) {
-  return bytes.size() >= kBinvoxMagic.size() && SharedBytes{bytes, nullptr}.text().starts_with(kBinvoxMagic);
-}
 
 /// @throws InputError  another version; no `dim` before `data`, a side of 0 or over `kGridSideLimit`; a value
 ///   other than 0 and 1, runs that end before or after the grid does; no solid voxel

@@ -41,6 +41,13 @@ std::span<const std::uint8_t> ByteReader::take(std::uint64_t count) {
   return taken;
 }
 
+void ByteReader::expect(std::string_view magic, const char* what) {
+  if (remaining() < magic.size() || text(magic.size()) != magic) {
+    throw InputError(std::string("is no ") + what + ": it does not begin with \"" + std::string(magic) +
+                     "\"");
+  }
+}
+
 ByteReader ByteReader::sub(std::uint64_t count, std::string_view place) {
   const std::uint64_t first_offset = offset();
   return ByteReader(take(count), place, first_offset);

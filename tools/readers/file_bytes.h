@@ -153,6 +153,8 @@ class ByteReader {
   const std::string& place() const { return place_; }
 
   void skip(std::uint64_t count) { take(count); }
+  /// Passes over `magic`. @throws InputError  other bytes are there: the file "is no WHAT"
+  void expect(std::string_view magic, const char* what);
   /// The next `count` bytes as they are; the view lives as long as the bytes.
   std::span<const std::uint8_t> take(std::uint64_t count);
   std::string_view text(std::uint64_t count) {

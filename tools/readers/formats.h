@@ -25,6 +25,7 @@ struct ReadOptions {
   std::optional<std::uint32_t> frame{};  ///< of an animation; by default the earliest key of each node
   ArrayAs as = ArrayAs::kByShape;        ///< of an array of numbers
   std::uint16_t full_color = 0;  ///< what a full red, green or blue is; 0: what the file's colors let guess
+  bool is_beside = false;        ///< another file names it, which waits for no pipe or device
 };
 
 /// Reads all of `file`, already decompressed, and checks it. What streams (points, voxels) keeps the file and reads it
@@ -38,9 +39,8 @@ FormatReader read_binvox, read_gadget, read_gltf, read_gox, read_height_grid, re
 
 /// Whether a file that begins so is of the format.
 using FormatLook = bool(std::span<const std::uint8_t> bytes);
-FormatLook looks_like_binvox, looks_like_gadget, looks_like_gltf, looks_like_gox, looks_like_height_grid,
-    looks_like_kv6, looks_like_las, looks_like_mts, looks_like_npy, looks_like_oct, looks_like_octomap,
-    looks_like_off, looks_like_pcd, looks_like_ply, looks_like_qbcl, looks_like_schematic, looks_like_stl,
-    looks_like_vox, looks_like_vxl;
+FormatLook looks_like_gadget, looks_like_gltf, looks_like_height_grid, looks_like_npy, looks_like_oct,
+    looks_like_octomap, looks_like_off, looks_like_pcd, looks_like_ply, looks_like_schematic, looks_like_stl,
+    looks_like_vxl;
 
 }  // namespace thimble::tools

@@ -25,6 +25,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -135,7 +136,10 @@ class Scene {
     find_parts();
     const bool has_faces =
         std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.mode != kPoints; });
-    std::erase_if(parts_, [&](const Part& part) { return has_faces && part.mode == kPoints; });
+    if (has_faces) {
+      undrawn_["the points beside triangles"] +=
+          std::erase_if(parts_, [](const Part& part) { return part.mode == kPoints; });
+    }
     reserve(has_faces);
     std::size_t done = 0;
     for (const Part& part : parts_) {
@@ -199,29 +203,42 @@ class Scene {
     }
   }
 
-  /// Refuses a file that says it means nothing without what is not read here; of looks that is a note.
+  /// Refuses a file that says it means nothing without what is not known here. Looks that are known and not drawn, and
+  /// what it says it may be shown without, are a note.
   void check_extensions() {
     static constexpr std::array<std::string_view, 8> kRead{
         "EXT_mesh_gpu_instancing",         "EXT_texture_webp",
         "KHR_draco_mesh_compression",      "KHR_mesh_quantization",
         "KHR_texture_transform",           "KHR_materials_unlit",
         "KHR_materials_emissive_strength", "KHR_materials_pbrSpecularGlossiness"};
-    std::string first;
-    std::size_t looks = 0;
-    for (const json& required : gltf_list(file_.root(), "extensionsRequired")) {
-      const std::string name = required.is_string() ? required.get<std::string>() : "";
-      if (std::find(kRead.begin(), kRead.end(), name) != kRead.end()) {
-        continue;
+    static constexpr std::array<std::string_view, 16> kLooks{
+        "EXT_lights_ies",           "EXT_lights_image_based",   "EXT_texture_avif",
+        "KHR_lights_punctual",      "KHR_materials_anisotropy", "KHR_materials_clearcoat",
+        "KHR_materials_dispersion", "KHR_materials_ior",        "KHR_materials_iridescence",
+        "KHR_materials_sheen",      "KHR_materials_specular",   "KHR_materials_transmission",
+        "KHR_materials_variants",   "KHR_materials_volume",     "KHR_texture_basisu",
+        "MSFT_texture_dds"};
+    const auto is_in = [](const auto& list, const std::string& name) {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    std::set<std::string> unread;
+    for (const char* const list : {"extensionsRequired", "extensionsUsed"}) {
+      for (const json& entry : gltf_list(file_.root(), list)) {
+        const std::string name = entry.is_string() ? entry.get<std::string>() : "";
+        if (is_in(kRead, name)) {
+          continue;
+        }
+        if (list == std::string_view("extensionsRequired") && !is_in(kLooks, name)) {
+          throw InputError("the file requires the extension " + tools::quoted(name) + ", which is not read");
+        }
+        unread.insert(name);
       }
-      if (name != "KHR_lights_punctual" && !name.starts_with("KHR_materials_") &&
-          name.find("_texture_") == std::string::npos) {
-        throw InputError("the file requires the extension " + tools::quoted(name) + ", which is not read");
-      }
-      first = looks++ == 0 ? tools::quoted(name) : first;
     }
-    if (looks != 0) {
-      mesh_.notes.push_back("it requires looks that are not drawn: " + first +
-                            (looks == 1 ? "" : " and " + std::to_string(looks - 1) + " more"));
+    if (!unread.empty()) {
+      mesh_.notes.push_back(
+          "what it says by the extension " + tools::quoted(*unread.begin()) +
+          (unread.size() == 1 ? "" : " and " + std::to_string(unread.size() - 1) + " more") +
+          " is not drawn");
     }
   }
 
@@ -293,8 +310,10 @@ class Scene {
       part.mode = gltf_number(*part.primitive, "mode", part.place).value_or(kTriangles);
       const json* attributes = gltf_member(*part.primitive, "attributes");
       const bool is_drawn = part.mode == kPoints || (part.mode >= kTriangles && part.mode <= kFan);
+      undrawn_["the lines"] += is_drawn ? 0U : 1U;
+      undrawn_["the morph targets"] += gltf_list(*part.primitive, "targets").empty() ? 0U : 1U;
       if (!is_drawn || attributes == nullptr || gltf_member(*attributes, "POSITION") == nullptr) {
-        continue;  // lines, or nothing
+        continue;
       }
       const std::uint64_t place = *gltf_number(*attributes, "POSITION", part.place);
       const json* packed = gltf_extension(*part.primitive, "KHR_draco_mesh_compression");
@@ -400,6 +419,8 @@ class Scene {
     if (number && indices.components != 1) {
       throw InputError(part.place + ": its indices are vectors");
     }
+    undrawn_["the last corners, too few for a triangle,"] +=
+        part.corners < 3 || (part.mode == kTriangles && part.corners % 3 != 0) ? 1U : 0U;
     Polygons fan(mesh_);
     TriangleStrip strip(mesh_);
     std::array<std::uint32_t, 3> corners{};
@@ -429,6 +450,7 @@ class Scene {
     const auto color = gltf_number(attributes, "COLOR_0", part.place);
     const GltfAccessor colors = color ? file_.accessor(*color) : GltfAccessor{};
     const bool has_colors = colors.components >= 3 && colors.count >= part.vertices;
+    undrawn_["the colors, which not all vertices have,"] += color && !has_colors ? 1U : 0U;
     std::vector<float> alphas;
     is_colored_ =
         is_colored_ || has_colors || look.factor[0] != 1 || look.factor[1] != 1 || look.factor[2] != 1;
@@ -451,6 +473,7 @@ class Scene {
         look.texcoord.empty() ? std::nullopt : gltf_number(attributes, look.texcoord.c_str(), part.place);
     const GltfAccessor corners = texcoord ? file_.accessor(*texcoord) : GltfAccessor{};
     if (corners.components != 2 || corners.count < part.vertices) {
+      undrawn_["the pictures, on which not all vertices have a place,"] += look.texcoord.empty() ? 0U : 1U;
       return;
     }
     mesh_.texcoords.reserve(mesh_.positions.capacity());
@@ -577,7 +600,9 @@ class Scene {
       image = gltf_number(*webp, "source", place);
     }
     if (!image) {
-      textures_.miss("of " + place, "is of a kind that is not read (KTX2)");
+      const bool is_avif = gltf_extension(texture, "EXT_texture_avif") != nullptr;
+      textures_.miss("of " + place,
+                     std::string("is of a kind that is not read (") + (is_avif ? "AVIF)" : "KTX2)"));
       return nullptr;
     }
     const std::string key = "image " + std::to_string(*image);
@@ -587,6 +612,7 @@ class Scene {
     }
     const json* uri = gltf_member(entry, "uri");
     if (uri == nullptr || !uri->is_string()) {
+      textures_.miss(key, "has neither a link nor a buffer view");
       return nullptr;
     }
     const auto& link = uri->get_ref<const std::string&>();
@@ -600,6 +626,16 @@ class Scene {
 
   void add_notes() {
     textures_.add_notes(mesh_.notes);
+    for (const auto& [what, primitives] : undrawn_) {
+      if (primitives != 0) {
+        mesh_.notes.push_back(what + " of " + std::to_string(primitives) +
+                              (primitives == 1 ? " primitive" : " primitives") + " are not drawn");
+      }
+    }
+    if (file_.count("scenes") > 1) {
+      mesh_.notes.push_back("of its " + std::to_string(file_.count("scenes")) +
+                            " scenes the default one is drawn");
+    }
     if (unlit_ != 0) {
       mesh_.notes.push_back(std::to_string(unlit_) + (unlit_ == 1 ? " material is" : " materials are") +
                             " unlit in the file and drawn in the scene's light like others");
@@ -622,8 +658,9 @@ class Scene {
   std::uint64_t bytes_ = 0;
   TriangleMesh mesh_;
   bool is_colored_ = false;
-  std::size_t unlit_ = 0;  ///< materials
-  bool is_clear_ = false;  ///< some triangles are
+  std::map<std::string, std::uint64_t> undrawn_;  ///< of how many primitives
+  std::size_t unlit_ = 0;                         ///< materials
+  bool is_clear_ = false;                         ///< some triangles are
   Textures textures_;
   std::map<std::uint64_t, Look> looks_;  ///< by material
 };

@@ -215,6 +215,13 @@ GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
   }
   if (!file.text().starts_with("glTF")) {
     json_ = parse_json(file.text());
+    const json* asset = gltf_member(json_, "asset");
+    const json* version = asset == nullptr ? nullptr : gltf_member(*asset, "version");
+    if (version != nullptr && version->is_string() &&
+        !version->get_ref<const std::string&>().starts_with("2")) {
+      throw InputError("version " + tools::quoted(version->get_ref<const std::string&>()) +
+                       " is not supported, only 2 is");
+    }
     return;
   }
   ByteReader reader(file.bytes, "the header");

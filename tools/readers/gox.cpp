@@ -67,11 +67,8 @@ class GoxGrid final : public VoxelGrid {
   };
 
   void read_chunks() {
-    if (!looks_like_gox(file_.bytes)) {
-      throw InputError("is no Goxel scene: it does not begin with \"GOX \"");
-    }
     ByteReader reader(file_.bytes);
-    reader.skip(4);
+    reader.expect("GOX ", "Goxel scene");
     const std::uint32_t version = reader.u32();
     if (version < 1 || version > kNewestVersion) {
       throw InputError("version " + std::to_string(version) +
@@ -258,10 +255,6 @@ class GoxGrid final : public VoxelGrid {
 };
 
 }  // namespace
-
-bool looks_like_gox(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with("GOX ");
-}
 
 /// Memory: some 200 bytes a block and layer of the file.
 /// @throws InputError  another beginning or version, chunks that end early, a block that the file does not have or

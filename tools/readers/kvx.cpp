@@ -111,11 +111,8 @@ class KvxGrid final : public ColumnGrid {
 class Kv6Grid final : public ColumnGrid {
  public:
   explicit Kv6Grid(const SharedBytes& file) : ColumnGrid(file) {
-    if (!looks_like_kv6(file.bytes)) {
-      throw InputError("is no KV6 model: it does not begin with \"Kvxl\"");
-    }
     ByteReader reader(file.bytes);
-    reader.skip(4);
+    reader.expect("Kvxl", "KV6 model");
     read_size(reader);
     reader.skip(12);  // the pivot
     count_ = reader.u32();
@@ -154,10 +151,6 @@ class Kv6Grid final : public ColumnGrid {
 };
 
 }  // namespace
-
-bool looks_like_kv6(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with("Kvxl");
-}
 
 /// @throws InputError  a size of 0 or over `kGridSideLimit`, columns or slabs that leave their place, no
 ///   palette, no voxel

@@ -23,7 +23,6 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::string_view kLasMagic = "LASF";
 constexpr std::uint64_t kNoColor = 0;
 
 struct PointFormat {
@@ -88,11 +87,9 @@ class LasCloud final : public PointCloud {
 
  private:
   void read_header(const Progress& progress) {
-    if (!looks_like_las(file_.bytes)) {
-      throw InputError("is not a LAS file: it does not begin with \"LASF\"");
-    }
     ByteReader header(file_.bytes, "the header");
-    header.skip(24);
+    header.expect("LASF", "LAS file");
+    header.skip(20);
     const unsigned major = header.u8();
     const unsigned minor = header.u8();
     if (major != 1 || minor > 4) {
@@ -187,10 +184,6 @@ class LasCloud final : public PointCloud {
 };
 
 }  // namespace
-
-bool looks_like_las(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with(kLasMagic);
-}
 
 /// @throws InputError  another version or format, compressed points, a count that the bytes cannot hold, a
 ///   record too short for its format, a position that is not finite, no point

@@ -427,17 +427,26 @@ FileBytes FileBytes::copy_of(std::span<const std::uint8_t> bytes) {
   return buffer.finish();
 }
 
+namespace {
+
+/// Of a directory opening it says what is wrong.
+void check_regular(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
+    throw InputError("is no regular file");
+  }
+}
+
+}  // namespace
+
 SharedBytes share(FileBytes bytes) {
   auto kept = std::make_shared<const FileBytes>(std::move(bytes));
   return {kept->bytes(), kept};
 }
 
 std::string load_beside(const std::string& path, std::uint64_t limit_bytes, FileBytes& file) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
-    return "is no regular file";
-  }
   try {
+    check_regular(path);
     file = load_file(path, limit_bytes);
     return {};
   } catch (const ShortageError& error) {
@@ -490,7 +499,10 @@ FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const Fi
   }
 }
 
-SharedBytes load_shared(const std::string& path, const FirstLook& look) {
+SharedBytes load_shared(const std::string& path, const FirstLook& look, bool is_beside) {
+  if (is_beside) {
+    check_regular(path);
+  }
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
       static_cast<std::uint64_t>(status.st_size) >= kMappedBytes) {

@@ -13,6 +13,7 @@ namespace thimble::tools {
 inline constexpr std::uint64_t kMappedBytes = std::uint64_t{64} << 20;
 
 /// What `load_file` gives, as readers share it; mapped where the file is large.
-SharedBytes load_shared(const std::string& path, const FirstLook& look);
+/// @param is_beside  another file names it: only a regular one is read, as by `load_beside`
+SharedBytes load_shared(const std::string& path, const FirstLook& look, bool is_beside = false);
 
 }  // namespace thimble::tools

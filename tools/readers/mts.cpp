@@ -12,18 +12,14 @@
 namespace thimble::tools {
 namespace {
 
-constexpr std::string_view kMtsMagic = "MTSM";
 constexpr std::uint64_t kNodeBytes =
     4;  // a number of two bytes, a chance, a turn; each for all nodes together
 
 class MtsGrid final : public VoxelGrid {
  public:
   explicit MtsGrid(const SharedBytes& file) {
-    if (!looks_like_mts(file.bytes)) {
-      throw InputError("is not a Minetest schematic: it does not begin with \"MTSM\"");
-    }
     ByteReader reader(file.bytes, "the header");
-    reader.skip(kMtsMagic.size());
+    reader.expect("MTSM", "Minetest schematic");
     const unsigned version = reader.u16_be();
     if (version < 1 || version > 4) {
       throw InputError("version " + std::to_string(version) +
@@ -90,10 +86,6 @@ class MtsGrid final : public VoxelGrid {
 };
 
 }  // namespace
-
-bool looks_like_mts(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with(kMtsMagic);
-}
 
 /// Memory: 4 bytes a node of the schematic, as many as it unpacks to.
 /// @throws InputError  another version, a side of 0 or over `kGridSideLimit`, damaged deflated data or not as

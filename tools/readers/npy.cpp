@@ -223,6 +223,14 @@ class ArrayGrid final : public VoxelGrid {
       size_[axis] = static_cast<std::int32_t>(side);
     }
     has_color_ = channels_ != 0;
+    const std::uint64_t numbers = array_.header.type.kind == 'f' ? numbers_of(array_.header) : 0;
+    for (std::uint64_t i = 0; i < numbers; ++i) {
+      if (array_.at(i) < 0) {
+        notes.emplace_back(
+            "it holds numbers below 0, as distances to a surface are; solid is what is 0.5 or more");
+        break;
+      }
+    }
     check_solid("the array holds nothing solid");
   }
   void for_each(const Visit& visit) const override {

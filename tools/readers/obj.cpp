@@ -1,32 +1,21 @@
-// `.obj` meshes (Wavefront), parsed by tinyobjloader.
+// `.obj` meshes (Wavefront).
 //
-// What is read: vertices `v x y z`, with colours `v x y z r g b` (0 to 1) when every vertex has one, and
+// What is read: vertices `v x y z`, with colours `v x y z r g b` (color_scale.h) when every vertex has one, and
 // faces `f` of any number of corners, whose indices count from 1 or, negative, back from the last vertex.
 // Where vertices have none, faces have the colour `Kd` of their material in the `.mtl` files beside this one, and
 // where a material has a picture and faces have texture coordinates, the picture's (obj_materials.h). A line may
-// continue after a backslash; a # that begins a word begins a comment. All other statements are ignored: normals,
-// groups, lines and curves play no part. Faces of fewer than three corners make no triangle. A file without faces
+// continue after a backslash; a # that begins a word begins a comment. Lines, points and curves are noted, all other
+// statements ignored, as normals and groups. Faces of fewer than three corners make no triangle. A file without faces
 // becomes a point cloud.
-//
-// tinyobjloader reads what is no number as 0, so each line is checked here before it gets there; and the
-// parser is used through its callbacks, which hold one statement at a time, and given only `v` and `f`
-// statements, because some of the others allocate whatever a number in them says.
 #include "readers/formats.h"
 
-#include <tiny_obj_loader.h>
-
 #include <array>
-#include <charconv>
 #include <cstddef>
-#include <istream>
-#include <streambuf>
 #include <string>
 #include <string_view>
-#include <system_error>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
+#include "readers/color_scale.h"
 #include "readers/mesh.h"
 #include "readers/obj_materials.h"
 #include "readers/text.h"
@@ -34,86 +23,6 @@
 namespace thimble::tools {
 
 namespace {
-
-// The library comes in both precisions; map coordinates need the double one.
-static_assert(std::is_same_v<tinyobj::real_t, double>, "link tinyobjloader::tinyobjloader_double");
-
-/// Hands the `v` and `f` statements of a file to a stream, one a time, as "v words\n". So whoever is called
-/// back from the parser can ask which statement it is about.
-class StatementBuffer final : public std::streambuf {
- public:
-  /// @param texcoords  is given what `vt` statements say
-  StatementBuffer(std::string_view text, const Progress& progress, ObjMaterials& materials,
-                  std::vector<std::array<float, 2>>& texcoords)
-      : lines_(text), meter_(progress, text.size()), materials_(materials), texcoords_(texcoords) {}
-
-  /// The current statement's words after `v` or `f`.
-  std::string_view arguments() const { return std::string_view(statement_).substr(1, statement_.size() - 2); }
-  /// The line on which the current statement begins.
-  std::uint64_t line() const { return first_line_; }
-  /// For the callbacks: what throws in `underflow` would be swallowed by the stream.
-  void report_progress() { meter_.at(lines_.offset()); }
-
- protected:
-  int_type underflow() override {
-    std::string_view line;
-    while (lines_.next(line)) {
-      first_line_ = lines_.line_number();
-      std::string_view rest = line;
-      const std::string_view keyword = take_word(rest);
-      const bool is_wanted = keyword == "v" || keyword == "f";
-      const bool is_comment = keyword.starts_with('#');
-      if (keyword == "usemtl") {
-        materials_.use(rest);
-      } else if (keyword == "mtllib") {
-        materials_.add_library(rest);
-      } else if (keyword == "vt") {
-        std::array<double, 2> place{};
-        for (double& coordinate : place) {
-          parse_number(take_word(rest), coordinate);  // stays 0 where it is none
-        }
-        texcoords_.push_back({static_cast<float>(place[0]), static_cast<float>(1 - place[1])});
-      }
-      if (is_wanted) {
-        statement_.assign(keyword);
-        statement_ += ' ';
-      }
-      append(rest, is_wanted);
-      while (!is_comment && !line.empty() && line.back() == '\\' && lines_.next(line)) {
-        append(line, is_wanted);
-      }
-      if (is_wanted) {
-        statement_ += '\n';
-        setg(statement_.data(), statement_.data(), statement_.data() + statement_.size());
-        return traits_type::to_int_type(statement_.front());
-      }
-    }
-    return traits_type::eof();
-  }
-
- private:
-  void append(std::string_view words, bool is_wanted) {
-    if (!is_wanted) {
-      return;
-    }
-    words = without_comment(words);
-    if (words.ends_with('\\')) {
-      words.remove_suffix(1);
-    }
-    // The parser knows blanks and tabs only, and ends at a zero byte: a '?' makes it the error that it is.
-    for (const char c : words) {
-      statement_ += is_space(c) ? ' ' : (c == 0 ? '?' : c);
-    }
-    statement_ += ' ';
-  }
-
-  LineReader lines_;
-  ProgressMeter meter_;
-  ObjMaterials& materials_;
-  std::vector<std::array<float, 2>>& texcoords_;
-  std::string statement_;
-  std::uint64_t first_line_ = 0;
-};
 
 /// How many lines begin with `v` and how many with `f`: as much as is worth making room for at once.
 std::array<std::size_t, 2> count_statements(std::string_view text) {
@@ -130,33 +39,26 @@ std::array<std::size_t, 2> count_statements(std::string_view text) {
 
 class ObjParser {
  public:
-  ObjParser(std::string_view text, const std::string& path, const Progress& progress)
-      : path_(path), buffer_(text, progress, materials_, mesh_.texcoords) {
+  ObjParser(std::string_view text, const ReadOptions& options, const Progress& progress)
+      : path_(options.path), scale_(options), lines_(text), meter_(progress, text.size()) {
     const auto [vertices, faces] = count_statements(text);
     mesh_.positions.reserve(vertices);
     mesh_.triangles.reserve(faces);
   }
 
   Source parse() {
-    tinyobj::callback_t callbacks;
-    callbacks.vertex_cb = [](void* self, double, double, double, double) {
-      static_cast<ObjParser*>(self)->vertex();
-    };
-    callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
-      static_cast<ObjParser*>(self)->face(indices, static_cast<std::size_t>(count));
-    };
-    std::istream stream(&buffer_);
-    std::string warning;
-    std::string error;
-    const bool done = tinyobj::LoadObjWithCallback(stream, callbacks, this, nullptr, &warning, &error);
-    if (!done || stream.bad() || !error.empty()) {
-      throw InputError("tinyobjloader: " + one_line(error + warning));
+    for (std::string_view line; lines_.next(line);) {
+      line_ = lines_.line_number();
+      meter_.at(lines_.offset());
+      statement(line);
     }
     if (highest_index_ >= mesh_.positions.size() && face_count_ != 0) {
       fail_index(highest_line_, static_cast<std::int64_t>(highest_index_) + 1);
     }
-    if (!all_colored_) {
-      mesh_.colors = {};
+    color_vertices();
+    if (undrawn_ != 0) {
+      mesh_.notes.push_back("lines, points, curves and surfaces (l, p, curv, surf; " +
+                            std::to_string(undrawn_) + " in all) are not drawn");
     }
     polygons_.cut_ears();
     if (mesh_.texcoord_corners.empty()) {
@@ -168,29 +70,56 @@ class ObjParser {
   }
 
  private:
-  static std::string one_line(std::string text) {
-    for (char& c : text) {
-      c = (c >= ' ' && c <= '~') ? c : ' ';
+  /// One statement, of which `line` is the first.
+  void statement(std::string_view line) {
+    std::string_view rest = line;
+    const std::string_view keyword = take_word(rest);
+    if (keyword == "usemtl") {
+      materials_.use(rest);
+    } else if (keyword == "mtllib") {
+      materials_.add_library(rest);
+    } else if (keyword == "vt") {
+      std::array<double, 2> place{};
+      for (double& coordinate : place) {
+        parse_number(take_word(rest), coordinate);  // stays 0 where it is none
+      }
+      mesh_.texcoords.push_back({static_cast<float>(place[0]), static_cast<float>(1 - place[1])});
+    } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "surf") {
+      ++undrawn_;
     }
-    while (!text.empty() && (text.back() == ' ' || text.back() == '.')) {
-      text.pop_back();
+    const bool is_vertex = keyword == "v";
+    const bool is_face = keyword == "f";
+    if (line.ends_with('\\') && !keyword.starts_with('#')) {
+      words_.clear();
+      append(rest, is_vertex || is_face);
+      while (line.ends_with('\\') && lines_.next(line)) {
+        append(line, is_vertex || is_face);
+      }
+      rest = words_;
     }
-    return text.empty() ? "the file cannot be read" : text;
+    if (is_vertex) {
+      vertex(without_comment(rest));
+    } else if (is_face) {
+      face(without_comment(rest));
+    }
   }
 
-  /// One vertex. The numbers are read from the statement again: exactly rounded, and without mistaking what
-  /// is no number for 0.
-  void vertex() {
-    static constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
-    buffer_.report_progress();
-    if (mesh_.positions.size() >= kMeshVertexLimit) {
-      fail_at_line(buffer_.line(),
-                   "the mesh has more than " + std::to_string(kMeshVertexLimit) + " vertices");
+  /// Adds a line of a statement of several.
+  void append(std::string_view words, bool is_wanted) {
+    if (is_wanted) {
+      words = without_comment(words);
+      words_.append(words.substr(0, words.size() - (words.ends_with('\\') ? 1 : 0))) += ' ';
     }
-    std::string_view words = buffer_.arguments();
+  }
+
+  void vertex(std::string_view words) {
+    static constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
+    if (mesh_.positions.size() >= kMeshVertexLimit) {
+      fail_at_line(line_, "the mesh has more than " + std::to_string(kMeshVertexLimit) + " vertices");
+    }
     std::array<double, 3> position{};
     for (std::size_t i = 0; i < 3; ++i) {
-      position[i] = finite_number(take_word(words), buffer_.line(), kNames[i]);
+      position[i] = finite_number(take_word(words), line_, kNames[i]);
     }
     std::array<double, 3> color{};
     bool colored = true;
@@ -200,33 +129,47 @@ class ObjParser {
     mesh_.positions.push_back(position);
     all_colored_ = all_colored_ && colored;
     if (all_colored_) {
-      if (mesh_.colors.empty()) {
-        mesh_.colors.reserve(mesh_.positions.capacity());
+      colors_.reserve(mesh_.positions.capacity());
+      auto& kept = colors_.emplace_back();
+      for (std::size_t i = 0; i < 3; ++i) {
+        kept[i] = scale_.clamped(color[i]);
+        scale_.see(static_cast<double>(kept[i]));
       }
-      mesh_.colors.push_back({unit_to_byte(color[0]), unit_to_byte(color[1]), unit_to_byte(color[2])});
     }
   }
 
-  void face(const tinyobj::index_t* indices, std::size_t corners) {
-    buffer_.report_progress();
-    check_corners();
+  /// What full is shows at the end.
+  void color_vertices() {
+    if (!all_colored_) {
+      return;
+    }
+    scale_.add_note(mesh_.notes);
+    mesh_.colors.reserve(colors_.size());
+    for (const auto& [red, green, blue] : colors_) {
+      mesh_.colors.push_back(
+          scale_.color(static_cast<double>(red), static_cast<double>(green), static_cast<double>(blue)));
+    }
+    colors_ = {};
+  }
+
+  void face(std::string_view words) {
     ++face_count_;
     const std::size_t first_triangle = mesh_.triangles.size();
     polygons_.begin();
     const std::size_t vertex_count = mesh_.positions.size();
-    for (std::size_t i = 0; i < corners; ++i) {
-      const std::int64_t written = indices[i].vertex_index;
+    for (std::string_view corner = take_word(words); !corner.empty(); corner = take_word(words)) {
+      const auto [written, texcoord] = indices_of(corner);
       const std::int64_t index =
           written > 0 ? written - 1 : static_cast<std::int64_t>(vertex_count) + written;
       if (written == 0 || index < 0) {
-        fail_index(buffer_.line(), written);
+        fail_index(line_, written);
       }
       // A vertex may come after the faces that use it, so whether the index is too high shows at the end.
       if (static_cast<std::uint64_t>(index) > highest_index_ || highest_line_ == 0) {
         highest_index_ = static_cast<std::uint64_t>(index);
-        highest_line_ = buffer_.line();
+        highest_line_ = line_;
       }
-      polygons_.add(static_cast<std::uint32_t>(index), texcoord_of(indices[i].texcoord_index));
+      polygons_.add(static_cast<std::uint32_t>(index), texcoord_of(texcoord));
     }
     materials_.take_triangles(first_triangle, mesh_.triangles.size());
   }
@@ -238,23 +181,23 @@ class ObjParser {
     return written == 0 || number < 0 ? kNoTexcoord : static_cast<std::uint32_t>(number);
   }
 
-  /// The parser takes "x" for 0 and 4294967297 for 1; holds the fields of all corners to be integers.
-  void check_corners() const {
-    std::string_view words = buffer_.arguments();
-    for (std::string_view corner = take_word(words); !corner.empty(); corner = take_word(words)) {
-      std::string_view rest = corner;
-      for (int field = 0; !rest.empty() || field == 0; ++field) {
-        const std::size_t slash = rest.find('/');
-        const std::string_view number = rest.substr(0, slash);
-        std::int64_t value = 0;
-        const bool may_be_empty = field > 0;
-        if (field > 2 || !((may_be_empty && number.empty()) || parse_integer(number, value)) ||
-            value > INT32_MAX || value < -INT32_MAX) {
-          fail_at_line(buffer_.line(), "the corner " + quoted(corner) + " of a face is not an index");
-        }
-        rest.remove_prefix(slash == std::string_view::npos ? rest.size() : slash + 1);
+  /// The vertex and the texture coordinate of a corner as they are written, 0 where there is none.
+  std::array<std::int64_t, 2> indices_of(std::string_view corner) const {
+    std::array<std::int64_t, 3> fields{};
+    std::string_view rest = corner;
+    for (std::size_t field = 0; !rest.empty() || field == 0; ++field) {
+      const std::size_t slash = rest.find('/');
+      const std::string_view number = rest.substr(0, slash);
+      std::int64_t value = 0;
+      const bool may_be_empty = field > 0;
+      if (field > 2 || !((may_be_empty && number.empty()) || parse_integer(number, value)) ||
+          value > INT32_MAX || value < -INT32_MAX) {
+        fail_at_line(line_, "the corner " + quoted(corner) + " of a face is not an index");
       }
+      fields[field] = value;
+      rest.remove_prefix(slash == std::string_view::npos ? rest.size() : slash + 1);
     }
+    return {fields[0], fields[1]};
   }
 
   [[noreturn]] void fail_index(std::uint64_t line, std::int64_t index) const {
@@ -266,11 +209,17 @@ class ObjParser {
   }
 
   const std::string& path_;
+  ColorScale scale_;
+  std::vector<std::array<float, 3>> colors_;  ///< of vertices, as written
   ObjMaterials materials_;
   TriangleMesh mesh_;
-  StatementBuffer buffer_;
+  LineReader lines_;
+  ProgressMeter meter_;
+  std::uint64_t line_ = 0;  ///< on which the statement begins
+  std::string words_;       ///< of a statement of several lines
   Polygons polygons_{mesh_};
   bool all_colored_ = true;
+  std::size_t undrawn_ = 0;  ///< statements of lines, points and curves
   std::uint64_t face_count_ = 0;
   std::uint64_t highest_index_ = 0;
   std::uint64_t highest_line_ = 0;
@@ -278,13 +227,13 @@ class ObjParser {
 
 }  // namespace
 
-/// Memory: 24 bytes a vertex (27 with colour), 8 a texture coordinate, 12 a triangle (19 with materials, 35 with
+/// Memory: 24 bytes a vertex (39 with colour), 8 a texture coordinate, 12 a triangle (19 with materials, 35 with
 /// pictures), at most three times the triangles' while they grow, which only polygons make them, and the longest line
 /// twice.
 /// @throws InputError  naming the line: a coordinate that is missing or no finite number, an index that is
 ///   zero, no integer or no vertex of the file
 Source read_obj(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
-  return ObjParser(file.text(), options.path, progress).parse();
+  return ObjParser(file.text(), options, progress).parse();
 }
 
 }  // namespace thimble::tools

@@ -15,10 +15,11 @@ namespace thimble::tools {
 struct ObjMaterial {
   bool is_described = false;
   std::optional<Rgb> color;
-  double opacity = 1;
+  std::optional<double> opacity;
   std::array<double, 3> emission{};
   std::string picture, opacity_picture, glow_picture;  ///< names from the file's folder, or empty
   bool clamps = false;
+  bool has_transparency = false;  ///< `Tr`, which some programs write as they write `d`
 };
 
 namespace {
@@ -89,7 +90,9 @@ void read_library(std::string_view text, const std::string& folder,
         material->color = {unit_to_byte(color[0]), unit_to_byte(color[1]), unit_to_byte(color[2])};
       }
     } else if (word == "d" && parse_number(take_word(line), value) == NumberKind::kFinite) {
-      material->opacity = value;  // not Tr: of what is opaque some programs say 0 there, some 1
+      material->opacity = value;
+    } else if (word == "Tr" && parse_number(take_word(line), value) == NumberKind::kFinite) {
+      material->has_transparency = value != 0;
     }
   }
 }
@@ -176,11 +179,13 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
   Textures textures(path);
   mesh.surfaces.resize(used.size());
   std::size_t missing = 0;
+  std::size_t transparent = 0;
   bool has_picture = false;
   bool has_surface = false;
   bool has_color = false;
   for (std::size_t i = 1; i < used.size(); ++i) {
     missing += used[i].is_described ? 0U : 1U;
+    transparent += used[i].has_transparency && !used[i].opacity ? 1U : 0U;
     has_color = has_color || used[i].color;
     MeshSurface& surface = mesh.surfaces[i];
     surface.wrap_u = surface.wrap_v = used[i].clamps ? Wrap::kClamp : Wrap::kRepeat;
@@ -212,6 +217,10 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
   } else if (missing != 0 && libraries_.empty() && !has_others) {
     mesh.notes.push_back("its materials are not drawn: no file is named that describes them (mtllib)");
   }
+  if (transparent != 0) {
+    mesh.notes.push_back(count(transparent, " material has", " materials have") +
+                         " Tr and no d: Tr is not read, since programs contradict each other in it");
+  }
   if (has_more_) {
     mesh.notes.push_back("materials behind the first " + std::to_string(kMostMaterials - 1) +
                          " are not drawn");
@@ -227,7 +236,7 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
   std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const std::uint32_t number = i < of_triangle_.size() ? of_triangle_[i] : 0;
-    if (used[number].opacity <= 0) {
+    if (used[number].opacity.value_or(1) <= 0) {
       continue;
     }
     mesh.triangles[kept] = mesh.triangles[i];

@@ -74,8 +74,9 @@ class OffParser {
     header();
     vertices();
     faces();
-    if (const std::string_view word = is_by_line_ ? std::string_view() : words_.next(); !word.empty()) {
-      fail(quoted(word) + " comes after the last face");
+    if (const std::string_view word = words_.next(); !word.empty()) {
+      mesh_.notes.push_back("line " + std::to_string(words_.line()) + ": " + quoted(word) +
+                            " and what follows comes after the last face and is not read");
     }
     (face_colors_.empty() ? scale_ : face_scale_).add_note(mesh_.notes);
     return mesh_or_points(std::move(mesh_), face_count_);
@@ -103,19 +104,8 @@ class OffParser {
     // The shortest vertex is "0 0 0" with what separates it from the next, the shortest face "0".
     check_room(vertex_count_, 6, "vertices");
     check_room(face_count_, 2, "faces");
-    is_by_line_ = has_lines(vertex_count_ + face_count_);
+    is_by_line_ = words_.has_lines(vertex_count_ + face_count_);
     end_item();
-  }
-
-  /// Whether so many lines with something on them follow this one.
-  bool has_lines(std::uint64_t wanted) const {
-    WordReader rest = words_;
-    rest.skip_line();
-    while (wanted > 0 && !rest.next().empty()) {
-      rest.skip_line();
-      --wanted;
-    }
-    return wanted == 0;
   }
 
   /// A vertex or a face is over: what else stands on its line is of no use, unless it is the next one.

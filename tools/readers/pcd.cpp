@@ -46,6 +46,7 @@ struct PcdHeader {
   PcdEncoding encoding = PcdEncoding::kText;
   std::size_t data_offset = 0;
   std::uint64_t data_line = 0;
+  bool is_turned = false;  ///< from where the sensor stood to somewhere else
 };
 
 /// Where a value of all points lies.
@@ -112,7 +113,13 @@ class PcdHeaderParser {
       header_.height = number(take_word(line), UINT32_MAX);
     } else if (word == "POINTS") {
       header_.points = number(take_word(line), INT64_MAX);
-    } else if (!word.empty() && word.front() != '#' && word != "VERSION" && word != "VIEWPOINT") {
+    } else if (word == "VIEWPOINT") {
+      for (const double still : {0, 0, 0, 1, 0, 0, 0}) {
+        double value = still;
+        parse_number(take_word(line), value);
+        header_.is_turned = header_.is_turned || value != still;
+      }
+    } else if (!word.empty() && word.front() != '#' && word != "VERSION") {
       fail(quoted(word) + " begins no line of a header");
     }
   }
@@ -233,6 +240,9 @@ class PcdCloud final : public PointCloud {
       throw InputError("the fields r, g and b hold values that are no colors");
     }
     note_left_out(notes, count_ - finite);
+    if (header.is_turned) {
+      notes.emplace_back("its points are drawn as the sensor saw them, without the header's VIEWPOINT");
+    }
     scale_.add_note(notes);
   }
 

@@ -4,14 +4,15 @@
 // `uint8`) and lists anywhere; of these are used
 // - element `vertex`: x, y, z; and red, green, blue (also `diffuse_red` ..., or `r`, `g`, `b`) when all
 //   three are there: integers from 0 to 255 (ushort: 0 to 65535), float and double from 0 to 1, clamped;
-// - element `face`: the list `vertex_indices` or `vertex_index`, a polygon;
+// - element `face`: the list `vertex_indices` or `vertex_index`, a polygon; and, where vertices have no colours, its own;
 // - element `tristrips`: a list of the same name, strips separated by -1.
-// All else is passed over, colours of faces included. A file with faces or strips becomes a mesh, any other
+// All else is passed over. A file with faces or strips becomes a mesh, any other
 // a point cloud that streams from the file's bytes.
 //
 // Header lines may end with LF, CRLF or CR; lines with an unknown first word are passed over like comments,
-// because exporters have written such. Values of a text file may be laid out on lines in any way, but there
-// must be exactly as many as the header declares. Bytes after the last binary element are ignored.
+// because exporters have written such. Values of a text file may be laid out on lines in any way; where the first line
+// of an element holds more than one of it takes, and there are lines for all that follow, each line is one, and what else stands on
+// it is passed over. Text behind the last value is noted; bytes after the last binary element are ignored.
 //
 // Source of the format: Greg Turk, "The PLY Polygon File Format", 1994.
 #include "readers/formats.h"
@@ -22,6 +23,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -53,13 +55,19 @@ bool is_splat(const PlyElement& element) {
 //   skip(type, count)   passes over values
 //   remaining()         bytes left
 //   least_bytes(...)    the fewest bytes a record of an element can take
+//   begin(element), end_record()   what comes next is an element's records; one of them ends
+//   finish(notes)       says what stands behind all of them
 //   fail(sentence)      throws with the place of the value read last
 // and are copyable marks of their own position.
 
 class AsciiBody {
  public:
   AsciiBody(const SharedBytes& file, const PlyHeader& header)
-      : words_(file.text().substr(header.body_offset), 0, header.body_line), start_(header.body_offset) {}
+      : words_(file.text().substr(header.body_offset), 0, header.body_line), start_(header.body_offset) {
+    for (const PlyElement& element : header.elements) {
+      records_left_ += element.properties.empty() ? 0 : element.count;
+    }
+  }
 
   double scalar(const NumberType&) {
     const std::string_view word = next();
@@ -87,10 +95,41 @@ class AsciiBody {
   std::uint64_t line() const { return words_.line(); }
   [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(words_.line(), sentence); }
   static bool skip_fixed(const PlyElement&) { return false; }
-  void finish() {
+  /// Decides whether each of the element's records is a line.
+  void begin(const PlyElement& element) {
+    WordReader line = words_;
+    std::string_view word = line.next();
+    for (const PlyProperty& property : element.properties) {
+      std::int64_t values = 1;
+      if (property.is_list) {
+        parse_integer(word, values);
+        word = line.next_on_line();
+      }
+      for (; values > 0 && !word.empty(); --values) {
+        word = line.next_on_line();
+      }
+    }
+    is_by_line_ = element.count != 0 && !word.empty() && has_line_each_.value_or(true);
+    if (is_by_line_ && !has_line_each_) {
+      has_line_each_ = is_by_line_ = line.has_lines(records_left_ - 1);
+    }
+    has_more_ = has_more_ || is_by_line_;
+  }
+  void end_record() {
+    --records_left_;
+    if (is_by_line_) {
+      words_.skip_line();
+    }
+  }
+  void finish(Notes& notes) {
+    if (has_more_) {
+      notes.push_back("its lines hold more values than the header declares; those are not read");
+    }
     const std::string_view word = words_.next();
     if (!word.empty()) {
-      fail(quoted(word) + " comes after the last value that the header declares");
+      notes.push_back(
+          "line " + std::to_string(words_.line()) + ": " + quoted(word) +
+          " and what follows comes after the last value that the header declares and is not read");
     }
   }
 
@@ -105,6 +144,10 @@ class AsciiBody {
 
   WordReader words_;
   std::size_t start_;
+  bool is_by_line_ = false;
+  bool has_more_ = false;  ///< lines with other values
+  std::uint64_t records_left_ = 0;
+  std::optional<bool> has_line_each_{};  ///< of all that were left when the first line with more was met
 };
 
 class BinaryBody {
@@ -149,7 +192,9 @@ class BinaryBody {
     next_ += static_cast<std::size_t>(element.count * least_bytes(element));
     return true;
   }
-  static void finish() {}
+  static void begin(const PlyElement&) {}
+  static void end_record() {}
+  static void finish(Notes&) {}
 
  private:
   std::span<const std::uint8_t> bytes_;
@@ -158,13 +203,14 @@ class BinaryBody {
 };
 
 template <class Body>
-void check_count(const Body& body, const PlyElement& element) {
+void begin_element(Body& body, const PlyElement& element) {
   const std::uint64_t least = Body::least_bytes(element);
   if (least != 0 && element.count > body.remaining() / least) {
     throw InputError("the header declares " + std::to_string(element.count) + " of element " +
                      tools::quoted(element.name) + ", but the file has room for " +
                      std::to_string(body.remaining() / least) + " at most");
   }
+  body.begin(element);
 }
 
 /// The length of a list, held against the bytes left.
@@ -189,7 +235,7 @@ void skip_property(Body& body, const PlyProperty& property) {
 
 template <class Body>
 void skip_element(Body& body, const PlyElement& element, ProgressMeter& meter) {
-  check_count(body, element);
+  begin_element(body, element);
   // Records without properties take no bytes, whatever their count.
   if (element.properties.empty() || body.skip_fixed(element)) {
     return;
@@ -198,6 +244,7 @@ void skip_element(Body& body, const PlyElement& element, ProgressMeter& meter) {
     for (const PlyProperty& property : element.properties) {
       skip_property(body, property);
     }
+    body.end_record();
     meter.at(body.offset());
   }
 }
@@ -259,7 +306,7 @@ template <class Body, class VisitVertex>
 void read_vertices(Body& body, const PlyElement& element, ProgressMeter& meter, const VisitVertex& visit) {
   // A splat's colour is half and this part of the first of its harmonics, 1 / (2 sqrt(pi)).
   constexpr double kHarmonic = 0.28209479177387814;
-  check_count(body, element);
+  begin_element(body, element);
   PlyVertex vertex;
   for (std::uint64_t record = 0; record < element.count; ++record) {
     for (const PlyProperty& property : element.properties) {
@@ -272,6 +319,7 @@ void read_vertices(Body& body, const PlyElement& element, ProgressMeter& meter, 
           property.is_harmonic ? std::fmin(1, std::fmax(0, 0.5 + kHarmonic * value)) : value;
     }
     vertex.line = body.line();
+    body.end_record();
     visit(vertex);
     meter.at(body.offset());
   }
@@ -300,9 +348,10 @@ struct PlyFace {
   std::vector<std::uint32_t> corners;
   std::vector<std::array<float, 2>> texcoords;
   std::uint32_t surface = 1;  ///< of the mesh: the number of its picture and 1
+  PlyVertex color;            ///< of which only that is set
 };
 
-/// Reads the properties of a face.
+/// Reads a face.
 template <class Body>
 void read_face(Body& body, const PlyElement& element, std::uint64_t record, std::uint64_t vertex_count,
                bool has_pictures, PlyFace& face) {
@@ -322,6 +371,8 @@ void read_face(Body& body, const PlyElement& element, std::uint64_t record, std:
         face.texcoords.push_back(texcoord_of(u, body.scalar(property.type)));
       }
       body.skip(property.type, length % 2);
+    } else if (property.role <= PlyRole::kBlue) {
+      face.color.values[static_cast<std::size_t>(property.role)] = body.scalar(property.type);
     } else if (property.role == PlyRole::kPicture && has_pictures) {
       const double number = body.scalar(property.type);
       face.surface = number >= 0 && number < kMostPlyPictures ? static_cast<std::uint32_t>(number) + 1 : 0;
@@ -329,12 +380,13 @@ void read_face(Body& body, const PlyElement& element, std::uint64_t record, std:
       skip_property(body, property);
     }
   }
+  body.end_record();
 }
 
 template <class Body>
 void read_strips(Body& body, const PlyElement& element, std::uint64_t vertex_count, TriangleMesh& mesh,
                  ProgressMeter& meter) {
-  check_count(body, element);
+  begin_element(body, element);
   for (std::uint64_t record = 0; record < element.count; ++record) {
     for (const PlyProperty& property : element.properties) {
       if (property.role != PlyRole::kIndices) {
@@ -352,15 +404,17 @@ void read_strips(Body& body, const PlyElement& element, std::uint64_t vertex_cou
         }
       }
     }
+    body.end_record();
     meter.at(body.offset());
   }
 }
 
 /// @param pictures  that the file names
+/// @param parts     of the faces' colours; null where those are not drawn
 template <class Body>
 void read_faces(Body& body, const PlyElement& element, std::uint64_t vertex_count, std::size_t pictures,
-                TriangleMesh& mesh, Polygons& polygons, ProgressMeter& meter) {
-  check_count(body, element);
+                const ColorParts* parts, TriangleMesh& mesh, Polygons& polygons, ProgressMeter& meter) {
+  begin_element(body, element);
   // Most files hold triangles only; the check above makes this at most a few times the file's size.
   mesh.triangles.reserve(mesh.triangles.size() + static_cast<std::size_t>(element.count));
   PlyFace face;
@@ -378,6 +432,9 @@ void read_faces(Body& body, const PlyElement& element, std::uint64_t vertex_coun
     }
     if (pictures > 1) {
       mesh.surface_of.resize(mesh.triangles.size(), face.surface <= pictures ? face.surface : 0);
+    }
+    if (parts != nullptr) {
+      mesh.face_colors.resize(mesh.triangles.size(), parts->color(face.color));
     }
     meter.at(body.offset());
   }
@@ -414,6 +471,29 @@ void add_pictures(const std::string& path, const PlyHeader& header, TriangleMesh
   }
 }
 
+/// The faces, in their own colours where vertices have none and no picture is named.
+template <class Body>
+void add_faces(Body& body, const PlyElement& element, const PlyHeader& header, const PlyElement& vertices,
+               const ReadOptions& options, TriangleMesh& mesh, Polygons& polygons, ProgressMeter& meter) {
+  const bool is_colored = has_color(element) && !has_color(vertices) && header.pictures.empty();
+  ColorParts parts(element, options);
+  if (is_colored) {
+    Body ahead = body;  // what full is shows at their end
+    PlyFace face;
+    begin_element(ahead, element);
+    for (std::uint64_t record = 0; record < element.count; ++record) {
+      read_face(ahead, element, record, vertices.count, false, face);
+      parts.see(face.color);
+    }
+    parts.add_note(mesh.notes);
+  } else if (has_color(element)) {
+    mesh.notes.push_back(std::string("the colors of its faces are not drawn, but those of its ") +
+                         (header.pictures.empty() ? "vertices" : "pictures"));
+  }
+  read_faces(body, element, vertices.count, header.pictures.size(), is_colored ? &parts : nullptr, mesh,
+             polygons, meter);
+}
+
 /// Walks a whole body and gathers its mesh.
 template <class Body>
 TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& vertices,
@@ -426,7 +506,7 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
   Polygons polygons(mesh);
   for (const PlyElement& element : header.elements) {
     if (element.kind == PlyElementKind::kVertex) {
-      check_count(body, element);
+      begin_element(body, element);
       mesh.positions.reserve(static_cast<std::size_t>(element.count));
       const bool colored = has_color(element);
       // Those of corners count before those of vertices.
@@ -454,7 +534,7 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
       }
     } else if (holds_polygons(element)) {
       if (element.kind == PlyElementKind::kFace) {
-        read_faces(body, element, vertices.count, header.pictures.size(), mesh, polygons, meter);
+        add_faces(body, element, header, vertices, options, mesh, polygons, meter);
       } else {
         read_strips(body, element, vertices.count, mesh, meter);
       }
@@ -462,7 +542,10 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
       skip_element(body, element, meter);
     }
   }
-  body.finish();
+  body.finish(mesh.notes);
+  if (!mesh.face_colors.empty()) {
+    mesh.face_colors.resize(mesh.triangles.size());  // strips have none
+  }
   polygons.cut_ears();
   return mesh;
 }
@@ -563,7 +646,7 @@ Source read_body(const SharedBytes& file, const ReadOptions& options, const PlyH
       skip_element(body, element, meter);
     }
   }
-  body.finish();
+  body.finish(cloud->notes);
   return cloud;
 }
 

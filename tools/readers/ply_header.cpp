@@ -30,39 +30,31 @@ std::optional<NumberType> type_named(std::string_view name) {
   return std::nullopt;
 }
 
+bool is_splat(std::string_view name) {
+  return name.starts_with("f_dc_");
+}
+
 PlyRole role_of(PlyElementKind kind, std::string_view name, bool is_list) {
-  struct Name {
-    std::string_view name;
+  struct Names {
+    std::string_view names;
     PlyRole role;
   };
-  static constexpr std::array<Name, 24> kScalars{{{"x", PlyRole::kX},
+  static constexpr std::array<Names, 9> kScalars{{{"x", PlyRole::kX},
                                                   {"y", PlyRole::kY},
                                                   {"z", PlyRole::kZ},
-                                                  {"red", PlyRole::kRed},
-                                                  {"green", PlyRole::kGreen},
-                                                  {"blue", PlyRole::kBlue},
-                                                  {"diffuse_red", PlyRole::kRed},
-                                                  {"diffuse_green", PlyRole::kGreen},
-                                                  {"diffuse_blue", PlyRole::kBlue},
-                                                  {"r", PlyRole::kRed},
-                                                  {"g", PlyRole::kGreen},
-                                                  {"b", PlyRole::kBlue},
-                                                  {"f_dc_0", PlyRole::kRed},
-                                                  {"f_dc_1", PlyRole::kGreen},
-                                                  {"f_dc_2", PlyRole::kBlue},
+                                                  {"red diffuse_red r f_dc_0", PlyRole::kRed},
+                                                  {"green diffuse_green g f_dc_1", PlyRole::kGreen},
+                                                  {"blue diffuse_blue b f_dc_2", PlyRole::kBlue},
                                                   {"opacity", PlyRole::kOpacity},
-                                                  {"u", PlyRole::kU},
-                                                  {"v", PlyRole::kV},
-                                                  {"s", PlyRole::kU},
-                                                  {"t", PlyRole::kV},
-                                                  {"texture_u", PlyRole::kU},
-                                                  {"texture_v", PlyRole::kV},
-                                                  {"texcoord_u", PlyRole::kU},
-                                                  {"texcoord_v", PlyRole::kV}}};
-  if (kind == PlyElementKind::kVertex && !is_list) {
-    for (const Name& known : kScalars) {
-      if (name == known.name) {
-        return known.role;
+                                                  {"u s texture_u texcoord_u", PlyRole::kU},
+                                                  {"v t texture_v texcoord_v", PlyRole::kV}}};
+  for (auto [names, role] : kScalars) {
+    const bool is_of_faces =
+        role >= PlyRole::kRed && role <= PlyRole::kBlue && kind == PlyElementKind::kFace && !is_splat(name);
+    const bool is_of_it = !is_list && (kind == PlyElementKind::kVertex || is_of_faces);
+    for (std::string_view known = take_word(names); is_of_it && !known.empty(); known = take_word(names)) {
+      if (equals_ignoring_case(name, known)) {
+        return role;
       }
     }
   }
@@ -193,7 +185,7 @@ class PlyHeaderParser {
       fail("a property has no name");
     }
     added.role = role_of(element.kind, name, added.is_list);
-    added.is_harmonic = name.starts_with("f_dc_");
+    added.is_harmonic = is_splat(name);
     if (added.role != PlyRole::kUnused && has_role(element, added.role)) {
       if (added.role <= PlyRole::kZ || added.role == PlyRole::kIndices) {
         fail("property " + quoted(name) + " is declared twice");

@@ -83,10 +83,8 @@ class QubicleGrid final : public VoxelGrid {
   }
 
   void read_project(ByteReader& reader) {
-    if (!looks_like_qbcl(file_.bytes)) {
-      throw InputError("is no Qubicle project: it does not begin with \"QBCL\"");
-    }
-    reader.skip(8);  // and the program's version
+    reader.expect("QBCL", "Qubicle project");
+    reader.skip(4);  // the program's version
     if (const std::uint32_t version = reader.u32(); version != kProjectVersion) {
       reader.fail("version " + std::to_string(version) + " of Qubicle's projects is not read, only 2 is");
     }
@@ -288,10 +286,6 @@ class QubicleGrid final : public VoxelGrid {
 };
 
 }  // namespace
-
-bool looks_like_qbcl(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with("QBCL");
-}
 
 /// @throws InputError  another version, a code that there is not, matrices or slices that the bytes do not
 ///   hold, a scene over `kGridSideLimit` on a side, no voxel

@@ -14,9 +14,7 @@ namespace thimble::tools {
 
 namespace {
 
-bool looks_like_zip(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with("PK\x03\x04");
-}
+FormatReader read_zip;
 
 /// The scene in an archive: what a reader knows by name or beginning. Text that may be anything is one only where
 /// nothing else is.
@@ -30,8 +28,8 @@ ZipMember scene_member(std::span<const std::uint8_t> file) {
     }
     const FileBytes beginning = zip_beginning(member, kFirstLookBytes);
     const ReaderRow* const row = find_reader(name, beginning.bytes());
-    if (row == nullptr || looks_like_zip(beginning.bytes()) ||
-        (row->beginning == Beginning::kMagic && (!row->looks_like || !row->looks_like(beginning.bytes())))) {
+    if (row == nullptr || row->read == read_zip ||
+        (row->beginning == Beginning::kMagic && !row->knows(beginning.bytes()))) {
       continue;
     }
     (name.ends_with(".txt") ? texts : scenes).push_back(member);
@@ -58,7 +56,7 @@ Source read_zip(const SharedBytes& file, const ReadOptions& options, const Progr
 
 // The one place that knows all formats. Where two recognise the same bytes, the first one counts.
 constexpr std::array<ReaderRow, 27> kRows{{
-    {".vox", "MagicaVoxel model", read_vox, looks_like_vox, Beginning::kMagic},
+    {".vox", "MagicaVoxel model", read_vox, nullptr, Beginning::kMagic, "VOX "},
     {".ply", "PLY mesh or points", read_ply, looks_like_ply, Beginning::kMagic},
     {".obj", "Wavefront mesh", read_obj, nullptr, Beginning::kText},
     {".off", "OFF mesh", read_off, looks_like_off, Beginning::kText},
@@ -66,26 +64,26 @@ constexpr std::array<ReaderRow, 27> kRows{{
     {".glb .gltf", "glTF scene", read_gltf, looks_like_gltf, Beginning::kMagic},
     {".xyz .csv .txt .tsv .pts", "points, one a line", read_xyz, nullptr, Beginning::kText},
     {".pcd", "PCL point cloud", read_pcd, looks_like_pcd, Beginning::kMagic},
-    {".las", "LAS laser scan", read_las, looks_like_las, Beginning::kMagic},
-    {".laz", "compressed LAS laser scan", read_las, nullptr, Beginning::kMagic},
+    {".las", "LAS laser scan", read_las, nullptr, Beginning::kMagic, "LASF"},
+    {".laz", "compressed LAS laser scan", read_las, nullptr, Beginning::kMagic, "LASF"},
     {".dat", "Gadget-1 snapshot", read_gadget, looks_like_gadget, Beginning::kMagic},
     {".oct", "baked scene", read_oct, looks_like_oct, Beginning::kMagic},
     {".scene", "scene text", read_scene_text, nullptr, Beginning::kText},
-    {".binvox", "binvox grid", read_binvox, looks_like_binvox, Beginning::kMagic},
+    {".binvox", "binvox grid", read_binvox, nullptr, Beginning::kMagic, "#binvox"},
     {".npy", "NumPy array", read_npy, looks_like_npy, Beginning::kMagic},
     {".npz", "NumPy archive", read_npy, nullptr, Beginning::kAny},
-    {".zip", "archive of one scene", read_zip, looks_like_zip},
+    {".zip", "archive of one scene", read_zip, nullptr, Beginning::kAny, "PK\x03\x04"},
     {".asc", "grid of heights", read_height_grid, looks_like_height_grid, Beginning::kMagic},
-    {".mts", "Minetest schematic", read_mts, looks_like_mts, Beginning::kMagic},
+    {".mts", "Minetest schematic", read_mts, nullptr, Beginning::kMagic, "MTSM"},
     {".schematic .schem .litematic .nbt", "Minecraft schematic", read_schematic, looks_like_schematic,
      Beginning::kMagic},
     {".bt .ot", "OctoMap octree", read_octomap, looks_like_octomap, Beginning::kMagic},
     {".qb", "Qubicle model", read_qb, nullptr},
-    {".qbcl", "Qubicle project", read_qbcl, looks_like_qbcl, Beginning::kMagic},
+    {".qbcl", "Qubicle project", read_qbcl, nullptr, Beginning::kMagic, "QBCL"},
     {".kvx", "KVX model", read_kvx, nullptr},
-    {".kv6", "KV6 model", read_kv6, looks_like_kv6, Beginning::kMagic},
+    {".kv6", "KV6 model", read_kv6, nullptr, Beginning::kMagic, "Kvxl"},
     {".vxl", "Voxlap map", read_vxl, looks_like_vxl},
-    {".gox", "Goxel scene", read_gox, looks_like_gox, Beginning::kMagic},
+    {".gox", "Goxel scene", read_gox, nullptr, Beginning::kMagic, "GOX "},
 }};
 
 bool has_ending(std::string_view path, std::string_view ending) {
@@ -96,8 +94,8 @@ bool has_ending(std::string_view path, std::string_view ending) {
 const ReaderRow& row_for(std::string_view path, std::span<const std::uint8_t> bytes) {
   const ReaderRow* row = find_reader(path, bytes);
   if (row == nullptr) {
-    throw InputError("neither the name nor the contents tell what this file is; known endings are " +
-                     reader_endings());
+    throw InputError(
+        "neither the name nor the contents tell what this file is; thimble info --help lists what is read");
   }
   return *row;
 }
@@ -124,7 +122,7 @@ std::span<const ReaderRow> reader_rows() {
 
 const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t> bytes) {
   for (const ReaderRow& row : kRows) {
-    if (row.looks_like != nullptr && row.looks_like(bytes)) {
+    if (row.knows(bytes)) {
       return &row;
     }
   }
@@ -145,20 +143,9 @@ const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t
   return nullptr;
 }
 
-std::string reader_endings() {
-  std::string out;
-  for (const ReaderRow& row : kRows) {
-    std::string_view endings = row.endings;
-    for (std::string_view ending = take_word(endings); !ending.empty(); ending = take_word(endings)) {
-      out += (out.empty() ? "" : ", ") + std::string(ending);
-    }
-  }
-  return out;
-}
-
 void check_beginning(std::string_view path, std::span<const std::uint8_t> first) {
   const ReaderRow& row = row_for(path, first);
-  if (row.beginning == Beginning::kMagic && (row.looks_like == nullptr || !row.looks_like(first))) {
+  if (row.beginning == Beginning::kMagic && !row.knows(first)) {
     row.read({first, nullptr}, {}, {});  // says how such a file begins
   }
   if (row.beginning == Beginning::kText) {
@@ -176,7 +163,8 @@ Source read_any(const ReadOptions& options, const SharedBytes& file, const Progr
     throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a " +
                      std::string(row.name));
   }
-  constexpr std::array kColorGuessers{read_las, read_npy, read_off, read_pcd, read_ply, read_xyz, read_zip};
+  constexpr std::array kColorGuessers{read_las, read_npy, read_obj, read_off,
+                                      read_pcd, read_ply, read_xyz, read_zip};
   if (options.full_color != 0 &&
       std::find(kColorGuessers.begin(), kColorGuessers.end(), row.read) == kColorGuessers.end()) {
     throw InputError("--colors is for formats that do not say what a full color is, and this is a " +
@@ -191,7 +179,7 @@ Source read_any(const ReadOptions& options, const SharedBytes& file, const Progr
 
 Source read_scene_file(const ReadOptions& options, const Progress& progress) {
   const FirstLook look = [&](std::span<const std::uint8_t> first) { check_beginning(options.path, first); };
-  return read_any(options, load_shared(options.path, look), progress);
+  return read_any(options, load_shared(options.path, look, options.is_beside), progress);
 }
 
 }  // namespace thimble::tools

@@ -26,6 +26,11 @@ struct ReaderRow {
   FormatReader* read;
   FormatLook* looks_like;  ///< counts for more than the name; null where the first bytes do not tell
   Beginning beginning = Beginning::kAny;
+  std::string_view magic{};  ///< what a file begins with, in place of `looks_like`
+  bool knows(std::span<const std::uint8_t> bytes) const {
+    return magic.empty() ? looks_like != nullptr && looks_like(bytes)
+                         : SharedBytes{bytes, nullptr}.text().starts_with(magic);
+  }
 };
 
 /// The table's rows, in the order in which they are tried.
@@ -35,9 +40,6 @@ std::span<const ReaderRow> reader_rows();
 /// final `.gz`, `.zst` or `.xz`; null when there is none. So what a file holds counts for more than its name, and a `.ply`
 /// that no reader recognises is a broken `.ply`.
 const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t> bytes);
-
-/// All endings of the table, as ".off, .ply, ..." for errors and help.
-std::string reader_endings();
 
 /// Refuses a file by its first bytes where these suffice for it.
 /// @throws InputError  no reader knows the file, or the one that does says how such a file begins

@@ -2,8 +2,8 @@
 //
 // A file is binary when it does not begin with the word `solid`, or holds a zero byte in its first
 // `kFirstLookBytes`: exporters have written binary files that begin so. Of a text all `vertex` lines count, three a
-// facet, of any number of solids; of a binary file bytes behind the last triangle are noted, and colours are ignored, which programs write in ways that contradict each other. Normals are not
-// used. Corners are not joined: each triangle has three positions of its own.
+// facet, of any number of solids; of a binary file bytes behind the last triangle are noted, and so are attributes: as colours
+// programs write them in ways that contradict each other. Normals are not used. Corners are not joined: each triangle has three positions of its own.
 //
 // z is up, as the programs have it that make such files.
 //
@@ -55,6 +55,7 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
   }
   TriangleMesh mesh;
   reserve(mesh, count);
+  std::uint32_t attributed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     reader.skip(3 * sizeof(float));  // the normal
     std::array<std::array<double, 3>, 3> corners{};
@@ -67,9 +68,18 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
         }
       }
     }
-    reader.skip(2);
+    attributed += reader.u16() != 0 ? 1U : 0U;
     add(mesh, corners);
     meter.at(static_cast<std::size_t>(reader.offset()));
+  }
+  if (count == 0 && reader.remaining() != 0) {
+    throw InputError("the header counts no triangles, but " + std::to_string(reader.remaining()) +
+                     " bytes follow it");
+  }
+  if (attributed != 0) {
+    mesh.notes.push_back(std::to_string(attributed) +
+                         (attributed == 1 ? " triangle has" : " triangles have") +
+                         " attributes, which may be colors; they are not read");
   }
   if (reader.remaining() != 0) {
     mesh.notes.push_back(std::to_string(reader.remaining()) + " bytes behind the last of the " +

@@ -158,6 +158,16 @@ void WordReader::pass_line_end() {
   ++line_;
 }
 
+bool WordReader::has_lines(std::uint64_t wanted) const {
+  WordReader rest = *this;
+  rest.skip_line();
+  while (wanted > 0 && !rest.next().empty()) {
+    rest.skip_line();
+    --wanted;
+  }
+  return wanted == 0;
+}
+
 void WordReader::skip_line() {
   while (next_ < text_.size() && !at_line_end()) {
     ++next_;

@@ -90,6 +90,8 @@ class WordReader {
   std::string_view next_on_line();
   /// Passes over what is left of the current line.
   void skip_line();
+  /// Whether so many lines with something on them follow this one.
+  bool has_lines(std::uint64_t wanted) const;
   /// Line of the word that was read last, or of the line end reached by `skip_line`.
   std::uint64_t line() const { return line_; }
   std::size_t offset() const { return next_; }

@@ -48,7 +48,6 @@ constexpr std::uint32_t kVoxInstanceLimit = 65536;
 constexpr std::uint64_t kVoxAnimationLimit = std::uint64_t{1} << 22;
 /// Most voxels in all placed models together: what one call of `for_each` may have to do.
 constexpr std::uint64_t kVoxPlacedVoxelLimit = std::uint64_t{1} << 31;
-constexpr std::string_view kVoxMagic = "VOX ";
 constexpr std::size_t kVoxelBytes = 4;  // x, y, z, colour index
 
 /// One SIZE and XYZI or TDCZ pair.
@@ -172,10 +171,7 @@ ChunkHead read_head(ByteReader& reader) {
 
 void VoxFile::read_chunks(ProgressMeter& meter) {
   ByteReader file(file_.bytes);
-  if (!looks_like_vox(file_.bytes)) {
-    throw InputError("is not a MagicaVoxel file: it does not begin with \"VOX \"");
-  }
-  file.skip(kVoxMagic.size());
+  file.expect("VOX ", "MagicaVoxel file");
   const std::uint32_t version = file.u32();
   if (version != 150 && version != 200) {
     throw InputError("version " + std::to_string(version) +
@@ -408,10 +404,6 @@ void VoxFile::set_size() {
 }
 
 }  // namespace
-
-bool looks_like_vox(std::span<const std::uint8_t> bytes) {
-  return SharedBytes{bytes, nullptr}.text().starts_with(kVoxMagic);
-}
 
 /// Beyond the file, memory is a small multiple of the chunks in the file (some 100 bytes a node or model) plus 24 bytes
 /// a placed model. Voxels come model by model in the scene graph's order (depth first, children as listed), each in the

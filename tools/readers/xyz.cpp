@@ -14,7 +14,7 @@
 //    `.pts`); it must then be right, which finds files that were cut off.
 // 2. A line whose first column is not a number is a header, once, before all points. Columns named x, y, z
 //    (any case, quotes allowed, a leading // allowed) are the coordinates; without these three names they
-//    are the first three columns of what follows. Columns named r, g, b or red, green, blue are the colour.
+//    are the first three columns of what follows. Columns named r, g, b, red, green, blue or Rf, Gf, Bf are the colour.
 //    Columns named ra and dec (raj2000, ra_icrs, dec, de, ...) are a catalogue of stars: right ascension in degrees, or
 //    in hours where none of the file is above 24; declination in degrees; both as 12:34:56.7, too; dist, distance or dist_pc in parsecs, or
 //    parallax or plx in thousandths of an arc second, from which the distance is 1000 / parallax; a sphere without
@@ -176,6 +176,9 @@ struct Layout {
   bool is_catalogue() const { return distance != Distance::kNoCatalogue; }
   /// A line of words before the points that names no x, y and z; 0 when there is none.
   std::uint64_t title_line = 0;
+  /// Columns that the header names and nothing is taken from, and the first of them.
+  std::size_t unread_columns = 0;
+  std::string unread;
 };
 
 constexpr std::array<const char*, kFields> kFieldNames{"x", "y", "z", "red", "green", "blue"};
@@ -349,28 +352,17 @@ std::string_view without_quotes(std::string_view name) {
 /// Finds the columns that a header names; true when those of places are among them.
 bool read_header(std::string_view line, Layout& layout) {
   enum : std::size_t { kAscension = kFields, kDeclination, kParsecs, kParallax, kKnown };
-  static constexpr std::array<std::pair<const char*, std::size_t>, 22> kNames{{{"x", 0},
-                                                                               {"y", 1},
-                                                                               {"z", 2},
-                                                                               {"r", 3},
-                                                                               {"g", 4},
-                                                                               {"b", 5},
-                                                                               {"red", 3},
-                                                                               {"green", 4},
-                                                                               {"blue", 5},
-                                                                               {"ra", kAscension},
-                                                                               {"ra_deg", kAscension},
-                                                                               {"raj2000", kAscension},
-                                                                               {"ra_icrs", kAscension},
-                                                                               {"dec", kDeclination},
-                                                                               {"de", kDeclination},
-                                                                               {"dec_deg", kDeclination},
-                                                                               {"dej2000", kDeclination},
-                                                                               {"de_icrs", kDeclination},
-                                                                               {"dist", kParsecs},
-                                                                               {"distance", kParsecs},
-                                                                               {"parallax", kParallax},
-                                                                               {"plx", kParallax}}};
+  // By field.
+  static constexpr std::array<std::string_view, kKnown> kNames{"x",
+                                                               "y",
+                                                               "z",
+                                                               "r red rf",
+                                                               "g green gf",
+                                                               "b blue bf",
+                                                               "ra ra_deg raj2000 ra_icrs",
+                                                               "dec de dec_deg dej2000 de_icrs",
+                                                               "dist distance dist_pc",
+                                                               "parallax plx"};
   std::array<std::size_t, kKnown> found{};
   found.fill(kNoColumn);
   // "// x y z": the slashes are no column.
@@ -384,10 +376,18 @@ bool read_header(std::string_view line, Layout& layout) {
   std::size_t i = 0;
   for (; columns.next(column); ++i) {
     const std::string_view name = without_quotes(column);
-    for (const auto& [known, field] : kNames) {
-      if (equals_ignoring_case(name, known) && found[field] == kNoColumn) {
-        found[field] = i;
+    bool is_read = false;
+    for (std::size_t field = 0; field < kKnown; ++field) {
+      std::string_view names = kNames[field];
+      for (std::string_view known = take_word(names); !known.empty(); known = take_word(names)) {
+        if (equals_ignoring_case(name, known) && found[field] == kNoColumn) {
+          found[field] = i;
+          is_read = true;
+        }
       }
+    }
+    if (!is_read && layout.unread_columns++ == 0) {
+      layout.unread = name;
     }
   }
   bool names_position = std::find(found.begin(), found.begin() + 3, kNoColumn) == found.begin() + 3;
@@ -618,6 +618,16 @@ Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progr
   }
   if (layout.has_color) {
     layout.scale.add_note(cloud->notes);
+  }
+  if (layout.title_line != 0) {
+    cloud->notes.push_back("line " + std::to_string(layout.title_line) +
+                           " names no columns x, y and z: the first three are taken for places");
+  } else if (layout.unread_columns != 0 && !layout.is_catalogue()) {
+    cloud->notes.push_back("the column " + quoted(layout.unread) +
+                           (layout.unread_columns == 1
+                                ? " is"
+                                : " and " + std::to_string(layout.unread_columns - 1) + " more are") +
+                           " not read");
   }
   if (layout.has_elements) {
     cloud->notes.push_back("it is a molecule: its atoms are points, their elements are not shown");

@@ -209,6 +209,7 @@ FitWishes fit_wishes(const SceneArguments& arguments) {
 
 std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const SceneArguments& arguments) {
   constexpr int kDefaultDepth = 9;
+  constexpr double kColumnSides = 16;  // a column so many times as high as wide is no place that was scanned
   // A cloud, what the first pass learned of it, and its colours.
   struct Points {
     Points(std::unique_ptr<PointCloud> read, const FitWishes* wishes)
@@ -251,6 +252,15 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
           fit_points(*points->cloud, points->survey, level, &points->colors, counted);
         }
       });
+  const Bounds& world = points->survey.world;
+  const auto extent_of = [&](std::size_t axis) { return world.high[axis] - world.low[axis]; };
+  const double wide = std::max(extent_of(0), extent_of(1));
+  if (!as_voxels && wide > 0 && extent_of(2) > kColumnSides * wide &&
+      std::max(-world.low[0], world.high[0]) <= 180 && std::max(-world.low[1], world.high[1]) <= 90) {
+    scene->add_notes({printable(arguments.scene) + ": it is " +
+                      std::to_string(static_cast<long long>(std::min(extent_of(2) / wide, 1e9))) +
+                      " times as high as wide: x and y may be degrees, and z metres"});
+  }
   if (points->survey.left_out != 0) {
     scene->add_notes({printable(arguments.scene) + ": " + std::to_string(points->survey.left_out) + " of " +
                       std::to_string(points->survey.points) +
@@ -441,7 +451,7 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
   const ArrayAs as = arguments.as_heights  ? ArrayAs::kHeights
                      : arguments.as_points ? ArrayAs::kPoints
                                            : ArrayAs::kByShape;
-  const ReadOptions options{arguments.scene, arguments.frame, as, arguments.full_color};
+  const ReadOptions options{arguments.scene, arguments.frame, as, arguments.full_color, opening != nullptr};
   Source source = arguments.content ? read_any(options, *arguments.content, progress)
                                     : read_scene_file(options, progress);
   Notes notes = notes_of(source);

@@ -131,6 +131,9 @@ inline constexpr std::uint64_t kMostPrimitiveVoxels = std::uint64_t{1} << 30;
 /// Voxels that all models may stream, each counted in all its places.
 inline constexpr std::uint64_t kMostSceneVoxels = std::uint64_t{1} << 31;
 
+/// Points of all generators that a scene names: its models are streamed as it is opened.
+inline constexpr std::uint64_t kMostGenerated = std::uint64_t{1} << 27;
+
 /// A model, and what streaming it once has told.
 struct OpenedModel {
   std::shared_ptr<const SceneSource> source;
@@ -143,6 +146,7 @@ struct OpenedModel {
 struct SceneOpening {
   std::vector<std::string> path;  ///< the .scene files that are being opened, each inside the one before
   std::map<std::string, std::shared_ptr<const OpenedModel>> opened;  ///< by path and options
+  std::uint64_t generated = 0;                                       ///< points of generators among them
 };
 
 /// Opens what `text`, the content of `arguments.scene`, puts together. `opening` is null for the outermost

@@ -229,7 +229,8 @@ class TextScene {
     Placement& model = models_.emplace_back();
     model.part = &part;
     try {
-      if (!parse_generator(part.file)) {
+      const bool is_generated = parse_generator(part.file).has_value();
+      if (!is_generated) {
         arguments.scene = path_beside(own_path, part.file);
       }
       const std::string key = arguments.scene + '\n' + std::to_string(part.depth.value_or(0)) +
@@ -239,7 +240,13 @@ class TextScene {
         throw InputError("the scene opens more than the limit of " + grouped(kMostSceneModels) + " models");
       }
       if (kept == nullptr) {
-        kept = survey(open_scene(arguments, opening, progress), progress);
+        std::unique_ptr<SceneSource> opened = open_scene(arguments, opening, progress);
+        opening->generated += is_generated ? opened->points() : 0;
+        if (opening->generated > kMostGenerated) {
+          throw InputError("with this the scene's generators make more than the limit of " +
+                           grouped(kMostGenerated) + " points");
+        }
+        kept = survey(std::move(opened), progress);
       }
       model.model = kept;
     } catch (const InputError& error) {

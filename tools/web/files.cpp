@@ -91,7 +91,7 @@ class FileBuffer {
   }
 };
 
-SharedBytes load_shared(const std::string& path, const FirstLook& look) {
+SharedBytes load_shared(const std::string& path, const FirstLook& look, bool /*is_beside*/) {
   return share(load_file(path, kFileLimitBytes, look));
 }
 
