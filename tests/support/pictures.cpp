@@ -56,9 +56,10 @@ ReadPicture read_gif(const std::string& file) {
   int* delays = nullptr;
   int frames = 0;
   int own_channels = 0;
-  take_frames(stbi_load_gif_from_memory(bytes_of(file), static_cast<int>(file.size()), &delays,
-                                        &picture.width, &picture.height, &frames, &own_channels, 3),
-              frames, &picture);
+  unsigned char* const pixels =
+      stbi_load_gif_from_memory(bytes_of(file), static_cast<int>(file.size()), &delays, &picture.width,
+                                &picture.height, &frames, &own_channels, 3);
+  take_frames(pixels, frames, &picture);
   picture.delays_ms.assign(delays, delays + frames);
   stbi_image_free(delays);
   return picture;
