@@ -285,6 +285,8 @@ TEST_CASE("binvox: runs -> voxels, y fastest, then z, then x") {
   CHECK(voxels[0] == GridVoxel{0, 0, 1, {}});
   CHECK(voxels[1] == GridVoxel{0, 1, 1, {}});
   CHECK(accepted_lengths(read_binvox, file).empty());
+  std::string commented = file;
+  CHECK(read_voxels(read_binvox, commented.insert(commented.find("dim"), "# by hand\n")) == voxels);
 }
 
 TEST_CASE("binvox: damage -> the place") {

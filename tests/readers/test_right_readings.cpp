@@ -158,6 +158,12 @@ TEST_CASE("npy: N x 3 to N x 9 numbers of any type -> points, heights only by --
   CHECK_THROWS_AS(array_of(ArrayAs::kPoints, heights), InputError);
 }
 
+TEST_CASE("npy: numbers below 0 in X x Y x Z -> noted, for solid is what is 0.5 or more") {
+  const auto file = [](float first) { return npy("<f4", "1, 1, 2", numbers<float>({first, 1})); };
+  CHECK(notes_hold(source_of(read_npy, file(-1)), "numbers below 0, as distances to a surface are"));
+  CHECK(notes_of(source_of(read_npy, file(0))).empty());
+}
+
 TEST_CASE("npy: halves -> read by every kind of number; 65 dimensions -> refused in a short sentence") {
   // 1, 2^-24, the greatest, -2, infinite: five points, of which one is left out.
   const std::vector<std::uint16_t> halves{0x3C00, 0,      0, 0x0001, 0,      0, 0x7BFF, 0,

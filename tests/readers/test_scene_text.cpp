@@ -545,6 +545,18 @@ TEST_CASE("scene: scenes that multiply -> refused before they are streamed") {
   CHECK(contains(open_error(folder.write("pipe.scene", "model pipe.vox\n")), "pipe.vox: is no regular file"));
 }
 
+TEST_CASE("scene: points that are degrees beside metres -> noted") {
+  const TemporaryFolder folder;
+  const auto is_noted = [&](const std::string& points) {
+    const Notes notes = open_file(folder.write("a.xyz", points))->notes();
+    return std::any_of(notes.begin(), notes.end(),
+                       [](const std::string& note) { return contains(note, "x and y may be degrees"); });
+  };
+  CHECK(is_noted("10 50 100\n11 51 200\n10.5 50.5 150\n"));
+  CHECK_FALSE(is_noted("10 50 1\n11 51 2\n10.5 50.5 1\n"));
+  CHECK_FALSE(is_noted("600010 50 100\n600011 51 200\n600010 50 150\n"));
+}
+
 TEST_CASE("scene: models that cannot be read, .gz, options -> as for the command's own SCENE") {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& text) { return open_error(folder.write("a.scene", text)); };
