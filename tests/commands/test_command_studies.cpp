@@ -31,7 +31,7 @@ std::ptrdiff_t commas(const std::string& line) {
 TEST_CASE("studies: CSV, JSON and plot -> the same rows, columns as in the help, well-formed XML") {
   const TemporaryFolder folder;
   const std::string path = folder.write("a<&\">.xyz", "0 0 0\n3 1 2\n2 2 2\n");
-  const std::string escaped = "a&lt;&amp;\"&gt;.xyz";
+  const std::string escaped = "a&lt;&amp;&quot;&gt;.xyz";
   for (const Study& study :
        {Study{{"memory", "--as-voxels", "--size", "20x20", "--projection", "orthographic"},
               path,

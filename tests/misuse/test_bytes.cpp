@@ -87,15 +87,15 @@ TEST_CASE(
     const auto most = [&odd](std::uint32_t sound) {
       return odd.one_in(4) ? odd.any<std::uint32_t>() : static_cast<std::uint32_t>(odd.between(12, sound));
     };
-    const EditRoom room{most(200), most(200), most(20)};
-    const bool holds = room.nodes >= 12 && room.leaves >= 12 && room.bricks >= 12;
+    const EditRoom room{most(200), most(200), most(20), most(20)};
+    const bool holds = room.nodes >= 12 && room.leaves >= 12 && room.bricks >= 12 && room.pages >= 12;
     if (holds) {
       hold_to(edited_world_bytes(tree.level(), room), [&](Bytes bytes) {
         EditedWorld world;
         return EditedWorld::make(tree, room, bytes, &world);
       });
     }
-    CHECK(edited_world_bytes(odd.one_in(2) ? kMaxBrickMapLevel + 1 : kMinBrickMapLevel - 1, room) == 0);
+    CHECK(edited_world_bytes(odd.one_in(2) ? kMaxDeepMapLevel + 1 : kMinBrickMapLevel - 1, room) == 0);
   });
 }
 

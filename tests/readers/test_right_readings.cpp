@@ -325,6 +325,7 @@ TEST_CASE("obj: lines, points, curves, and Tr without d -> noted") {
   CHECK(notes("Tr 1\n") == Notes{"1 material has Tr and no d: Tr is not read, since programs contradict each "
                                  "other in it"});
   CHECK(notes("Tr 1\nd 1\n").empty());
+  CHECK(notes("d 0.5\n") == Notes{"1 material is partly clear (d) and drawn solid"});
   CHECK(notes("Tr 0\n").empty());
 }
 

@@ -425,7 +425,9 @@ TEST_CASE("gltf: alpha -> with MASK and BLEND what is clear is nothing, with OPA
   CHECK(with(R"(,"alphaMode":"MASK")") == "        rrrrrrrr");
   CHECK(with(R"(,"alphaMode":"MASK","alphaCutoff":0.3)") == "    rrrrrrrrrrrr");
   CHECK(with(R"(,"alphaMode":"MASK")", "0.6") == "            rrrr");
+  CHECK(notes_hold(quad.source(), "BLEND") == false);
   CHECK(with(R"(,"alphaMode":"BLEND")") == "    rrrrrrrrrrrr");
+  CHECK(notes_hold(quad.source(), "of 1 blended material (BLEND)"));
   const auto fault = [&](const std::string& material) {
     quad.material = material;
     return error_of(read_gltf, quad.glb());

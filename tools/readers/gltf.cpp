@@ -516,6 +516,7 @@ class Scene {
       gltf_real(entry, "alphaCutoff", look.cutoff, place);
     } else if (mode != nullptr && *mode == "BLEND") {
       look.cutoff = kNearlyClear;
+      ++blended_;
     }
     MeshSurface made;
     made.color = texture_of(texture, look, place);
@@ -640,6 +641,11 @@ class Scene {
       mesh_.notes.push_back(std::to_string(unlit_) + (unlit_ == 1 ? " material is" : " materials are") +
                             " unlit in the file and drawn in the scene's light like others");
     }
+    if (blended_ != 0) {
+      mesh_.notes.push_back("of " + std::to_string(blended_) +
+                            (blended_ == 1 ? " blended material" : " blended materials") +
+                            " (BLEND) what is at least a tenth opaque is drawn solid");
+    }
     if (file_.count("animations") != 0 || file_.count("skins") != 0) {
       mesh_.notes.push_back("its animations and skins are not drawn: all stands as it does at rest");
     }
@@ -660,6 +666,7 @@ class Scene {
   bool is_colored_ = false;
   std::map<std::string, std::uint64_t> undrawn_;  ///< of how many primitives
   std::size_t unlit_ = 0;                         ///< materials
+  std::size_t blended_ = 0;                       ///< materials
   bool is_clear_ = false;                         ///< some triangles are
   Textures textures_;
   std::map<std::uint64_t, Look> looks_;  ///< by material

@@ -97,6 +97,27 @@ void read_library(std::string_view text, const std::string& folder,
   }
 }
 
+std::string count(std::size_t number, const char* one, const char* more) {
+  return std::to_string(number) + (number == 1 ? one : more);
+}
+
+// What materials say of what is behind them, of which only "nothing is there" is drawn.
+void note_clearness(const std::vector<ObjMaterial>& used, std::vector<std::string>& notes) {
+  std::size_t unread = 0;
+  std::size_t partly = 0;
+  for (const ObjMaterial& material : used) {
+    unread += material.has_transparency && !material.opacity ? 1U : 0U;
+    partly += material.opacity && *material.opacity > 0 && *material.opacity < 1 ? 1U : 0U;
+  }
+  if (unread != 0) {
+    notes.push_back(count(unread, " material has", " materials have") +
+                    " Tr and no d: Tr is not read, since programs contradict each other in it");
+  }
+  if (partly != 0) {
+    notes.push_back(count(partly, " material is", " materials are") + " partly clear (d) and drawn solid");
+  }
+}
+
 }  // namespace
 
 void ObjMaterials::add_library(std::string_view name) {
@@ -173,19 +194,14 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
   for (const std::string& name : path.empty() ? std::vector<std::string>() : libraries_) {
     read_libraries(path, name, described, mesh.notes);
   }
-  const auto count = [](std::size_t number, const char* one, const char* more) {
-    return std::to_string(number) + (number == 1 ? one : more);
-  };
   Textures textures(path);
   mesh.surfaces.resize(used.size());
   std::size_t missing = 0;
-  std::size_t transparent = 0;
   bool has_picture = false;
   bool has_surface = false;
   bool has_color = false;
   for (std::size_t i = 1; i < used.size(); ++i) {
     missing += used[i].is_described ? 0U : 1U;
-    transparent += used[i].has_transparency && !used[i].opacity ? 1U : 0U;
     has_color = has_color || used[i].color;
     MeshSurface& surface = mesh.surfaces[i];
     surface.wrap_u = surface.wrap_v = used[i].clamps ? Wrap::kClamp : Wrap::kRepeat;
@@ -217,10 +233,7 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
   } else if (missing != 0 && libraries_.empty() && !has_others) {
     mesh.notes.push_back("its materials are not drawn: no file is named that describes them (mtllib)");
   }
-  if (transparent != 0) {
-    mesh.notes.push_back(count(transparent, " material has", " materials have") +
-                         " Tr and no d: Tr is not read, since programs contradict each other in it");
-  }
+  note_clearness(used, mesh.notes);
   if (has_more_) {
     mesh.notes.push_back("materials behind the first " + std::to_string(kMostMaterials - 1) +
                          " are not drawn");
