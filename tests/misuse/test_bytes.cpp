@@ -88,7 +88,9 @@ TEST_CASE(
       return odd.one_in(4) ? odd.any<std::uint32_t>() : static_cast<std::uint32_t>(odd.between(12, sound));
     };
     const EditRoom room{most(200), most(200), most(20), most(20)};
-    const bool holds = room.nodes >= 12 && room.leaves >= 12 && room.bricks >= 12 && room.pages >= 12;
+    const EditRoom least = EditedWorld::room_of(tree);
+    const bool holds = room.nodes >= least.nodes && room.leaves >= least.leaves &&
+                       room.bricks >= least.bricks && room.pages >= least.pages;
     if (holds) {
       hold_to(edited_world_bytes(tree.level(), room), [&](Bytes bytes) {
         EditedWorld world;
