@@ -205,7 +205,7 @@ bool SunBricks::follow(const EditedWorld& world, uint32_t bricks) {
       }
       --bricks;
       ++in_layer_;
-      if ((bits_[cell >> 3] >> (cell & 7U) & 1U) == 0) {
+      if ((uint32_t{bits_[cell >> 3]} >> (cell & 7U) & 1U) == 0) {
         prove_cell(cell);
       }
       return true;
