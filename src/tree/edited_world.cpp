@@ -35,7 +35,7 @@ void move_origins(uint8_t* word, uint32_t bricks, uint32_t mask, uint32_t from, 
 }
 
 // Without those of level 9 and 10 where the core has none.
-size_t bytes_of(int level, const EditRoom& room) {
+size_t room_bytes(int level, const EditRoom& room) {
   if constexpr (kDeepWorlds) {
     return edited_world_bytes(level, room);
   }
@@ -90,7 +90,7 @@ EditRoom EditedWorld::room_of(const CompactTree& tree) {
 }
 
 size_t EditedWorld::least_bytes(const CompactTree& tree) {
-  return tree.merged() ? 0 : bytes_of(tree.level(), room_of(tree));
+  return tree.merged() ? 0 : room_bytes(tree.level(), room_of(tree));
 }
 
 EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
@@ -100,7 +100,7 @@ EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
   constexpr size_t kBytesABrick = 8 + kOriginBytes + kNodesABrick + kLeavesABrick + 2;
   constexpr size_t kRounding = 64;
   EditRoom room = room_of(tree);
-  const size_t least = bytes_of(tree.level(), room);
+  const size_t least = room_bytes(tree.level(), room);
   if (least == 0 || least > bytes) {
     return {};
   }
@@ -128,7 +128,7 @@ EditRoom EditedWorld::room_in(const CompactTree& tree, size_t bytes) {
 }
 
 Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes bytes, EditedWorld* world) {
-  const size_t needed = bytes_of(tree.level(), room);
+  const size_t needed = room_bytes(tree.level(), room);
   if (needed == 0) {
     return Status::kOutOfRange;
   }
