@@ -261,6 +261,7 @@ void add_new(CLI::App& app) {
   command->scene.add_scene(*sub);
   add_board(*sub, &command->scene.board, "the board, which must be given")->required();
   std::vector<std::string> panels;
+  panels.reserve(kPanels.size());
   for (const PanelKind& panel : kPanels) {
     panels.push_back(panel.name);
   }
