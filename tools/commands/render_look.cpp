@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/arguments.h"
 #include "commands/render_command.h"
 #include "commands/render_output.h"
 #include "output/image.h"
