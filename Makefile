@@ -58,7 +58,7 @@ install-python: all ## Install the Python package (PYTHON=venv/bin/python: into 
 	@$(PIP) install $(PIP_OFFLINE) --force-reinstall $(PIP_ARGS) build/packages/thimble_voxels-*.tar.gz
 uninstall: all ## Remove what `make install` with the same PREFIX and DESTDIR installs
 	@sh tools/uninstall.sh build/release "$(DESTDIR)" "$(or $(PREFIX),/)"
-deb: all ## Make a Debian package of what `make install` installs (build/release/thimble_*.deb)
+deb: all ## Make Debian packages of what `make install` installs (build/release/*.deb)
 	@sh tools/package.sh build/release
 packages: all ## Make the packages of every ecosystem (build/packages); RELEASE=1 refuses to name no place
 	@.ci/deps packages

@@ -1,4 +1,5 @@
 # What `make install` and the .deb have besides the library: the command, its scenes, its manual page, completions.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME command)
 install(TARGETS thimble_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY gallery/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/thimble
   FILES_MATCHING PATTERN "*.scene" PATTERN "*.vox" PATTERN "*.vox.gz")
@@ -38,13 +39,14 @@ install(FILES completions/thimble.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish
 # Where zsh looks by itself below /usr/local; a package moves it (package.cmake).
 install(FILES completions/thimble.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _thimble)
 
-# make deb
+# make deb: packages of the command, the shared library, and what one builds with.
 set(CPACK_GENERATOR DEB)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGE_NAME thimble)
 set(CPACK_PACKAGE_VENDOR Thimble)
 file(STRINGS ${PROJECT_SOURCE_DIR}/tools/packages/tree.py contact REGEX "^CONTACT = ")
 string(REGEX REPLACE "^CONTACT = \"([^\"]*)\".*" "\\1" contact "${contact}")
-set(CPACK_PACKAGE_CONTACT "${contact}" CACHE STRING "Maintainer of the .deb: NAME <MAIL>")
+set(CPACK_PACKAGE_CONTACT "${contact}" CACHE STRING "Maintainer of the Debian packages: NAME <MAIL>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR})
 set(CPACK_STRIP_FILES ON)
@@ -53,15 +55,35 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
-set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/triggers)
-set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "voxel ray tracer in a fixed block of memory")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME thimble)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_COMMAND_DESCRIPTION
 "Draws voxel scenes, meshes and clouds of points exactly, the same picture bit
 for bit on every machine, and says what a scene takes on a microcontroller:
-memory, flash, time and error. Holds the command, its scenes and the library.")
+memory, flash, time and error. Holds the command and its scenes.")
+set(version ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(library libthimble-files${version})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${library})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/triggers)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION
+"The readers and renderers as a shared library: programs that load voxel scenes,
+meshes and clouds of points, draw them as the command does, and write them,
+need this.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libthimble-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library} (= ${PROJECT_VERSION}), libhwy-dev, libtbb-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
+"Headers, static libraries and descriptions for CMake and pkg-config of the
+tracer for microcontrollers, of the desktop's renderer, and of the readers.")
+# These were one package before.
+foreach(part LIBRARY DEVELOPMENT)
+  set(CPACK_DEBIAN_${part}_PACKAGE_BREAKS "thimble (<< ${version})")
+  set(CPACK_DEBIAN_${part}_PACKAGE_REPLACES "thimble (<< ${version})")
+endforeach()
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_SOURCE_DIR}/package.cmake)
 set(CPACK_THIMBLE_SOURCE ${PROJECT_SOURCE_DIR})
 set(CPACK_THIMBLE_DATE_HEADER ${PROJECT_BINARY_DIR}/generated/thimble_version.h)

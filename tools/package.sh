@@ -1,11 +1,11 @@
 #!/bin/sh
-# Makes thimble_VERSION_ARCHITECTURE.deb of what a build installs, into the build's folder or TO, and names it. A commit
-# makes one package: files are as old as SOURCE_DATE_EPOCH or the commit says.
+# Makes Debian packages of what a build installs, into the build's folder or TO, and names them: thimble, its shared
+# library, and libthimble-dev. A commit makes the same bytes: files are as old as SOURCE_DATE_EPOCH or the commit says.
 #   package.sh BUILD_DIR [TO]
 set -eu
 for need in dpkg-shlibdeps dpkg-deb gzip cpack; do
   if ! command -v $need >/dev/null 2>&1; then
-    echo "thimble: a Debian package needs $need (packages dpkg-dev, dpkg, gzip, cmake)" >&2
+    echo "thimble: Debian packages need $need (packages dpkg-dev, dpkg, gzip, cmake)" >&2
     exit 1
   fi
 done
@@ -15,7 +15,7 @@ if [ -z "${SOURCE_DATE_EPOCH:-}" ]; then
 fi
 export SOURCE_DATE_EPOCH
 cd "$1"
-rm -rf _CPack_Packages thimble_*.deb
+rm -rf _CPack_Packages *thimble*.deb
 umask 022
 if ! cpack -G DEB >package.log 2>&1; then
   cat package.log >&2
@@ -23,12 +23,13 @@ if ! cpack -G DEB >package.log 2>&1; then
 fi
 rm -rf _CPack_Packages
 # CPack keeps the day that a file was written on; dpkg-deb puts it no later than the commit.
-made=$(ls thimble_*.deb)
+for made in *thimble*.deb; do
+  rm -rf package.root
+  dpkg-deb -R "$made" package.root
+  rm -f package.root/DEBIAN/postinst package.root/DEBIAN/postrm  # CPack's call ldconfig, which the trigger does
+  find package.root -exec touch -h -d "@$SOURCE_DATE_EPOCH" {} +
+  [ "$to" = "$PWD" ] || rm -f "$made"
+  dpkg-deb --root-owner-group -Zxz -b package.root "$to/$made" >/dev/null
+  echo "package: ${2:-$1}/$made"
+done
 rm -rf package.root
-dpkg-deb -R "$made" package.root
-rm -f package.root/DEBIAN/postinst package.root/DEBIAN/postrm  # CPack's call ldconfig, which the trigger does
-find package.root -exec touch -h -d "@$SOURCE_DATE_EPOCH" {} +
-[ "$to" = "$PWD" ] || rm -f "$made"
-dpkg-deb --root-owner-group -Zxz -b package.root "$to/$made" >/dev/null
-rm -rf package.root
-echo "package: ${2:-$1}/$made"

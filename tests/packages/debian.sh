@@ -1,36 +1,48 @@
 #!/bin/sh
-# The .deb, unpacked in an empty root: lintian has nothing to say, the command draws, the library is found by pkg-config.
+# The Debian packages, unpacked in an empty root: lintian has nothing to say, the command draws without the others, the
+# library is found by pkg-config.
 name=debian
 . tests/packages/common.sh
 need dpkg-deb
-deb=$(ls "$PACKAGES"/thimble_*.deb 2>/dev/null) || {
+command=$(ls "$PACKAGES"/thimble_*.deb 2>/dev/null) || {
   say "skipped: no .deb was made here"
   exit 0
 }
-if command -v lintian >/dev/null 2>&1; then
-  logged lintian --fail-on error,warning --allow-root "$deb"
-else
-  say "skipped: lintian is not installed"
-fi
-case $(dpkg-deb -f "$deb" Version) in "$VERSION"*) ;; *) fail "its version is $(dpkg-deb -f "$deb" Version)" ;; esac
+others=$(ls "$PACKAGES"/libthimble-files?.*_*.deb "$PACKAGES"/libthimble-dev_*.deb)
+for deb in $command $others; do
+  if command -v lintian >/dev/null 2>&1; then
+    logged lintian --fail-on error,warning --allow-root "$deb"
+  else
+    say "skipped: lintian is not installed"
+  fi
+  case $(dpkg-deb -f "$deb" Version) in "$VERSION"*) ;; *) fail "the version of $deb is $(dpkg-deb -f "$deb" Version)" ;; esac
+done
 mkdir -p "$WORK/root"
 # Installed as dpkg does it, but for what it depends on, in a root of its own.
 if [ "$(id -u)" -eq 0 ]; then
   mkdir -p "$WORK/root/var/lib/dpkg/updates" "$WORK/root/var/lib/dpkg/info"
   : >"$WORK/root/var/lib/dpkg/status"
-  logged dpkg --root="$(cd "$WORK/root" && pwd)" --force-depends --force-script-chrootless --log=/dev/null --install "$(cd "$PACKAGES" && pwd)/$(basename "$deb")"
-  dpkg --root="$(cd "$WORK/root" && pwd)" --verify thimble >"$WORK/verify" 2>&1 && [ ! -s "$WORK/verify" ] || fail "dpkg --verify: $(cat "$WORK/verify")"
-else
-  logged dpkg-deb -x "$deb" "$WORK/root"
 fi
+# installed PACKAGE...: in that root
+installed() {
+  if [ "$(id -u)" -ne 0 ]; then
+    for deb in "$@"; do logged dpkg-deb -x "$deb" "$WORK/root"; done
+    return
+  fi
+  logged dpkg --root="$(cd "$WORK/root" && pwd)" --force-depends --force-script-chrootless --log=/dev/null --install "$@"
+  dpkg --root="$(cd "$WORK/root" && pwd)" --verify >"$WORK/verify" 2>&1 && [ ! -s "$WORK/verify" ] || fail "dpkg --verify: $(cat "$WORK/verify")"
+}
+installed "$command"
+[ -z "$(find "$WORK/root/usr/lib" "$WORK/root/usr/include" -type f 2>/dev/null)" ] || fail "the command's package holds a library"
+env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "$WORK/castle.png" || fail "the command does not draw"
+installed $others
 for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/panel.h include/thimble/files.h \
   include/thimble/wide/threads.h lib/libthimble.a lib/libthimble_files.so lib/libthimble_wide.a \
-  lib/cmake/thimble/thimbleConfig.cmake share/doc/thimble/copyright share/doc/thimble/README.md.gz \
+  lib/cmake/thimble/thimbleConfig.cmake share/doc/thimble/copyright share/doc/libthimble-dev/README.md.gz \
   share/man/man1/thimble.1.gz share/applications/thimble.desktop share/mime/packages/thimble.xml \
   share/thumbnailers/thimble.thumbnailer share/icons/hicolor/scalable/apps/thimble.svg; do
   [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
 done
-env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "$WORK/castle.png" || fail "the command does not draw"
 # Templates come along, and programs for boards where `make images` has built them.
 env -i PATH="$WORK/root/usr/bin" thimble new "$WORK/project" --board pico --panel ssd1306 castle --quiet && [ -s "$WORK/project/main.cpp" ] ||
   fail "the command writes no project"
@@ -61,4 +73,4 @@ if command -v pkg-config >/dev/null 2>&1; then
   logged c++ -std=c++17 tests/packages/panels.cpp $(pkg-config --cflags --libs thimble) -o "$WORK/panels"
   same_panels "$WORK/panels"
 fi
-say "$(basename "$deb"): lintian, dpkg, the command and the library: the ball is drawn, also on panels"
+say "$(basename "$command") and its libraries: lintian, dpkg, the command and the library: the ball is drawn, also on panels"
