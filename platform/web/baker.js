@@ -48,7 +48,7 @@ class Baker {
   }
 
   // Bakes `scene` for `board`: {bytes, level, voxels, ...}. `options`: depth, coarsen, frame; size: to look around in,
-  // in a picture of that size; programs: those of the board, behind one of which it is to lie (then image() joins them).
+  // in a picture of that size; programs: {demo, water}, lists of the board's, behind one of which it is to lie (then image() joins them).
   bake(scene, board, options = {}) {
     this.x = this.beside = null;  // of a scene that could not be baked there is no look
     const [x, made] = this.bakeIn(null, scene, board, options);
@@ -70,7 +70,9 @@ class Baker {
   bakeIn(given, scene, board, options) {
     try {
       const x = given ?? this.instance();
-      for (const program of options.programs ?? []) x.add_program(this.put(x, program), program.length, board.index);
+      for (const [app, list] of Object.entries(options.programs ?? {})) {
+        for (const program of list) x.add_program(this.put(x, program), program.length, board.index, app === 'water');
+      }
       const size = x.bake(this.put(x, scene), board.index, options.depth ?? 0, options.coarsen ?? false, options.frame ?? -1,
         ...options.size ?? [0, 0]);
       const at = x.baked();

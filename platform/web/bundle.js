@@ -38,7 +38,7 @@ function pack(id, files, coding) {
 const load = (name) => [name, fs.readFileSync(path.join(modules, name))];
 const scenes = ['castle.vox', 'room.scene', 'waves.scene'].map((name) => [name, fs.readFileSync(path.join(root, 'tools/gallery/scenes', name))]);
 const images = path.join(root, 'build/images');
-const programs = (fs.existsSync(images) ? fs.readdirSync(images) : []).filter((name) => Object.keys(SHELF).some((board) => name.startsWith(`${board}-demo-`)))
+const programs = (fs.existsSync(images) ? fs.readdirSync(images) : []).filter((name) => Object.entries(SHELF).some(([board, {glass}]) => name.startsWith(`${board}-demo-`) || (glass && name.startsWith(`${board}-water-`))))
   .map((name) => [name.replace('.elf.gz', ''), zlib.gunzipSync(fs.readFileSync(path.join(images, name)))]);
 
 // The small pictures of the strip: what the page itself draws, as PNG with five bits a channel.

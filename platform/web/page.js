@@ -96,9 +96,9 @@ async function moduleOf(name) {
   return modules[name];
 }
 // Those of a board, for what is downloaded.
-const hasPrograms = (board) => $('programs').dataset.ends.includes(`${board.name}-demo-`);
-const programsOf = (board) => (hasPrograms(board) ? ['plain', 'sun', 'all'].map((set) =>
-  archive('programs').get(`${board.name}-demo-${set}`)).filter((program) => program !== undefined) : []);
+const hasPrograms = (board, app = 'demo') => $('programs').dataset.ends.includes(`${board.name}-${app}-`);
+const programsOf = (board) => Object.fromEntries(['demo', 'water'].filter((app) => hasPrograms(board, app)).map((app) =>
+  [app, ['plain', 'sun', 'all'].map((set) => archive('programs').get(`${board.name}-${app}-${set}`)).filter((program) => program !== undefined)]));
 
 // ---- what is said
 
@@ -145,7 +145,7 @@ async function bakeCurrent(board) {
   if (!state.look && state.dropped === null && cache.has(key)) return cache.get(key);
   await busy(state.look ? `Reading ${entry.title} ...` : `Fitting ${entry.title} onto the board ...`);
   const files = state.dropped?.files ?? entry.files.map((name) => ({name, bytes: archive('modules').get(name)}));
-  const programs = state.look ? [] : programsOf(board);
+  const programs = state.look ? {} : programsOf(board);
   const code = await moduleOf('bake');
   if (own !== generation) return null;
   const worker = startWorker();
@@ -154,7 +154,7 @@ async function bakeCurrent(board) {
   try {
     const made = await baker.bake(entry.scene, board, {depth: state.depth, coarsen: state.coarsen, frame: state.frame,
       size: state.look ? [board.width, board.height] : undefined, programs});
-    if (programs.length !== 0) Object.assign(made, {image: await baker.image(board), code: board.flash - made.room});
+    if (programs.demo) Object.assign(made, {image: await baker.image(board), code: board.flash - made.room});
     if (state.dropped === null) cache.set(key, made);
     stays = state.look;
     return {...made, baker};
@@ -169,10 +169,10 @@ async function offerSmaller(baker, entry, board, error, programs) {
   const depth = Number(/at depth (\d+)/.exec(error.message)?.[1] ?? 0);
   await busy('Trying smaller depths ...');
   const smaller = await baker.smaller(entry.scene, board, depth, programs);
-  const offers = [['Merge blocks until it fits', () => restart({coarsen: true})]];
+  const offers = [['Merge voxels until it fits', () => restart({coarsen: true})]];
   if (smaller !== null) {
     error.message += `. Depth ${smaller.level} fits with ${number(smaller.bytes)} bytes.`;
-    offers.unshift([`Show it at depth ${smaller.level}`, () => restart({depth: smaller.level})]);
+    offers.unshift([`Show it coarser, at depth ${smaller.level}`, () => restart({depth: smaller.level})]);
   }
   error.offers = offers;
 }
@@ -313,11 +313,13 @@ function present(all) {
   if (machine.state === 'ended') tellEnd();
 }
 function tellEnd() {
+  const why = /error: (.*)/.exec($('uart').textContent)?.[1] ?? `ended with status ${machine.status}`;
+  const isLarge = /arena/.test(why);  // a word of the board's
   say(machine.fault !== undefined ? `${machine.app} was stopped: ${machine.fault}.` :
     machine.status === 0 ? `${machine.app} has ended.` :
-      `${machine.app}: ${/error: (.*)/.exec($('uart').textContent)?.[1] ?? `ended with status ${machine.status}`}.`,
+      `${machine.app}: ${isLarge ? 'needs more memory than this board has; choose another board' : why}.`,
   machine.status !== 0);
-  offer([['Start again', () => restart({})]]);
+  if (!isLarge) offer([['Start again', () => restart({})]]);
 }
 let lastUse = 0;
 function showUse() {

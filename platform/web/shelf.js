@@ -11,6 +11,7 @@ const SHELF = {
     picture: [['#14181f', 0, 0, 58, 35, 1.5], ['#3b4250', 2, 4, 4, 6, 1], ['#3b4250', 2, 25, 4, 6, 1], ['#3b4250', 52, 4, 4, 6, 1], ['#3b4250', 52, 25, 4, 6, 1],
       ['#7cc4ee', 8.6, 2.2, 40.8, 30.6, 0.5]]},
   'pico-oled': {title: 'Pico, 0.96 inch white', parts: 'Raspberry Pi Pico and an SSD1306 OLED on two wires', price: 'about 8 dollars', glass: [21.7, 10.9],
+    wires: 'Connect SDA of the display with GP4 of the Pico, SCL with GP5, VCC with 3V3, GND with GND. ',
     picture: [PICO, ['#c9ced6', -1, 7, 6, 7, 0.5], ['#12335c', 17, -3, 27, 27, 1], ['#f2f4f6', 19.6, 5, 21.7, 10.9, 0.3]]},
   microbit: {title: 'micro:bit', parts: 'BBC micro:bit, version 1', price: 'about 15 dollars, used', glass: null,
     picture: [['#14181f', 0, 0, 52, 42, 4], ['#d8b24a', 2, 37, 48, 5, 0], ['#3b4250', 3, 17, 8, 8, 1], ['#3b4250', 41, 17, 8, 8, 1], ['#c2410c', 17, 12, 18, 18, 0.5]]},
@@ -21,11 +22,12 @@ const SHELF = {
 // What to do with a file of that ending.
 const STEPS = {
   uf2: ['Hold the white button BOOTSEL while you plug the Pico into USB; then let go.', 'Drag FILE onto the drive RPI-RP2.',
-    'The display shows it, turning. Its keys turn it, too.'],
+    'The display shows it. MOVES'],
   hex: ['Plug the micro:bit into USB.', 'Drag FILE onto the drive MICROBIT.',
     'It has no display of its own: a terminal (115,200 baud) that sends it p gets the picture.'],
-  gba: ['Open FILE in an emulator, such as mGBA,', 'or copy it to a cartridge for the console.', 'It turns. The control pad turns it, too.'],
+  gba: ['Open FILE in an emulator, such as mGBA,', 'or copy it to a cartridge for the console.', 'MOVES'],
 };
+const MOVES = {demo: 'It turns; its keys turn it, too.', water: 'Its keys turn it; a fifth, where there is one, drops a ball.'};
 
 if (typeof module !== 'undefined') {
   module.exports = {SHELF};

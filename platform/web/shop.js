@@ -47,10 +47,11 @@ function showChoices(board) {
 // What to do with the file for the board, where there is one.
 function showGet() {
   const board = shownBoard();
-  $('get').hidden = baked?.image === undefined || machine.app !== 'demo';
-  $('none').hidden = !$('get').hidden;
-  $('steps').replaceChildren(...(STEPS[board.ending] ?? []).map((step) =>
-    Object.assign(document.createElement('li'), {textContent: step.replace('FILE', imageName())})));
+  const {app, state: at} = machine;
+  $('get').hidden = baked?.image === undefined || !hasPrograms(board, app) || at === 'ended';
+  $('none').hidden = !$('get').hidden || at === 'ended';
+  $('steps').replaceChildren(...(STEPS[board.ending] ?? []).map((step, i) =>
+    Object.assign(document.createElement('li'), {textContent: ((i === 0 && SHELF[board.name]?.wires) || '') + step.replace('FILE', imageName()).replace('MOVES', MOVES[app])})));
 }
 
 const imageName = () => `${(state.dropped?.title ?? state.scene).replace(/\.gz$/i, '').replace(/\.[^.]*$/, '').replace(/[^\p{L}\p{M}\p{N}._-]+/gu, '-')}.${shownBoard().ending}`;

@@ -10,20 +10,25 @@ const made = require('./files.js');
 const IMAGES = 'build/images';
 const SCREENS = {desktop: {width: 1280, height: 800}, telephone: {width: 390, height: 844, mobile: true}, tablet: {width: 820, height: 1180, mobile: true}};
 
-// CRC-32s of the first frames that an image tells, or null where its emulator is not here.
-function emulated(board, file, count) {
+// What an image tells once it is sent the key, again and again: `count` lines of two words each; null where its emulator is not here.
+function emulated(board, file, key, line, count) {
   const [emulator, ...options] = {pico: ['rp2040js', '-carrier', 'pico-lcd-1.3'], 'pico-lcd-2': ['rp2040js', '-carrier', 'pico-lcd-2'], 'pico-oled': ['rp2040js', '-carrier', 'pico-oled'], gba: ['mgba']}[board];
   if (spawnSync('sh', [`platform/emulators/${emulator}/fetch.sh`]).status !== 0) return null;
   const shift = /BOARD_ICOUNT_SHIFT (\d+)/.exec(fs.readFileSync(`platform/boards/${board}/board.cmake`, 'utf8'))[1];
   return new Promise((done, fail) => {
     const child = spawn('sh', [`platform/emulators/${emulator}/run.sh`, shift, file, ...options], {stdio: ['pipe', 'pipe', 'ignore'], detached: true});
-    const end = () => process.kill(-child.pid, 'SIGKILL');
+    const end = () => {
+      clearInterval(sending);
+      process.kill(-child.pid, 'SIGKILL');
+    };
     const late = setTimeout(() => { end(); fail(new Error(`${board} says only: ${said}`)); }, 240000);
     let said = '';
-    child.stdin.write('c');
+    child.stdin.on('error', () => {});
+    child.stdin.write(key);
+    const sending = setInterval(() => key === 'i' && child.stdin.write(key), 500);
     child.stdout.on('data', (data) => {
       said += data;
-      const told = [...said.matchAll(/^frame (\d+) crc (\w+).*\n/gm)];
+      const told = [...said.matchAll(line)];
       if (told.length < count) return;
       clearTimeout(late);
       end();
@@ -102,6 +107,21 @@ async function judgeBoards(url, thimble, work) {
     holds('each has both', await browser.eval(`[...document.querySelectorAll('#shelf button')].every((card) => card.querySelector('svg rect') && card.querySelector('small').textContent.length > 5)`));
   });
   await browser.saveIn(work);
+  // The file of what is shown, saved under `title`, once the page has it; equal to that of the command.
+  const saved = async (name, title, scene, ...words) => {
+    const {board, ending} = await browser.eval('({board: machine.board.name, ending: machine.board.ending})');
+    is('the board', board, name);
+    const file = path.join(work, `${title}.${ending}`);
+    fs.rmSync(file, {force: true});
+    await browser.click('#download');
+    for (let tries = 0; tries < 100 && !fs.existsSync(file); ++tries) await new Promise((done) => setTimeout(done, 50));
+    await new Promise((done) => setTimeout(done, 300));
+    const wanted = path.join(work, `wanted.${ending}`);
+    const told = spawnSync(thimble, ['image', `tools/gallery/scenes/${scene}`, '--board', name, '--images', IMAGES, '-o', wanted, '--quiet', ...words], {encoding: 'utf8'});
+    is('the command', told.stderr, '');
+    holds('the bytes are equal', fs.readFileSync(file).equals(fs.readFileSync(wanted)));
+    return file;
+  };
   for (const [i, name] of listed.entries()) {
     await test(`${name}: the file is that of thimble image, byte for byte, and what to do with it stands there`, async () => {
       const before = await browser.eval('generation');
@@ -112,25 +132,15 @@ async function judgeBoards(url, thimble, work) {
         await browser.key('Enter', 'Enter', {text: '\r'});
       }
       await browser.until(`Number(document.documentElement.dataset.ready) > ${before} && machine !== null && machine.frames > 0`, 30);
-      const {board, ending} = await browser.eval('({board: machine.board.name, ending: machine.board.ending})');
-      is('the board', board, name);
-      const file = path.join(work, `fox.${ending}`);
-      fs.rmSync(file, {force: true});
-      await browser.click('#download');
-      for (let tries = 0; tries < 100 && !fs.existsSync(file); ++tries) await new Promise((done) => setTimeout(done, 50));
-      await new Promise((done) => setTimeout(done, 300));
-      const wanted = path.join(work, `wanted.${ending}`);
-      const told = spawnSync(thimble, ['image', 'tools/gallery/scenes/fox.vox.gz', '--board', name, '--images', IMAGES, '-o', wanted, '--quiet'], {encoding: 'utf8'});
-      is('the command', told.stderr, '');
-      holds('the bytes are equal', fs.readFileSync(file).equals(fs.readFileSync(wanted)));
+      const file = await saved(name, 'fox', 'fox.vox.gz');
       const steps = await browser.eval(`[...document.querySelectorAll('#steps li')].map(({textContent}) => textContent)`);
-      holds(`${steps.join(' | ')}: three, with the file's name`, steps.length === 3 && steps.some((step) => step.includes(`fox.${ending}`)));
+      holds(`${steps.join(' | ')}: three, with the file's name`, steps.length === 3 && steps.some((step) => step.includes(path.basename(file))));
       const words = await browser.eval(`[...document.querySelectorAll('main *')].filter((element) => element.children.length === 0 && element.checkVisibility() &&
         !element.closest('details') && /\\b(arena|UART|flash|hold a rate)\\b/i.test(element.textContent)).map(({textContent}) => textContent)`);
       is('words of the firmware', words.join(), '');
       await browser.shot(path.join(work, `board_${name}.png`));
       if (name === 'microbit') return;
-      const shown = await emulated(name, file, 3);
+      const shown = await emulated(name, file, 'c', /^frame (\d+) crc (\w+).*\n/gm, 3);
       if (shown === null) return console.log(`${name}: skipped: there is no emulator`);
       // What runs on the page's display, from its first frame on.
       const uart = await browser.eval(`(async () => { const twin = new Machine(await moduleOf('scene'), {board: machine.board, app: 'demo', scene: baked.baked});
@@ -139,6 +149,26 @@ async function judgeBoards(url, thimble, work) {
       const both = [...shown].filter(([frame]) => here.has(frame));
       holds(`frames ${[...shown.keys()]} are in both`, both.length >= 2);
       for (const [frame, crc] of both) is(`frame ${frame} of the booted file`, crc, here.get(frame));
+    });
+  }
+  if (fs.existsSync(`${IMAGES}/gba-water-all.elf.gz`)) {
+    await test('moving water: the file is that of thimble image, and shows what the page shows', async () => {
+      await browser.click('#shelf-gba');
+      await browser.click('#scene-water');
+      await browser.until(`machine?.app === 'water' && machine.board.name === 'gba' && machine.frames > 1`, 60);
+      const file = await saved('gba', 'water', 'waves.scene', '--app', 'water');
+      const counters = /^frames ([1-9]\d*) .* crc (\w+) water .*\n/gm;
+      const shown = await emulated('gba', file, 'i', counters, 1);
+      if (shown === null) return console.log('gba: skipped: there is no emulator');
+      const uart = await browser.eval(`(async () => { const twin = new Machine(await moduleOf('plane'), {board: machine.board, app: 'water', scene: baked.baked});
+        while (twin.frames < 2) twin.step(); twin.type('i'); while (twin.frames < 4) twin.step(); return twin.output; })()`);
+      is('the picture', [...shown.values()].join(), [...uart.matchAll(counters)].map(([, , crc]) => crc).join());
+    });
+    await test('a board whose RAM holds no such water has no file, and says so', async () => {
+      await browser.click('#shelf-microbit');
+      await browser.until(`document.getElementById('said').textContent.startsWith('water: ')`, 30);
+      holds('nothing is offered', await browser.eval(`document.getElementById('get').hidden && document.getElementById('none').hidden`));
+      is('in words of who buys', /\barena\b/.test(await browser.text('said')), false);
     });
   }
   await browser.close();

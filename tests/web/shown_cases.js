@@ -42,8 +42,13 @@ async function judgeShown(browser, {work, began, choose, showsItsFrame, reloaded
     is('it has ended', await browser.eval('machine.state'), 'ended');
     const said = await browser.text('said');
     holds(`"${said}" says why`, /^water: (?!ended).{10,}\.$/.test(said) && await browser.eval(`document.getElementById('said').classList.contains('wrong')`));
-    is('the offer', await browser.eval(`document.getElementById('offers').textContent`), 'Start again');
+    is('the offer', await browser.eval(`document.getElementById('offers').textContent`), '');
     await browser.eval(`restart({scene: 'castle', board: 'lm3s6965evb'})`);
+    await began();
+    await browser.eval(`machine.type('q')`);
+    await browser.until(`document.getElementById('said').textContent === 'demo has ended.'`);
+    is('the offer', await browser.eval(`document.getElementById('offers').textContent`), 'Start again');
+    await browser.click('#offers button');
     await began();
   });
   await test('the address follows what is shown, and shows it again', async () => {

@@ -240,11 +240,13 @@ async function images() {
   const on = boards.filter(({name}) => fs.existsSync(`${kept}/${name}-demo-sun.elf.gz`) && name in SHELF);
   if (on.length === 0) console.log('images: skipped: there are no programs; make images builds them');
   for (const board of on) {
-    const programs = ['plain', 'sun', 'all'].map((set) => `${kept}/${board.name}-demo-${set}.elf.gz`).filter(fs.existsSync).map(read);
+    const programs = Object.fromEntries(['demo', 'water'].map((app) =>
+      [app, ['plain', 'sun', 'all'].map((set) => `${kept}/${board.name}-${app}-${set}.elf.gz`).filter(fs.existsSync).map(read)]));
     for (const scene of [...scenes, 'demo', 'points:400000']) {
       await test(`the file of ${path.basename(scene)} for ${board.name} is that of the command`, () => {
         const file = path.join(work, `wanted.${board.ending}`);
-        const told = command('image', scene, '--board', board.name, '--images', kept, '-o', file, '--quiet');
+        const told = command('image', scene, '--board', board.name, '--images', kept, '-o', file, '--quiet',
+          ...scene.includes('waves') && programs.water.length !== 0 ? ['--app', 'water'] : []);
         const baker = new Baker(modules.bake, scene.includes('/') ? filesOf(scene) : []);
         let said = '';
         try {
@@ -262,7 +264,7 @@ async function images() {
     await test('a program of another board is refused in a sentence', () => {
       let said = '';
       try {
-        new Baker(modules.bake, []).bake('demo', boardOf('gba'), {programs: [read(`${kept}/pico-demo-sun.elf.gz`)]});
+        new Baker(modules.bake, []).bake('demo', boardOf('gba'), {programs: {demo: [read(`${kept}/pico-demo-sun.elf.gz`)]}});
       } catch (error) {
         said = error.message;
       }

@@ -20,10 +20,15 @@ namespace thimble::tools {
 namespace {
 
 Baked baked;
-std::string facts;               // of what was baked, as JSON
-std::string notes;               // of what its file says and is not drawn
-std::vector<BoardImage> images;  // of the board, for what is downloaded
+std::string facts;                  // of what was baked, as JSON
+std::string notes;                  // of what its file says and is not drawn
+std::vector<BoardImage> images[2];  // of the board, for what is downloaded; [1]: whose water moves
 std::string image;
+
+/// Those for a scene with these effects.
+const std::vector<BoardImage>& images_for(EffectSet effects) {
+  return images[(effects & Effect::kWater) != 0 && !images[1].empty() ? 1 : 0];
+}
 
 std::string number_field(const char* name, std::uint64_t value) {
   return std::string(",\"") + name + "\":" + std::to_string(value);
@@ -36,7 +41,7 @@ void tell(const SceneSource& source, const platform::BoardFacts& board) {
           number_field("effects", baked.effects) + number_field("points", source.points()) +
           number_field("frames", source.frames()) +
           number_field("code", code_flash_bytes(board, baked.effects)) +
-          number_field("room", images.empty() ? 0 : room_behind(images, baked.effects)) +
+          number_field("room", room_behind(images_for(baked.effects), baked.effects)) +
           number_field("ram", drawing_ram_bytes(board, baked.effects)) +
           number_field("water", (baked.effects & Effect::kWater) != 0 ? 1 : 0) + ",\"kind\":\"" +
           source.kind() + "\"}";
@@ -62,13 +67,14 @@ extern "C" {
   thimble::tools::add_file(name, {bytes, size});
 }
 
-// A program of `make images` for board number `index`: the scene that is baked next is to lie behind one of those.
+// A program of `make images` for board number `index`: the scene that is baked next is to lie behind one of those; where it
+// has water, behind one that moves water.
 [[clang::export_name("add_program")]] void thimble_add_program(const std::uint8_t* bytes, std::size_t size,
-                                                               std::uint32_t index) {
+                                                               std::uint32_t index, bool moves_water) {
   using namespace thimble::tools;
-  images.push_back(
+  images[moves_water].push_back(
       open_image({reinterpret_cast<const char*>(bytes), size}, thimble::platform::boards()[index]));
-  sort_images(&images);
+  sort_images(&images[moves_water]);
 }
 
 // Bakes `scene`, a file's name or a generator, for board number `index`; `depth` 0: its own; `frame` below 0: the first.
@@ -97,8 +103,8 @@ extern "C" {
   view.width_px = turns ? board.width_px : width_px;
   view.height_px = turns ? board.height_px : height_px;
   FlashLimit limit{turns ? &board : nullptr, std::nullopt};
-  if (!images.empty()) {
-    limit.room = [](EffectSet effects) { return room_behind(images, effects); };
+  if (!images[0].empty()) {
+    limit.room = [](EffectSet effects) { return room_behind(images_for(effects), effects); };
   }
   BakingOptions options;
   options.limit_bytes = limit.bytes();
@@ -132,7 +138,7 @@ extern "C" {
 // The file for the board, in the format of that ending: its bytes, image_bytes() of them.
 [[clang::export_name("image")]] const char* thimble_image(std::uint32_t index, const char* ending) {
   using namespace thimble::tools;
-  const BoardImage* const found = image_for(images, baked);
+  const BoardImage* const found = image_for(images_for(baked.effects), baked);
   if (found == nullptr) {
     throw thimble::tools::InputError("is drawn by no image for this board");
   }
