@@ -3,17 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 
 namespace thimble::platform {
 namespace {
 
-// ELF: its header, and program headers.
+// ELF: its header, headers of programs and of sections, and these sections' names.
 constexpr std::size_t kElfHeaderBytes = 52;
 constexpr std::size_t kProgramHeaderBytes = 32;
 constexpr std::uint32_t kPtLoad = 1;
 constexpr std::uint32_t kReadAndRun = 5;
+constexpr std::size_t kSectionHeaderBytes = 40;
+constexpr std::uint32_t kBits = 1;
+constexpr std::uint32_t kStrings = 3;
+constexpr std::uint32_t kLoadedAndRun = 6;
+constexpr std::string_view kNames("\0.text\0.shstrtab\0\0\0", 20);
 constexpr std::string_view kElf32(
     "\x7F"
     "ELF\x01\x01\x01",
@@ -146,37 +152,46 @@ Program read_elf(std::string_view file) {
   return program;
 }
 
+// A section for each segment, since debuggers and objdump go by sections; before them one that is none, and then the names.
 std::string elf_of(const Program& program) {
-  const std::size_t count = program.segments.size();
-  std::string file(kElfHeaderBytes + count * kProgramHeaderBytes, '\0');
+  const auto count = static_cast<std::uint32_t>(program.segments.size());
+  const std::size_t sections = kElfHeaderBytes + count * kProgramHeaderBytes;
+  const std::size_t names = sections + (count + 2) * kSectionHeaderBytes;
+  std::string file(names, '\0');
   file.replace(0, kElf32.size(), kElf32);
+  file += kNames;
+  const auto put_words = [&file](std::size_t at, std::initializer_list<std::uint32_t> words) {
+    for (const std::uint32_t word : words) {
+      put_number(file, at, word);
+      at += 4;
+    }
+  };
   put_number(file, 16, 2, 2);  // a program that runs
   put_number(file, 18, program.machine, 2);
   put_number(file, 20, 1);
   put_number(file, 24, program.entry);
-  put_number(file, 28, kElfHeaderBytes);
-  put_number(file, 36, program.flags);
+  put_words(28, {kElfHeaderBytes, static_cast<std::uint32_t>(sections), program.flags});
   put_number(file, 40, kElfHeaderBytes, 2);
   put_number(file, 42, kProgramHeaderBytes, 2);
-  put_number(file, 44, static_cast<std::uint32_t>(count), 2);
+  put_number(file, 44, count, 2);
+  put_number(file, 46, kSectionHeaderBytes, 2);
+  put_number(file, 48, count + 2, 2);
+  put_number(file, 50, count + 1, 2);  // the names' section
   for (std::size_t i = 0; i < count; ++i) {
     const Segment& segment = program.segments[i];
-    const std::size_t header = kElfHeaderBytes + i * kProgramHeaderBytes;
+    const auto offset = static_cast<std::uint32_t>(file.size());
     const auto size = static_cast<std::uint32_t>(segment.bytes.size());
-    const std::uint32_t words[] = {kPtLoad,
-                                   static_cast<std::uint32_t>(file.size()),
-                                   segment.virtual_address,
-                                   segment.address,
-                                   size,
-                                   size,
-                                   kReadAndRun,
-                                   4};
-    for (std::size_t word = 0; word < std::size(words); ++word) {
-      put_number(file, header + 4 * word, words[word]);
-    }
+    put_words(kElfHeaderBytes + i * kProgramHeaderBytes,
+              {kPtLoad, offset, segment.virtual_address, segment.address, size, size, kReadAndRun, 4});
+    put_words(sections + (i + 1) * kSectionHeaderBytes,
+              {static_cast<std::uint32_t>(kNames.find(".text")), kBits, kLoadedAndRun,
+               segment.virtual_address, offset, size, 0, 0, 4});
     file += segment.bytes;
     file.resize((file.size() + 3) / 4 * 4);
   }
+  put_words(names - kSectionHeaderBytes,
+            {static_cast<std::uint32_t>(kNames.find(".shstrtab")), kStrings, 0, 0,
+             static_cast<std::uint32_t>(names), static_cast<std::uint32_t>(kNames.size()), 0, 0, 1});
   return file;
 }
 

@@ -43,7 +43,7 @@ std::uint32_t boot_checksum(std::string_view bytes);
 
 // Files of a program. The same bytes for the same program.
 
-/// Its segments alone, without names for a debugger.
+/// Its segments, a section each, without names for a debugger.
 std::string elf_of(const Program& program);
 /// From the first byte to the last, zeros between segments. Throws ImageError above 64 MiB.
 std::string bin_of(const Program& program);

@@ -269,7 +269,7 @@ TEST_CASE(
   CHECK(with(mark + 20, 0x10000FFF).find("no place") != std::string::npos);
   // Two marks, two segments at one address, a segment and a table outside the file.
   std::string two = good;
-  two.replace(52 + 64 + 100, 8, platform::kSceneMarkMagic);
+  two.replace(mark - 100, 8, platform::kSceneMarkMagic);
   CHECK(wrong_with(two).find("takes a scene") != std::string::npos);
   CHECK(with(52 + 32 + 12, 0x10000100).find("at one address") != std::string::npos);
   CHECK(with(52 + 4, 0xFFFFFF00).find("outside the file") != std::string::npos);
