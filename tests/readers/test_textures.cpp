@@ -19,6 +19,7 @@
 #include "readers/texture.h"
 #include "scene/mesh_shade.h"
 #include "support/file_bytes.h"
+#include "support/pictures.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"
 
@@ -316,14 +317,36 @@ TEST_CASE(
   CHECK(columns_of(quad.source()) == "rrrrrrrrbbbbbbbb");
 }
 
-TEST_CASE("gltf: unlit materials -> their base colour, and one note that they are lit") {
+TEST_CASE("gltf: unlit materials alone -> their base colour without light; beside others a note") {
   Quad quad;
   quad.material =
       R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"extensions":{"KHR_materials_unlit":{}}})";
   quad.more = R"("extensionsRequired":["KHR_materials_unlit"],)";
   CHECK(columns_of(quad.source()) == "rrrrrrrrbbbbbbbb");
-  CHECK(notes_of(quad.source()).size() == 1);
-  CHECK(notes_hold(quad.source(), "1 material is unlit"));
+  CHECK(notes_of(quad.source()).empty());
+  CHECK(std::get<TriangleMesh>(quad.source()).is_unlit);
+  quad.material = R"({"emissiveFactor":[1,1,1],"extensions":{"KHR_materials_unlit":{}}})";
+  CHECK(std::get<TriangleMesh>(quad.source()).surfaces.empty());
+
+  // A dark red, from the side and from below, is its own bytes: 0.2 of light is 124.
+  quad.material = R"({"pbrMetallicRoughness":{"baseColorFactor":[0.2,0,0,1]},)"
+                  R"("extensions":{"KHR_materials_unlit":{}}})";
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("quad.glb", quad.glb());
+  for (const char* const seen : {"-30", "60"}) {
+    const std::string file = folder.path("quad.png");
+    CHECK(thimble::tests::run_command(
+              {"render", scene, "--size", "33x33", "--tilt", seen, "-o", file, "--depth", "5", "--quiet"})
+              .status == 0);
+    const auto picture = thimble::tests::read_png(thimble::tests::read_text(file));
+    const auto at = static_cast<std::size_t>(picture.channels) * (16 * 33 + 16);
+    CHECK(std::abs(static_cast<std::uint8_t>(picture.frames[0][at]) - 124) < 4);
+    CHECK(static_cast<std::uint8_t>(picture.frames[0][at + 1]) == 0);
+  }
+  quad.attributes =
+      R"(},"indices":3},{"attributes":{"POSITION":0)";  // a primitive without material before it
+  CHECK(!std::get<TriangleMesh>(quad.source()).is_unlit);
+  CHECK(notes_hold(quad.source(), "1 material is unlit in the file and drawn in the scene's light"));
 }
 
 TEST_CASE("mesh: colours of vertices alone -> mixed as light where the voxel lies, from each format") {

@@ -1,17 +1,18 @@
 // glTF 2.0 scenes: `.gltf` (JSON) and `.glb`.
 //
 // What is read: the nodes of the default scene (of a file without one, all) with their transforms and instances
-// (EXT_mesh_gpu_instancing), the triangles, strips and fans of their meshes, or where there are none the points, and
-// colours: the material's base colour (or the diffuse one of KHR_materials_pbrSpecularGlossiness), its picture (PNG
-// or JPEG) by its coordinates, transform and wrap modes, and COLOR_0, multiplied. With alphaMode MASK what is less
-// opaque than the cutoff is nothing, with BLEND what is less than a tenth; vertices' alpha decides for a whole
-// triangle. Light that a material gives off (emissive factor, strength and picture) is drawn where its picture lies as
-// the colour's. Buffers are in the file, in `data:` links or in files beside it; a link that leaves the file's folder is
-// refused. y is up.
+// (EXT_mesh_gpu_instancing), the triangles, strips and fans of their meshes, packed by Draco, too, or where there are
+// none the points, and colours: the material's base colour (or the diffuse one of
+// KHR_materials_pbrSpecularGlossiness), its picture by its coordinates, transform and wrap modes, and COLOR_0,
+// multiplied. With alphaMode MASK what is less opaque than the cutoff is nothing, with BLEND what is less than a tenth;
+// vertices' alpha decides for a whole triangle. Light that a material gives off (emissive factor, strength and picture)
+// is drawn where its picture lies as the colour's; where all materials are unlit, colours are drawn without light.
+// Buffers are in the file, in `data:` links or in files beside it; a link that leaves the file's folder is refused. y
+// is up.
 //
-// Not read: compressed meshes (Draco, meshopt) and what a file requires and is not known here, which are refused by
-// name, while of lights, materials and pictures it is noted; skins, morphs and animations, so that things stand as they
-// are at rest; lights and cameras. A picture that is not read is noted.
+// Not read: what a file requires and is not known here (meshopt), which is refused by name, while of lights, materials
+// and pictures it is noted; skins, morphs and animations, so that things stand as they are at rest; lights and cameras.
+// A picture that is not read is noted.
 //
 // JSON is parsed by nlohmann's library, which takes some hundred bytes a value: a file is refused that has
 // more than `kGltfValueLimit` of them, or nests them deeper than `kGltfDepthLimit`.
@@ -493,6 +494,7 @@ class Scene {
     const auto material = gltf_number(*part.primitive, "material", part.place);
     if (!material) {
       static const Look kPlain;
+      has_lit_ = true;
       return kPlain;
     }
     const auto known = looks_.find(*material);
@@ -502,7 +504,9 @@ class Scene {
     Look& look = looks_[*material];
     const std::string place = "material " + std::to_string(*material);
     const json& entry = file_.entry("materials", *material);
-    unlit_ += gltf_extension(entry, "KHR_materials_unlit") != nullptr ? 1U : 0U;
+    const bool is_unlit = gltf_extension(entry, "KHR_materials_unlit") != nullptr;
+    unlit_ += is_unlit ? 1U : 0U;
+    has_lit_ = has_lit_ || !is_unlit;
     const json* glossy = gltf_extension(entry, "KHR_materials_pbrSpecularGlossiness");
     const json* surface = glossy != nullptr ? glossy : gltf_member(entry, "pbrMetallicRoughness");
     const json* texture = nullptr;
@@ -522,7 +526,9 @@ class Scene {
     made.color = texture_of(texture, look, place);
     made.alpha = look.factor[3];
     made.cutoff = look.cutoff;
-    add_glow(entry, look, made, place);
+    if (!is_unlit) {
+      add_glow(entry, look, made, place);
+    }
     made.wrap_u = look.wraps[0];
     made.wrap_v = look.wraps[1];
     if (made.color != nullptr || made.emission != std::array<double, 3>{}) {
@@ -637,9 +643,10 @@ class Scene {
       mesh_.notes.push_back("of its " + std::to_string(file_.count("scenes")) +
                             " scenes the default one is drawn");
     }
-    if (unlit_ != 0) {
+    mesh_.is_unlit = unlit_ != 0 && !has_lit_;
+    if (unlit_ != 0 && has_lit_) {
       mesh_.notes.push_back(std::to_string(unlit_) + (unlit_ == 1 ? " material is" : " materials are") +
-                            " unlit in the file and drawn in the scene's light like others");
+                            " unlit in the file and drawn in the scene's light like the others");
     }
     if (blended_ != 0) {
       mesh_.notes.push_back("of " + std::to_string(blended_) +
@@ -666,6 +673,7 @@ class Scene {
   bool is_colored_ = false;
   std::map<std::string, std::uint64_t> undrawn_;  ///< of how many primitives
   std::size_t unlit_ = 0;                         ///< materials
+  bool has_lit_ = false;                          ///< materials that are not
   std::size_t blended_ = 0;                       ///< materials
   bool is_clear_ = false;                         ///< some triangles are
   Textures textures_;

@@ -160,6 +160,7 @@ struct TriangleMesh {
   std::vector<Rgb> colors;                              ///< one a position, or empty
   std::vector<Rgb> face_colors{};                       ///< one a triangle, or empty; counts before `colors`
   bool is_z_up = false;                                 ///< the format says so; else y is taken to be up
+  bool is_unlit = false;                                ///< its colours are drawn as they are, without light
   Notes notes{};
   std::vector<MeshSurface> surfaces{};      ///< empty where no triangle has more than its colour
   std::vector<std::uint32_t> surface_of{};  ///< one a triangle, in range, or empty as `surfaces` are

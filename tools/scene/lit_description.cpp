@@ -142,6 +142,19 @@ LitDescription describe_palette(const Palette& palette) {
   return lit;
 }
 
+LitDescription describe_unlit(const Palette& palette) {
+  LitDescription lit = describe_palette(palette);
+  for (Surface& surface : lit.surfaces) {
+    surface.kind = SurfaceKind::kEmit;
+    surface.emission_q8 = 256;
+  }
+  std::fill(std::begin(lit.rest.ambient_q8), std::end(lit.rest.ambient_q8), std::uint16_t{0});
+  lit.has_own_ambient = true;
+  lit.on = Effect::kDirectLight;
+  lit.off = Effect::kEmitterLight | Effect::kShadows | Effect::kAmbientOcclusion | Effect::kSmoothNormals;
+  return lit;
+}
+
 LitDescription describe_baked(const BakedLighting& lighting, const Palette& palette) {
   LitDescription lit = describe_palette(palette);
   std::copy(lighting.scene.surfaces.begin(), lighting.scene.surfaces.end(), lit.surfaces.begin());

@@ -98,6 +98,8 @@ Material material_of(const Surface& surface);
 
 /// Surfaces of a whole palette and nothing else: no light, no sky.
 LitDescription describe_palette(const Palette& palette);
+/// The same as light of its own, with no other light.
+LitDescription describe_unlit(const Palette& palette);
 
 /// What a baked scene holds, with the rest of its palette as plain surfaces. The set that it was baked for is
 /// what it calls for, no more and no less.

@@ -285,6 +285,9 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
   facts.single_material = colors->colors() == 0;
   facts.palette = colors->palette();
   facts.color_error = colors->error();
+  if (mesh->is_unlit) {
+    facts.lighting = describe_unlit(facts.palette);
+  }
   const int level = facts.level;
   return std::make_unique<SceneSource>(
       std::move(facts),

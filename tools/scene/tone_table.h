@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "thimble/light/scene.h"
 #include "thimble/picture/pixel.h"
 
 namespace thimble::tools {
@@ -26,6 +27,10 @@ inline constexpr uint64_t kMostLookRays = 100'000'000;
 /// How much to brighten a picture of these greys, drawn at two thirds: 256 is not at all. A picture of nothing is
 /// not.
 uint32_t exposure_q8(const GrayCounts& counts);
+/// Nothing but what glows gives light: that has the colours that it is to be seen in, and so exposure 256.
+inline bool is_dark_but_for_glow(const LitScene& scene) {
+  return scene.lights.empty() && scene.ambient_q8[0] + scene.ambient_q8[1] + scene.ambient_q8[2] == 0;
+}
 
 /// What becomes of each value of a channel drawn at two thirds. Never falls; 0 stays 0.
 struct ToneTable {

@@ -445,7 +445,8 @@ extern "C" {
     return static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(camera.height_px());
   };
   const bool allows_four = rays * 4 * pixels(viewer.camera) / pixels(coarse) <= kMostLookRays;
-  return exposure_q8(counts) | (allows_four ? 0 : kOneSample);
+  const uint32_t exposure = is_dark_but_for_glow(viewer.lighting.scene) ? 256 : exposure_q8(counts);
+  return exposure | (allows_four ? 0 : kOneSample);
 }
 // What is drawn at rest is drawn with it from then on.
 [[clang::export_name("set_exposure")]] void thimble_set_exposure(uint32_t exposure_q8) {
