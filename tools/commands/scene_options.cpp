@@ -298,7 +298,7 @@ std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built, EffectSet
     refuse_usage("--engine gpu does not draw the effects " + effects_text(missing) + "; --engine auto does");
   }
   const Span<const Rgb8> palette(built.palette().data(), built.palette().size());
-  return name == "gpu" ? std::make_unique<GpuEngine>(built.compact(), palette, threads) : nullptr;
+  return name == "gpu" ? GpuEngine::make(built.compact(), palette, threads) : nullptr;
 }
 
 void EngineOptions::check(bool is_plain, bool is_lit, bool at_edges) const {

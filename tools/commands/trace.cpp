@@ -38,43 +38,6 @@ namespace {
 
 // ---- A file of rays, read in chunks that do not know of one another.
 
-/// What is wrong with a line, or with a row of an array.
-struct RayFault {
-  std::size_t line = 0;  ///< counted from the chunk's first, which is 0
-  std::string sentence;
-};
-
-class RayFile {
- public:
-  /// One ray a line, ox,oy,oz,dx,dy,dz in voxels; a header line is allowed before, empty lines anywhere. Or a NumPy
-  /// array, one ray a row. Looks at a few bytes a chunk.
-  RayFile(const SharedBytes& file, const RayRules& rules);
-
-  std::size_t chunks() const { return ends_.size(); }
-  /// What part of the file is behind us where a chunk ends, up to 1.
-  double part(std::size_t chunk) const {
-    return static_cast<double>(ends_[chunk]) / static_cast<double>(ends_.back());
-  }
-  /// Where a fault is, by the lines or rows before its chunk.
-  std::string place(std::size_t before, const RayFault& fault) const {
-    return (table_ ? "row " : "line ") + std::to_string(first_line_ + before + fault.line);
-  }
-
-  /// Puts the rays of a chunk into `rays`, up to the first line that is none: then that is the answer. `lines` gets
-  /// the number of its lines. Any number of threads at a time.
-  std::optional<RayFault> read(std::size_t chunk, std::vector<Ray>* rays, std::size_t* lines) const;
-
- private:
-  void find_lines();
-
-  SharedBytes file_;
-  RayRules rules_;
-  std::optional<NumberTable> table_;
-  std::size_t begin_ = 0;
-  std::size_t first_line_ = 1;     // of the first chunk; rows are counted from 0
-  std::vector<std::size_t> ends_;  // of the chunks, bytes or rows
-};
-
 // The six numbers of a line, or nothing when it does not hold just six numbers. One that no double holds is infinite.
 std::optional<std::array<double, 6>> parse_line(std::string_view line) {
   std::array<double, 6> numbers{};
@@ -112,80 +75,111 @@ bool is_header(std::string_view line) {
 constexpr std::size_t kChunkBytes = 256 << 10;
 constexpr std::size_t kChunkRows = 4096;
 
-RayFile::RayFile(const SharedBytes& file, const RayRules& rules) : file_(file), rules_(rules) {
-  if (!looks_like_npy(file.bytes)) {
-    find_lines();
-    return;
-  }
-  table_ = read_npy_table(file);
-  if (table_->columns != 6) {
-    throw InputError("rays are rows of six numbers, ox, oy, oz, dx, dy, dz; this array has " +
-                     std::to_string(table_->columns) + " columns");
-  }
-  first_line_ = 0;
-  for (std::size_t row = 0; row < table_->rows;) {
-    row = std::min<std::size_t>(row + kChunkRows, table_->rows);
-    ends_.push_back(row);
-  }
-}
+/// What is wrong with a line, or with a row of an array.
+struct RayFault {
+  std::size_t line = 0;  ///< counted from the chunk's first, which is 0
+  std::string sentence;
+};
 
-void RayFile::find_lines() {
-  const std::string_view text = file_.text();
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  begin_ = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-  // Up to the first ray.
-  LineReader lines(text.substr(begin_));
-  const std::size_t front = begin_;
-  bool header = false;
-  for (std::string_view line; lines.next(line); begin_ = front + lines.offset(), ++first_line_) {
-    if (!trimmed(line).empty()) {
-      if (header || parse_line(line) || !is_header(line)) {
-        break;
-      }
-      header = true;
+class RayFile {
+ public:
+  /// One ray a line, ox,oy,oz,dx,dy,dz in voxels; a header line is allowed before, empty lines anywhere. Or a NumPy
+  /// array, one ray a row. Looks at a few bytes a chunk.
+  RayFile(const SharedBytes& file, const RayRules& rules) : file_(file), rules_(rules) {
+    if (!looks_like_npy(file.bytes)) {
+      find_lines();
+      return;
+    }
+    table_ = read_npy_table(file);
+    if (table_->columns != 6) {
+      throw InputError("rays are rows of six numbers, ox, oy, oz, dx, dy, dz; this array has " +
+                       std::to_string(table_->columns) + " columns");
+    }
+    first_line_ = 0;
+    for (std::size_t row = 0; row < table_->rows;) {
+      row = std::min<std::size_t>(row + kChunkRows, table_->rows);
+      ends_.push_back(row);
     }
   }
-  for (std::size_t at = begin_; at < text.size();) {
-    const std::size_t end = text.find('\n', std::min(at + kChunkBytes, text.size()));
-    at = end == std::string_view::npos ? text.size() : end + 1;
-    ends_.push_back(at);
-  }
-}
 
-std::optional<RayFault> RayFile::read(std::size_t chunk, std::vector<Ray>* rays, std::size_t* lines) const {
-  const std::size_t begin = chunk == 0 ? begin_ : ends_[chunk - 1];
-  rays->clear();
-  if (table_) {
-    *lines = ends_[chunk] - begin;
-    for (std::size_t row = 0; row < *lines; ++row) {
-      std::array<double, 6> numbers{};
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        numbers[i] = table_->at(begin + row, i);
+  std::size_t chunks() const { return ends_.size(); }
+  /// What part of the file is behind us where a chunk ends, up to 1.
+  double part(std::size_t chunk) const {
+    return static_cast<double>(ends_[chunk]) / static_cast<double>(ends_.back());
+  }
+  /// Where a fault is, by the lines or rows before its chunk.
+  std::string place(std::size_t before, const RayFault& fault) const {
+    return (table_ ? "row " : "line ") + std::to_string(first_line_ + before + fault.line);
+  }
+
+  /// Puts the rays of a chunk into `rays`, up to the first line that is none: then that is the answer. `lines` gets
+  /// the number of its lines. Any number of threads at a time.
+  std::optional<RayFault> read(std::size_t chunk, std::vector<Ray>* rays, std::size_t* lines) const {
+    const std::size_t begin = chunk == 0 ? begin_ : ends_[chunk - 1];
+    rays->clear();
+    if (table_) {
+      *lines = ends_[chunk] - begin;
+      for (std::size_t row = 0; row < *lines; ++row) {
+        std::array<double, 6> numbers{};
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+          numbers[i] = table_->at(begin + row, i);
+        }
+        std::string fault = quantised_ray(numbers, rules_, &rays->emplace_back());
+        if (!fault.empty()) {
+          return RayFault{row, std::move(fault)};
+        }
       }
-      std::string fault = quantised_ray(numbers, rules_, &rays->emplace_back());
+      return std::nullopt;
+    }
+    *lines = 0;
+    LineReader reader(file_.text().substr(begin, ends_[chunk] - begin));
+    for (std::string_view line; reader.next(line); ++*lines) {
+      if (trimmed(line).empty()) {
+        continue;
+      }
+      const auto numbers = parse_line(line);
+      if (!numbers) {
+        return RayFault{*lines, "these are not the six numbers ox,oy,oz,dx,dy,dz"};
+      }
+      std::string fault = quantised_ray(*numbers, rules_, &rays->emplace_back());
       if (!fault.empty()) {
-        return RayFault{row, std::move(fault)};
+        return RayFault{*lines, std::move(fault)};
       }
     }
     return std::nullopt;
   }
-  *lines = 0;
-  LineReader reader(file_.text().substr(begin, ends_[chunk] - begin));
-  for (std::string_view line; reader.next(line); ++*lines) {
-    if (trimmed(line).empty()) {
-      continue;
+
+ private:
+  void find_lines() {
+    const std::string_view text = file_.text();
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    begin_ = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+    // Up to the first ray.
+    LineReader lines(text.substr(begin_));
+    const std::size_t front = begin_;
+    bool header = false;
+    for (std::string_view line; lines.next(line); begin_ = front + lines.offset(), ++first_line_) {
+      if (!trimmed(line).empty()) {
+        if (header || parse_line(line) || !is_header(line)) {
+          break;
+        }
+        header = true;
+      }
     }
-    const auto numbers = parse_line(line);
-    if (!numbers) {
-      return RayFault{*lines, "these are not the six numbers ox,oy,oz,dx,dy,dz"};
-    }
-    std::string fault = quantised_ray(*numbers, rules_, &rays->emplace_back());
-    if (!fault.empty()) {
-      return RayFault{*lines, std::move(fault)};
+    for (std::size_t at = begin_; at < text.size();) {
+      const std::size_t end = text.find('\n', std::min(at + kChunkBytes, text.size()));
+      at = end == std::string_view::npos ? text.size() : end + 1;
+      ends_.push_back(at);
     }
   }
-  return std::nullopt;
-}
+
+  SharedBytes file_;
+  RayRules rules_;
+  std::optional<NumberTable> table_;
+  std::size_t begin_ = 0;
+  std::size_t first_line_ = 1;     // of the first chunk; rows are counted from 0
+  std::vector<std::size_t> ends_;  // of the chunks, bytes or rows
+};
 
 // ----
 

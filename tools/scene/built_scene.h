@@ -57,49 +57,8 @@ struct BuildOptions {
   bool baked_in_flash = false;
 };
 
-/// Builds behind what the arena holds; its layout, front to back:
-///
-///   what is there | pool of nodes, or list of keys, while building | compact tree
-///
-/// At the end the compact tree moves down over the workspace. A baked scene's tree is just taken up, without
-/// any workspace; the other structures are filled from it.
-class StructureBuilder {
- public:
-  struct Shortage {};  ///< thrown: the arena is too small
-
-  /// All that is given outlives the builder.
-  StructureBuilder(const SceneSource& source, Arena* arena, const BuildOptions& options,
-                   const Progress& progress)
-      : source_(source), arena_(*arena), options_(options), progress_(progress) {}
-
-  /// `coarsen`: merges blocks until the arena is large enough. Throws Shortage, InputError and what the
-  /// source throws; what the arena then holds behind what was there is lost.
-  Structure build(bool coarsen);
-  /// The least bytes of an arena in which the same comes out without coarsening, where that is less than the
-  /// most that was in use; else 0. After `build`.
-  std::uint64_t least_bytes() const { return least_bytes_; }
-
- private:
-  void build_dense();
-  void build_pool(bool coarsen);
-  void build_parts();
-  void fill_part(Bytes pool, int part_level, std::size_t part);
-  void insert(const Vec3i& corner, int block_level, std::uint8_t material);
-  void take_baked(const CompactTree& tree);
-  template <class Key>
-  void build_keys();
-  void keep_compact(Bytes tree);
-
-  const SceneSource& source_;
-  Arena& arena_;
-  const BuildOptions& options_;
-  const Progress& progress_;
-  Structure built_;
-  std::uint64_t least_bytes_ = 0;
-};
-
-/// Built once, then only read. Layout of the arena, front to back: render state and band, the structure
-/// (`StructureBuilder`), and what others take there (wide_renderer.h, sampling.h).
+/// Built once, then only read. Layout of the arena, front to back: render state and band, the structure, and what
+/// others take there (wide_renderer.h, sampling.h).
 class BuiltScene {
  public:
   /// Streams `source` into memory of its own. Throws InputError when it does not fit the budget (the sentence

@@ -20,15 +20,94 @@ auto told(Work&& work) {
   }
 }
 
-}  // namespace
+gpu::Backdrop backdrop_of(const Ground& ground) {
+  static_assert(kAroundCount == 32 && kAroundLength == 128);
+  return {ground.is_there, ground.z, ground.reach, ground.toward_sun, kAround};
+}
 
-struct GpuEngine::State {
-  Status draw(const gpu::LitFrame& frame, Band band, Bytes shares, LitCounts* counts);
+class Device final : public GpuEngine {
+ public:
+  Device(const CompactTree& tree, Span<const Rgb8> palette, int threads)
+      : start_(Clock::now()),
+        renderer_(tree, palette, {}),
+        threads_(threads),
+        seconds_(std::chrono::duration<double>(Clock::now() - start_).count()) {}
 
-  std::mutex mutex;
-  gpu::Renderer renderer;
-  std::vector<std::uint32_t> words;  // of single pixels
+  const std::string& device() const override { return renderer_.device().name; }
+  bool is_software() const override { return renderer_.device().is_software; }
+  int threads() const override { return threads_; }
+  double seconds() const override { return seconds_; }
+  std::int32_t most_rows(std::int32_t width_px) const override { return gpu::Renderer::most_rows(width_px); }
+
+  Status draw(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts) override {
+    return told([&] { return renderer_.draw(camera, shading, band, counts); });
+  }
+  Status trace(Span<const Ray> rays, Span<Hit> hits) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return told([&] { return renderer_.trace(rays, hits); });
+  }
+  Status render(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
+                const Band& band, LitCounts* counts) override {
+    return draw_lit({effects, camera, shading, scene}, band, {}, counts);
+  }
+  Status render_before(const Ground& ground, EffectSet effects, const Camera& camera, const Shading& shading,
+                       const LitScene& scene, const Band& band, Bytes shares, LitCounts* counts) override {
+    const gpu::Backdrop backdrop = backdrop_of(ground);
+    return draw_lit({effects, camera, shading, scene, &backdrop}, band, shares, counts);
+  }
+
+  Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
+                       Span<const SamplePlace> places, const Ground* ground, Bytes rgb, Bytes shares,
+                       LitCounts* /*counts*/) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const gpu::Backdrop backdrop = backdrop_of(ground != nullptr ? *ground : Ground{});
+    words_.resize(places.size);
+    std::transform(places.data, places.data + places.size, words_.begin(), [](const SamplePlace& place) {
+      return static_cast<std::uint32_t>(place.x) | static_cast<std::uint32_t>(place.y) << 16;
+    });
+    const Status status = told([&] {
+      return renderer_.draw_places({effects, camera, shading, scene, ground != nullptr ? &backdrop : nullptr},
+                                   {words_.data(), words_.size()});
+    });
+    for (std::size_t i = 0; i < words_.size() && status == Status::kOk; ++i) {
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        rgb.data[3 * i + channel] = static_cast<std::uint8_t>(words_[i] >> (8 * channel));
+      }
+      if (ground != nullptr) {
+        shares.data[i] = static_cast<std::uint8_t>(words_[i] >> 24);
+      }
+    }
+    return status;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Status draw_lit(const gpu::LitFrame& frame, Band band, Bytes shares, LitCounts* counts) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::int32_t width = frame.camera.width_px();
+    const std::int32_t end = band.first_row + band.rows;
+    Status status = Status::kOk;
+    while (status == Status::kOk && band.first_row < end) {
+      band.rows = std::min(most_rows(width), end - band.first_row);
+      status = told([&] { return renderer_.draw_lit(frame, band, shares, counts); });
+      const auto rows = static_cast<std::size_t>(band.rows);
+      band.first_row += band.rows;
+      band.pixels = band.pixels.subspan(rows * row_bytes(band.format, width));
+      shares = shares.subspan(std::min(shares.size, rows * static_cast<std::size_t>(width)));
+    }
+    return status;
+  }
+
+  Clock::time_point start_;
+  std::mutex mutex_;
+  gpu::Renderer renderer_;
+  int threads_;
+  double seconds_;
+  std::vector<std::uint32_t> words_;  // of single pixels
 };
+
+}  // namespace
 
 bool GpuEngine::is_in_build() {
   return true;
@@ -46,94 +125,8 @@ EffectSet GpuEngine::effects() {
   return gpu::kEffectsInKernels;
 }
 
-GpuEngine::GpuEngine(const CompactTree& tree, Span<const Rgb8> palette, int threads) : threads_(threads) {
-  const auto start = std::chrono::steady_clock::now();
-  state_ = told([&] { return std::unique_ptr<State>(new State{{}, {tree, palette, {}}, {}}); });
-  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-GpuEngine::~GpuEngine() = default;
-
-const std::string& GpuEngine::device() const {
-  return state_->renderer.device().name;
-}
-bool GpuEngine::is_software() const {
-  return state_->renderer.device().is_software;
-}
-
-std::int32_t GpuEngine::most_rows(std::int32_t width_px) {
-  return gpu::Renderer::most_rows(width_px);
-}
-
-Status GpuEngine::draw(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts) {
-  return told([&] { return state_->renderer.draw(camera, shading, band, counts); });
-}
-
-Status GpuEngine::trace(Span<const Ray> rays, Span<Hit> hits) {
-  const std::lock_guard<std::mutex> lock(state_->mutex);
-  return told([&] { return state_->renderer.trace(rays, hits); });
-}
-
-Status GpuEngine::State::draw(const gpu::LitFrame& frame, Band band, Bytes shares, LitCounts* counts) {
-  const std::lock_guard<std::mutex> lock(mutex);
-  const std::int32_t end = band.first_row + band.rows;
-  Status status = Status::kOk;
-  while (status == Status::kOk && band.first_row < end) {
-    band.rows = std::min(most_rows(frame.camera.width_px()), end - band.first_row);
-    status = told([&] { return renderer.draw_lit(frame, band, shares, counts); });
-    const auto rows = static_cast<std::size_t>(band.rows);
-    band.first_row += band.rows;
-    band.pixels = band.pixels.subspan(rows * row_bytes(band.format, frame.camera.width_px()));
-    shares = shares.subspan(std::min(shares.size, rows * static_cast<std::size_t>(frame.camera.width_px())));
-  }
-  return status;
-}
-
-Status GpuEngine::render(EffectSet effects, const Camera& camera, const Shading& shading,
-                         const LitScene& scene, const Band& band, LitCounts* counts) {
-  return state_->draw({effects, camera, shading, scene}, band, {}, counts);
-}
-
-namespace {
-
-gpu::Backdrop backdrop_of(const Ground& ground) {
-  static_assert(kAroundCount == 32 && kAroundLength == 128);
-  return {ground.is_there, ground.z, ground.reach, ground.toward_sun, kAround};
-}
-
-}  // namespace
-
-Status GpuEngine::render_before(const Ground& ground, EffectSet effects, const Camera& camera,
-                                const Shading& shading, const LitScene& scene, const Band& band, Bytes shares,
-                                LitCounts* counts) {
-  const gpu::Backdrop backdrop = backdrop_of(ground);
-  return state_->draw({effects, camera, shading, scene, &backdrop}, band, shares, counts);
-}
-
-Status GpuEngine::render_pixels(EffectSet effects, const Camera& camera, const Shading& shading,
-                                const LitScene& scene, Span<const SamplePlace> places, const Ground* ground,
-                                Bytes rgb, Bytes shares, LitCounts* /*counts*/) {
-  const std::lock_guard<std::mutex> lock(state_->mutex);
-  const gpu::Backdrop backdrop = backdrop_of(ground != nullptr ? *ground : Ground{});
-  std::vector<std::uint32_t>& words = state_->words;
-  words.resize(places.size);
-  std::transform(places.data, places.data + places.size, words.begin(), [](const SamplePlace& place) {
-    return static_cast<std::uint32_t>(place.x) | static_cast<std::uint32_t>(place.y) << 16;
-  });
-  const Status status = told([&] {
-    return state_->renderer.draw_places(
-        {effects, camera, shading, scene, ground != nullptr ? &backdrop : nullptr},
-        {words.data(), words.size()});
-  });
-  for (std::size_t i = 0; i < words.size() && status == Status::kOk; ++i) {
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      rgb.data[3 * i + channel] = static_cast<std::uint8_t>(words[i] >> (8 * channel));
-    }
-    if (ground != nullptr) {
-      shares.data[i] = static_cast<std::uint8_t>(words[i] >> 24);
-    }
-  }
-  return status;
+std::unique_ptr<GpuEngine> GpuEngine::make(const CompactTree& tree, Span<const Rgb8> palette, int threads) {
+  return told([&] { return std::make_unique<Device>(tree, palette, threads); });
 }
 
 }  // namespace thimble::tools

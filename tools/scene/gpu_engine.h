@@ -12,7 +12,7 @@
 
 namespace thimble::tools {
 
-class GpuEngine final : public LitStreams {
+class GpuEngine : public LitStreams {
  public:
   static bool is_in_build();
   /// The devices of this machine, the one that is used first.
@@ -23,39 +23,22 @@ class GpuEngine final : public LitStreams {
 
   /// Copies the scene to the device. `threads` finish what it has drawn. Throws InputError: there is none, or the scene
   /// is too large.
-  GpuEngine(const CompactTree& tree, Span<const Rgb8> palette, int threads);
-  ~GpuEngine() override;
+  static std::unique_ptr<GpuEngine> make(const CompactTree& tree, Span<const Rgb8> palette, int threads);
 
   /// The device's name, and whether it is a software driver.
-  const std::string& device() const;
-  bool is_software() const;
+  virtual const std::string& device() const = 0;
+  virtual bool is_software() const = 0;
   const char* name() const override { return "gpu"; }
-  int threads() const override { return threads_; }
-  /// What copying took.
-  double seconds() const override { return seconds_; }
-  /// Most rows of a band for `draw`.
-  static std::int32_t most_rows(std::int32_t width_px);
-  /// The pixels of `render_band`. Throws InputError when the device fails.
-  Status draw(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts);
-  /// As `closest_hit`, but that `visits` are steps of the kernel; by any number of threads. Throws InputError when the
-  /// device fails.
-  Status trace(Span<const Ray> rays, Span<Hit> hits);
-
-  /// These throw InputError when the device fails.
-  Status render(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                const Band& band, LitCounts* counts) override;
   bool finds_shares() const override { return true; }
-  Status render_before(const Ground& ground, EffectSet effects, const Camera& camera, const Shading& shading,
-                       const LitScene& scene, const Band& band, Bytes shares, LitCounts* counts) override;
-  Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                       Span<const SamplePlace> places, const Ground* ground, Bytes rgb, Bytes shares,
-                       LitCounts* counts) override;
+  /// Most rows of a band for `draw`.
+  virtual std::int32_t most_rows(std::int32_t width_px) const = 0;
+  // These, and what it draws as LitStreams, throw InputError when the device fails.
 
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-  int threads_;
-  double seconds_ = 0;
+  /// The pixels of `render_band`.
+  virtual Status draw(const Camera& camera, const Shading& shading, const Band& band,
+                      RenderCounts* counts) = 0;
+  /// As `closest_hit`, but that `visits` are steps of the kernel; by any number of threads.
+  virtual Status trace(Span<const Ray> rays, Span<Hit> hits) = 0;
 };
 
 }  // namespace thimble::tools

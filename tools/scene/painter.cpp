@@ -248,7 +248,7 @@ BandPainter wide_painter(WideRenderer* renderer, const Camera& camera, const Sha
 BandPainter gpu_painter(GpuEngine* engine, const Camera& camera, const Shading& shading) {
   return {"gpu",
           1,
-          GpuEngine::most_rows(camera.width_px()),
+          engine->most_rows(camera.width_px()),
           {},
           [engine, &camera, &shading](const Band& band, PaintCounts* counts) {
             return engine->draw(camera, shading, band, &counts->all);

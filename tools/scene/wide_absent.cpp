@@ -2,21 +2,10 @@
 #include "scene/lit_streams.h"
 #include "scene/wide_renderer.h"
 
-namespace thimble::wide {
-class Threads {};
-}  // namespace thimble::wide
-
 namespace thimble::tools {
-
-WideRenderer::WideRenderer(int /*threads*/) {}
-WideRenderer::~WideRenderer() = default;
 
 std::vector<std::string> WideRenderer::instruction_sets() {
   return {};
-}
-
-int WideRenderer::threads() const {
-  return 1;
 }
 
 std::size_t WideRenderer::bytes(const CompactTree& /*tree*/, std::int32_t /*width_px*/,
@@ -33,11 +22,6 @@ std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& /*tree*/, Ar
 std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* /*built*/, std::int32_t /*width_px*/,
                                                  std::int32_t /*height_px*/, int /*threads*/) {
   return nullptr;
-}
-
-Status WideRenderer::render(const Camera& /*camera*/, const Shading& /*shading*/, const Band& /*band*/,
-                            RenderCounts* /*counts*/, wide::Counts* /*work*/) {
-  return Status::kTooFine;
 }
 
 FirstHits wide_first_hits(BuiltScene* /*built*/) {

@@ -11,13 +11,6 @@
 
 namespace thimble::tools {
 
-WideRenderer::WideRenderer(int threads) : threads_(std::make_unique<wide::Threads>(threads)) {}
-WideRenderer::~WideRenderer() = default;
-
-int WideRenderer::threads() const {
-  return threads_->count();
-}
-
 std::vector<std::string> WideRenderer::instruction_sets() {
   std::vector<std::string> names;
   for (int i = 0; i < wide::instruction_set_count(); ++i) {
@@ -47,6 +40,65 @@ int threads_within(const CompactTree& tree, const Arena& arena, std::size_t box_
   return threads;
 }
 
+class InArena final : public WideRenderer {
+ public:
+  InArena(const wide::VoxelLists& lists, Bytes workspace, std::int32_t rows, int threads, double seconds)
+      : lists_(lists), workspace_(workspace), rows_(rows), threads_(threads), seconds_(seconds) {}
+
+  std::int32_t rows() const override { return rows_; }
+  int threads() const override { return threads_.count(); }
+  double seconds() const override { return seconds_; }
+  Status render(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
+                wide::Counts* work) override {
+    wide::Options options;
+    options.threads = &threads_;
+    wide::Stats stats;
+    const Status status = wide::render(lists_, camera, shading, band, workspace_, counts, options, &stats);
+    work->add(stats.counts);
+    return status;
+  }
+
+ private:
+  wide::VoxelLists lists_;
+  Bytes workspace_;
+  std::int32_t rows_;
+  wide::Threads threads_;
+  double seconds_;
+};
+
+std::unique_ptr<WideRenderer> make_with(const CompactTree& tree, Arena* arena, std::int32_t width_px,
+                                        std::int32_t height_px, int threads, std::size_t box_bytes) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t mark = arena->used_bytes();
+  const std::int32_t least_rows = std::min(height_px, WideRenderer::kLeastRows);
+  const auto workspace = [&](std::int32_t rows) { return wide::workspace_bytes(width_px, rows, threads); };
+  // What the least workspace leaves is the lists', and where the fastest do not fit, those of boxes alone may.
+  // Lists are counted before they are made: what does not fit costs little time.
+  const std::size_t kept = workspace(least_rows) + WideRenderer::kWorkspaceAlignment;
+  if (arena->free_bytes() < kept) {
+    return nullptr;
+  }
+  Arena part(arena->rest().subspan(0, arena->free_bytes() - kept));
+  use_large_pages(part.rest().subspan(0, std::min(box_bytes, part.free_bytes())));
+  wide::VoxelLists lists;
+  if (wide::VoxelLists::make(tree, &part, &lists) != Status::kOk &&
+      wide::VoxelLists::make(tree, &part, &lists, wide::ListKind::kBoxes) != Status::kOk) {
+    return nullptr;
+  }
+  arena->take(part.used_bytes(), 1);
+  std::int32_t rows = height_px;
+  while (rows > least_rows && workspace(rows) > arena->free_bytes()) {
+    rows = std::max(least_rows, rows / 2);
+  }
+  const Bytes taken = arena->take(workspace(rows), WideRenderer::kWorkspaceAlignment);
+  if (taken.empty()) {
+    arena->rewind(mark);
+    return nullptr;
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::make_unique<InArena>(lists, taken, rows, threads, seconds);
+}
+
 }  // namespace
 
 std::size_t WideRenderer::bytes(const CompactTree& tree, std::int32_t width_px, std::int32_t height_px,
@@ -69,59 +121,11 @@ std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena*
   return renderer;
 }
 
-std::unique_ptr<WideRenderer> WideRenderer::make_with(const CompactTree& tree, Arena* arena,
-                                                      std::int32_t width_px, std::int32_t height_px,
-                                                      int threads, std::size_t box_bytes) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::size_t mark = arena->used_bytes();
-  const std::int32_t least_rows = std::min(height_px, kLeastRows);
-  const auto workspace = [&](std::int32_t rows) { return wide::workspace_bytes(width_px, rows, threads); };
-  // What the least workspace leaves is the lists', and where the fastest do not fit, those of boxes alone may.
-  // Lists are counted before they are made: what does not fit costs little time.
-  const std::size_t kept = workspace(least_rows) + kWorkspaceAlignment;
-  if (arena->free_bytes() < kept) {
-    return nullptr;
-  }
-  Arena part(arena->rest().subspan(0, arena->free_bytes() - kept));
-  use_large_pages(part.rest().subspan(0, std::min(box_bytes, part.free_bytes())));
-  wide::VoxelLists lists;
-  if (wide::VoxelLists::make(tree, &part, &lists) != Status::kOk &&
-      wide::VoxelLists::make(tree, &part, &lists, wide::ListKind::kBoxes) != Status::kOk) {
-    return nullptr;
-  }
-  arena->take(part.used_bytes(), 1);
-  std::int32_t rows = height_px;
-  while (rows > least_rows && workspace(rows) > arena->free_bytes()) {
-    rows = std::max(least_rows, rows / 2);
-  }
-  const Bytes taken = arena->take(workspace(rows), kWorkspaceAlignment);
-  if (taken.empty()) {
-    arena->rewind(mark);
-    return nullptr;
-  }
-  std::unique_ptr<WideRenderer> renderer(new WideRenderer(threads));
-  renderer->lists_ = lists;
-  renderer->workspace_ = taken;
-  renderer->rows_ = rows;
-  renderer->seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return renderer;
-}
-
 std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* built, std::int32_t width_px,
                                                  std::int32_t height_px, int threads) {
   return built->structure() == StructureKind::kCompact
              ? make(built->compact(), &built->arena(), width_px, height_px, threads)
              : nullptr;
-}
-
-Status WideRenderer::render(const Camera& camera, const Shading& shading, const Band& band,
-                            RenderCounts* counts, wide::Counts* work) {
-  wide::Options options;
-  options.threads = threads_.get();
-  wide::Stats stats;
-  const Status status = wide::render(lists_, camera, shading, band, workspace_, counts, options, &stats);
-  work->add(stats.counts);
-  return status;
 }
 
 FirstHits wide_first_hits(BuiltScene* built) {

@@ -16,11 +16,6 @@
 #include "thimble/trace/ray.h"
 #include "thimble/tree/compact_tree.h"
 #include "wide/raster/kernels.h"
-#include "wide/raster/voxel_lists.h"
-
-namespace thimble::wide {
-class Threads;
-}
 
 namespace thimble::tools {
 
@@ -31,7 +26,7 @@ class WideRenderer {
   static constexpr std::int32_t kLeastRows = 16;
   static constexpr std::size_t kWorkspaceAlignment = 64;
 
-  ~WideRenderer();
+  virtual ~WideRenderer() = default;
 
   /// Names the instruction sets that this machine has and this build is compiled for, the best one first;
   /// empty where the build has no wide renderer. Not while anything is drawn.
@@ -50,25 +45,13 @@ class WideRenderer {
                                             int threads);
 
   /// Most rows in a band for `render`.
-  std::int32_t rows() const { return rows_; }
-  int threads() const;
-  const wide::VoxelLists& lists() const { return lists_; }
+  virtual std::int32_t rows() const = 0;
+  virtual int threads() const = 0;
   /// What making it took.
-  double seconds() const { return seconds_; }
+  virtual double seconds() const = 0;
   /// The pixels of `render_band`; Status::kTooFine for cameras that are left to it. `counts` may be null.
-  Status render(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
-                wide::Counts* work);
-
- private:
-  explicit WideRenderer(int threads);
-  static std::unique_ptr<WideRenderer> make_with(const CompactTree& tree, Arena* arena, std::int32_t width_px,
-                                                 std::int32_t height_px, int threads, std::size_t box_bytes);
-
-  std::unique_ptr<wide::Threads> threads_;
-  wide::VoxelLists lists_;
-  Bytes workspace_;
-  std::int32_t rows_ = 0;
-  double seconds_ = 0;
+  virtual Status render(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts,
+                        wide::Counts* work) = 0;
 };
 
 /// What each ray of many enters first, as the core says, by vectors; `visits` are steps of this engine. Any number of

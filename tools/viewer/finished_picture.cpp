@@ -80,8 +80,7 @@ void FinishedLook::try_gpu(const Look& look, const Camera& camera, const Shading
   constexpr std::int32_t kMostPx = 64;
   gpu_tried_ = true;
   const std::vector<Rgb8>& palette = scene_->built->palette();
-  auto gpu =
-      std::make_unique<GpuEngine>(scene_->tree(), Span<const Rgb8>(palette.data(), palette.size()), threads);
+  auto gpu = GpuEngine::make(scene_->tree(), Span<const Rgb8>(palette.data(), palette.size()), threads);
   if (engine_ != "gpu" && gpu->is_software()) {
     return;
   }
