@@ -35,7 +35,6 @@ class WideLitStreams final : public LitStreams {
   Status any_hit(Span<const Ray> rays, Span<std::uint8_t> hits) const override {
     return wide::any_hit(map_, rays, hits);
   }
-  bool is_empty(const VoxelBox& box) const override { return map_.is_empty(box); }
   Status first_entry_before(Span<const Ray> rays, RayPoint before, Span<RayPoint> entries) const override {
     return wide::first_entry_before(map_, rays, before, entries);
   }

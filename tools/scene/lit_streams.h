@@ -60,8 +60,6 @@ class LitStreams {
   virtual Status any_hit(Span<const Ray> /*rays*/, Span<std::uint8_t> /*hits*/) const {
     return Status::kBadArgument;
   }
-  /// Whether no voxel of a box is solid; false where that takes longer to find out.
-  virtual bool is_empty(const VoxelBox& /*box*/) const { return false; }
   /// Where each ray enters something solid, if before the point `before`: t as in the core's `Hit`; denominator 0 for
   /// a miss.
   virtual Status first_entry_before(Span<const Ray> /*rays*/, RayPoint /*before*/,

@@ -371,55 +371,6 @@ namespace {
 // Rays that are traced together: a few for each lane of the widest vectors, little on the stack.
 constexpr std::size_t kAtOnce = 256;
 
-// The quadrant of a direction of kAround: bit 0 to smaller x, bit 1 to smaller y.
-constexpr unsigned quadrant_of(const Vec3i& direction) {
-  return (direction.x < 0 ? 1U : 0U) | (direction.y < 0 ? 2U : 0U);
-}
-
-// Of the quadrants above a voxel of the ground, those in which there is anything within reach, by their bits.
-class NearQuadrants {
- public:
-  NearQuadrants(const LitStreams& streams, std::int32_t reach) : streams_(streams), reach_(reach) {}
-
-  unsigned of(const Vec3i& voxel) {
-    if (!is_known_ || voxel != voxel_) {
-      is_known_ = true;
-      voxel_ = voxel;
-      found_ = find(voxel);
-    }
-    return found_;
-  }
-
- private:
-  unsigned find(const Vec3i& voxel) const {
-    const std::int32_t beyond = reach_ + 1;
-    VoxelBox all{{voxel.x - beyond, voxel.y - beyond, voxel.z},
-                 {voxel.x + beyond + 1, voxel.y + beyond + 1, voxel.z + beyond + 1}};
-    if (streams_.is_empty(all)) {
-      return 0;
-    }
-    unsigned found = 0;
-    for (unsigned quadrant = 0; quadrant < 4; ++quadrant) {
-      VoxelBox box = all;
-      for (int axis = 0; axis < 2; ++axis) {
-        if ((quadrant >> axis & 1U) != 0) {
-          box.high[axis] = voxel[axis] + 1;
-        } else {
-          box.low[axis] = voxel[axis];
-        }
-      }
-      found |= streams_.is_empty(box) ? 0U : 1U << quadrant;
-    }
-    return found;
-  }
-
-  const LitStreams& streams_;
-  std::int32_t reach_;
-  bool is_known_ = false;
-  Vec3i voxel_;
-  unsigned found_ = 0;
-};
-
 // Shares of what stands near the model: without what it closes off above. At most kAtOnce places.
 Status darken_corners(const Look& look, const LitStreams& streams, Span<const Vec3Q8> places,
                       std::uint8_t* const* shares) {
@@ -438,16 +389,11 @@ Status darken_corners(const Look& look, const LitStreams& streams, Span<const Ve
     count = 0;
     return status;
   };
-  NearQuadrants near(streams, look.ground.reach);
   Status status = Status::kOk;
   for (std::size_t place = 0; place < places.size && status == Status::kOk; ++place) {
-    const Vec3Q8& at = places.data[place];
-    const unsigned quadrants = near.of({at.x.floor(), at.y.floor(), at.z.floor()});
     for (const Vec3i& direction : kAround) {
-      if ((quadrants >> quadrant_of(direction) & 1U) != 0) {
-        place_of[count] = place;
-        rays[count++] = {at, direction};
-      }
+      place_of[count] = place;
+      rays[count++] = {places.data[place], direction};
     }
     if (count + kAroundCount > kAtOnce) {
       status = trace();

@@ -330,56 +330,30 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
   const std::vector<Rgb> colors = vertex_colors(mesh, units);
   const std::size_t count = mesh.triangles.size();
-  std::uint64_t all_cost = 0;
   const auto triangle_at = [&](std::size_t i) {
     const auto& [a, b, c] = mesh.triangles[i % count];
     return CellTriangle{{units[a], units[b], units[c]}, 0, i >= count, static_cast<std::uint32_t>(i % count)};
   };
   std::vector<std::uint64_t> edges;
   for (std::size_t i = 0; i < count; ++i) {
-    const CellTriangle triangle = triangle_at(i);
-    all_cost += rough_cost(triangle.corners);
-    MeshShade(mesh, colors, i, triangle.corners).add_edges(edges);
+    MeshShade(mesh, colors, i, triangle_at(i).corners).add_edges(edges);
   }
   std::sort(edges.begin(), edges.end());
   std::uint64_t clear = 0;
-  const auto material_at = [&](const MeshShade& shade, const CellTriangle& triangle, const UnitPoint& voxel) {
-    const auto shown = shade.at(voxel, triangle.only_over, edges);
+  std::optional<MeshShade> shade;  // of the last triangle
+  std::uint32_t number = 0;
+  const auto material_at = [&](const CellTriangle& triangle, const UnitPoint& voxel) {
+    if (!shade || number != triangle.number) {
+      number = triangle.number;
+      shade.emplace(mesh, colors, number, triangle.corners);
+    }
+    const auto shown = shade->at(voxel, triangle.only_over, edges);
     if (!shown && !triangle.only_over && ++clear > kMostClearVoxels) {
       throw InputError("its triangles lie over each other too often where they are clear");
     }
     return shown ? std::optional<std::uint8_t>(material_of(shown->color, shown->power_q8)) : std::nullopt;
   };
-  if (goes_by_cells(all_cost, count)) {
-    std::vector<CellTriangle> triangles;
-    triangles.reserve(2 * count);
-    for (std::size_t i = 0; i < 2 * count; ++i) {
-      triangles.push_back(triangle_at(i));
-    }
-    std::optional<MeshShade> shade;
-    std::uint32_t number = 0;
-    voxelise_cells(triangles, level, sink, progress,
-                   [&](const CellTriangle& triangle, const UnitPoint& voxel) {
-                     if (!shade || number != triangle.number) {
-                       number = triangle.number;
-                       shade.emplace(mesh, colors, number, triangle.corners);
-                     }
-                     return material_at(*shade, triangle, voxel);
-                   });
-    return;
-  }
-  for (std::size_t i = 0; i < 2 * count; ++i) {
-    if (progress && i % 4096 == 0) {
-      progress(static_cast<double>(i) / static_cast<double>(2 * count));
-    }
-    const CellTriangle triangle = triangle_at(i);
-    const MeshShade shade(mesh, colors, triangle.number, triangle.corners);
-    voxelise_triangle(triangle.corners, 0, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
-      if (const auto material = material_at(shade, triangle, {x, y, z})) {
-        sink({x, y, z}, 0, *material);
-      }
-    });
-  }
+  voxelise_triangles(count, 2, triangle_at, level, material_at, sink, progress);
 }
 
 ColorHistogram mesh_colors(const TriangleMesh& mesh, int level, bool z_up) {

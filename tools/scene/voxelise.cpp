@@ -1,7 +1,6 @@
 #include "scene/voxelise.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "scene/mesh_shade.h"
 #include "scene/world_fit.h"
@@ -90,45 +89,11 @@ void descend(const TriangleBoxTest& test, const TriangleBlock& root, std::uint8_
   }
 }
 
-/// Triangles voxelised not long ago, so that a file that repeats them costs no more than reading it. What is
-/// forgotten (one slot for all triangles of the same hash) is only voxelised again.
-class RecentTriangles {
- public:
-  /// `triangles` of the mesh, which bound the memory as well.
-  explicit RecentTriangles(std::size_t triangles) {
-    std::size_t slots = 1;
-    while (slots < kMostSlots && slots < triangles) {
-      slots *= 2;
-    }
-    slots_.resize(slots);
-  }
-
-  /// Whether `triangle` is voxelised already, and notes that it is.
-  bool is_repeat(UnitTriangle triangle) {
-    std::sort(triangle.begin(), triangle.end());
-    std::uint64_t hash = 0;
-    for (const UnitPoint& vertex : triangle) {
-      for (const std::int32_t coordinate : vertex) {
-        hash = (hash ^ static_cast<std::uint32_t>(coordinate)) * 0x9E3779B97F4A7C15U;
-        hash ^= hash >> 29U;
-      }
-    }
-    UnitTriangle& slot = slots_[hash & (slots_.size() - 1)];
-    return std::exchange(slot, triangle) == triangle;
-  }
-
- private:
-  static constexpr std::size_t kMostSlots = 65536;
-  std::vector<UnitTriangle>
-      slots_;  ///< vertices in ascending order; all at 0, where no vertex is, is an empty slot
-};
-
 /// What triangle by triangle is quickly done, whatever the world; and what a triangle of a scan has at most.
 constexpr std::uint64_t kCheapVoxels = std::uint64_t{1} << 24;
 constexpr std::uint64_t kSmallTriangleVoxels = 64;
 
-}  // namespace
-
+/// About how many voxels a triangle may have: decides only how they are found and how often progress is reported.
 std::uint64_t rough_cost(const UnitTriangle& triangle) {
   std::array<std::uint64_t, 3> span{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -139,9 +104,7 @@ std::uint64_t rough_cost(const UnitTriangle& triangle) {
   return span[1] * span[2];
 }
 
-bool goes_by_cells(std::uint64_t cost, std::size_t triangles) {
-  return cost > std::max(kCheapVoxels, kSmallTriangleVoxels * triangles);
-}
+}  // namespace
 
 TriangleBoxTest::TriangleBoxTest(const UnitTriangle& triangle) : origin_(triangle[0]), slabs_{} {
   std::array<std::array<std::int64_t, 3>, 3> local{};
@@ -333,6 +296,40 @@ bool is_shaded(const TriangleMesh& mesh) {
   return !mesh.colors.empty() || !mesh.face_colors.empty() || !mesh.surfaces.empty();
 }
 
+void voxelise_triangles(std::size_t count, std::size_t passes,
+                        const std::function<CellTriangle(std::size_t)>& triangle_at, int level,
+                        const CellShade& shade, const BlockSink& sink, const Progress& progress) {
+  std::uint64_t all_cost = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    all_cost += rough_cost(triangle_at(i).corners);
+  }
+  const std::size_t end = passes * count;
+  if (all_cost > std::max(kCheapVoxels, kSmallTriangleVoxels * count)) {
+    std::vector<CellTriangle> triangles;
+    triangles.reserve(end);
+    for (std::size_t i = 0; i < end; ++i) {
+      triangles.push_back(triangle_at(i));
+    }
+    voxelise_cells(triangles, level, sink, progress, shade);
+    return;
+  }
+  constexpr std::uint64_t kCostPerReport = 1 << 18;
+  std::uint64_t cost = 0;
+  for (std::size_t i = 0; i < end; ++i) {
+    if (progress && (i % 4096 == 0 || cost >= kCostPerReport)) {
+      progress(static_cast<double>(i) / static_cast<double>(end));
+      cost = 0;
+    }
+    const CellTriangle triangle = triangle_at(i);
+    cost += rough_cost(triangle.corners);
+    voxelise_triangle(triangle.corners, 0, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+      if (const auto material = shade ? shade(triangle, {x, y, z}) : std::optional(triangle.material)) {
+        sink({x, y, z}, 0, *material);
+      }
+    });
+  }
+}
+
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress) {
   if (is_shaded(mesh)) {
@@ -345,40 +342,9 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
   const std::vector<UnitPoint> units = quantise_vertices(mesh, level, z_up);
   const auto triangle_at = [&](std::size_t i) {
     const auto& [a, b, c] = mesh.triangles[i];
-    return UnitTriangle{units[a], units[b], units[c]};
+    return CellTriangle{{units[a], units[b], units[c]}};
   };
-  RecentTriangles recent(mesh.triangles.size());
-  std::uint64_t all_cost = 0;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    all_cost += rough_cost(triangle_at(i));
-  }
-  if (goes_by_cells(all_cost, mesh.triangles.size())) {
-    std::vector<CellTriangle> triangles;
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      const UnitTriangle triangle = triangle_at(i);
-      if (!recent.is_repeat(triangle)) {
-        triangles.push_back({triangle});
-      }
-    }
-    voxelise_cells(triangles, level, sink, progress);
-    return;
-  }
-  const VoxelSink each = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-    sink({x, y, z}, 0, material);
-  };
-  constexpr std::uint64_t kCostPerReport = 1 << 18;
-  std::uint64_t cost = 0;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (progress && (i % 4096 == 0 || cost >= kCostPerReport)) {
-      progress(static_cast<double>(i) / static_cast<double>(mesh.triangles.size()));
-      cost = 0;
-    }
-    const UnitTriangle triangle = triangle_at(i);
-    if (!recent.is_repeat(triangle)) {
-      cost += rough_cost(triangle);
-      voxelise_triangle(triangle, 0, each);
-    }
-  }
+  voxelise_triangles(mesh.triangles.size(), 1, triangle_at, level, {}, sink, progress);
 }
 
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,

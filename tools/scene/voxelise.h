@@ -130,23 +130,16 @@ void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, cons
 
 /// Whether its voxels have colours of their own (mesh_shade.h).
 bool is_shaded(const TriangleMesh& mesh);
-/// About how many voxels a triangle may have: decides only how they are found and how often progress is
-/// reported.
-std::uint64_t rough_cost(const UnitTriangle& triangle);
-/// Whether so many triangles of that cost together go cell by cell.
-bool goes_by_cells(std::uint64_t cost, std::size_t triangles);
 /// Streams the voxels of `mesh` in a world of 2^level voxels a side (level 1..12). `colors` may be null:
 /// then, as for a mesh without colours, everything is material 0. `progress` may be empty. InputError "no
 /// triangles".
 ///
 /// Small triangles, and few of any size, come one by one, z rows of y rows of x within small ones. A voxel
-/// then comes once for each triangle that it meets, but a triangle that equals a recent one (the same
-/// quantised vertices in any order) may be left out. Where there
-/// are many large ones (more than 2^24 voxels in their boxes, and more than 64 a triangle), which may cover
-/// each other many times over, they go cell by cell: each voxel comes once, with the
-/// material of the last triangle that meets it, and a full block as one. So time follows the triangles and
-/// the surface that they have together. Memory: 12 bytes a vertex and 36 bytes a triangle, of these at most
-/// 2.3 MiB; cell by cell 44 bytes a triangle more, and the lists.
+/// then comes once for each triangle that it meets. Where there are many large ones (more than 2^24 voxels in
+/// their boxes, and more than 64 a triangle), which may cover each other many times over, they go cell by cell:
+/// each voxel comes once, with the material of the last triangle that meets it, and a full block as one. So time
+/// follows the triangles and the surface that they have together. Memory: 12 bytes a vertex; cell by cell 44 bytes
+/// a triangle more, and the lists.
 ///
 /// A mesh with colours or pictures goes twice, so that of the triangles that meet a voxel the last one counts that its middle is
 /// over, and only without one the last of all: an edge does not bleed into what is beside it. Voxels have colours of
@@ -199,5 +192,11 @@ using CellShade =
 /// at most 32 bytes a triangle and level, where all of them meet everything.
 void voxelise_cells(std::span<const CellTriangle> triangles, int level, const BlockSink& sink,
                     const Progress& progress, const CellShade& shade = {});
+
+/// The same for `count` triangles, `passes` times over, of which triangle_at(i) is the one numbered i % count in pass
+/// i / count; one by one, or cell by cell where `voxelise` says so.
+void voxelise_triangles(std::size_t count, std::size_t passes,
+                        const std::function<CellTriangle(std::size_t)>& triangle_at, int level,
+                        const CellShade& shade, const BlockSink& sink, const Progress& progress);
 
 }  // namespace thimble::tools
