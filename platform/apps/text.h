@@ -19,28 +19,19 @@ inline void put(const char* text) {
 
 /// Sends a number in decimal, by subtracting powers of ten: no division of 64 bits.
 inline void put(uint64_t number) {
-  static constexpr uint64_t kPowers[] = {10000000000000000000U,
-                                         1000000000000000000U,
-                                         100000000000000000U,
-                                         10000000000000000U,
-                                         1000000000000000U,
-                                         100000000000000U,
-                                         10000000000000U,
-                                         1000000000000U,
-                                         100000000000U,
-                                         10000000000U,
-                                         1000000000U,
-                                         100000000U,
-                                         10000000U,
-                                         1000000U,
-                                         100000U,
-                                         10000U,
-                                         1000U,
-                                         100U,
-                                         10U};
+  struct Powers {
+    uint64_t of[19] = {};
+    constexpr Powers() {
+      uint64_t power = 10;
+      for (int i = 18; i >= 0; --i, power *= 10) {
+        of[i] = power;
+      }
+    }
+  };
+  static constexpr Powers kPowers;
   uint8_t digits[20];
   size_t count = 0;
-  for (const uint64_t power : kPowers) {
+  for (const uint64_t power : kPowers.of) {
     uint8_t digit = '0';
     for (; number >= power; number -= power) {
       ++digit;
