@@ -6,13 +6,7 @@ namespace thimble::c_face {
 
 extern "C" int32_t thimble_octree_render(const thimble_octree_t* octree, const thimble_camera_t* camera,
                                          const thimble_shading_t* shading, const thimble_band_t* band) {
-  const Octree* const tree = held<Octree>(octree);
-  if (tree == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  return draw_band(camera, shading, band, [tree](const Camera& view, const Shading& look, const Band& rows) {
-    return render_band(*tree, view, look, rows);
-  });
+  return draw_structure(held<Octree>(octree), camera, shading, band);
 }
 
 extern "C" int32_t thimble_octree_trace(const thimble_octree_t* octree, const thimble_ray_t* ray,

@@ -38,6 +38,17 @@ int32_t draw_band(const thimble_camera_t* camera, const thimble_shading_t* shadi
   return number(draw(*view, look, rows));
 }
 
+/// The same where a structure, which may be null, is all that is drawn.
+template <class Structure>
+int32_t draw_structure(const Structure* structure, const thimble_camera_t* camera,
+                       const thimble_shading_t* shading, const thimble_band_t* band) {
+  return structure == nullptr ? number(Status::kBadArgument)
+                              : draw_band(camera, shading, band,
+                                          [=](const Camera& view, const Shading& look, const Band& rows) {
+                                            return render_band(*structure, view, look, rows);
+                                          });
+}
+
 /// The same for functions that trace a ray.
 template <class Structure>
 int32_t trace_ray(const Structure* structure, const Ray& ray, uint32_t max_visits, thimble_hit_t* to) {
