@@ -196,28 +196,16 @@ uint32_t cull_run_of(const WideFrame& frame, const Run& run, const Depths& depth
 
 uint32_t cull_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch,
                   uint32_t* entries, uint32_t* numbers) {
-  if (frame.perspective) {
-    return run.unit ? cull_run_of<true, true>(frame, run, depths, batch, entries, numbers)
-                    : cull_run_of<true, false>(frame, run, depths, batch, entries, numbers);
-  }
-  return run.unit ? cull_run_of<false, true>(frame, run, depths, batch, entries, numbers)
-                  : cull_run_of<false, false>(frame, run, depths, batch, entries, numbers);
-}
-
-template <bool kPerspective, bool kUnit>
-void draw_any(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
-  run.sorted ? draw_sorted_of<kPerspective, kUnit>(frame, run, depths, batch)
-             : draw_run_of<kPerspective, kUnit>(frame, run, depths, batch);
+  return with_constants(frame.perspective, run.unit, [&](auto perspective, auto unit) {
+    return cull_run_of<perspective.value, unit.value>(frame, run, depths, batch, entries, numbers);
+  });
 }
 
 void draw_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
-  if (frame.perspective) {
-    run.unit ? draw_any<true, true>(frame, run, depths, batch)
-             : draw_any<true, false>(frame, run, depths, batch);
-  } else {
-    run.unit ? draw_any<false, true>(frame, run, depths, batch)
-             : draw_any<false, false>(frame, run, depths, batch);
-  }
+  with_constants(frame.perspective, run.unit, [&](auto perspective, auto unit) {
+    run.sorted ? draw_sorted_of<perspective.value, unit.value>(frame, run, depths, batch)
+               : draw_run_of<perspective.value, unit.value>(frame, run, depths, batch);
+  });
 }
 
 void finish(const WideFrame& frame, const Depths& depths, Batch* batch) {

@@ -360,19 +360,24 @@ struct FixedPoint {
   static constexpr float kRounding = 1.0F / (1 << (kFraction + 1));
 };
 
+// Calls `call` with two constants.
+template <class Call>
+HWY_INLINE auto with_constants(bool first, bool second, const Call& call) {
+  using Yes = std::true_type;
+  using No = std::false_type;
+  if (first) {
+    return second ? call(Yes(), Yes()) : call(Yes(), No());
+  }
+  return second ? call(No(), Yes()) : call(No(), No());
+}
+
 // Calls `fill`, with `first` and `second` as constants, for boxes 0 .. count - 1 of a run. `fill` gets the number of
 // the next box and returns the number at which it ran out of room; `make_room` then makes room.
 template <class Fill, class MakeRoom>
 HWY_INLINE void in_rooms(uint32_t count, bool first, bool second, const Fill& fill,
                          const MakeRoom& make_room) {
-  using Yes = std::true_type;
-  using No = std::false_type;
   for (uint32_t at = 0; at < count;) {
-    if (first) {
-      at = second ? fill(Yes(), Yes(), at) : fill(Yes(), No(), at);
-    } else {
-      at = second ? fill(No(), Yes(), at) : fill(No(), No(), at);
-    }
+    at = with_constants(first, second, [&](auto one, auto two) { return fill(one, two, at); });
     if (at < count) {
       make_room();
     }
