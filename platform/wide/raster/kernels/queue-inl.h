@@ -356,6 +356,7 @@ struct FixedPoint {
   static constexpr int kFraction = 12;
   static constexpr int32_t kOne = 1 << kFraction;
   static constexpr double kBase = 3072;
+  static constexpr int32_t kFirst = 0x45400000 >> kFraction;  // the whole number of the float 3072
   // A sum is within this of its exact value, as long as it is below 4096.
   static constexpr float kRounding = 1.0F / (1 << (kFraction + 1));
 };
