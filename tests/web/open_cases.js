@@ -14,7 +14,7 @@ const SCREENS = {desktop: {width: 1280, height: 800}, telephone: {width: 390, he
 function emulated(board, file, key, line, count) {
   const [emulator, ...options] = {pico: ['rp2040js', '-carrier', 'pico-lcd-1.3'], 'pico-lcd-2': ['rp2040js', '-carrier', 'pico-lcd-2'], 'pico-oled': ['rp2040js', '-carrier', 'pico-oled'], gba: ['mgba']}[board];
   if (spawnSync('sh', [`platform/emulators/${emulator}/fetch.sh`]).status !== 0) return null;
-  const shift = /BOARD_ICOUNT_SHIFT (\d+)/.exec(fs.readFileSync(`platform/boards/${board}/board.cmake`, 'utf8'))[1];
+  const shift = /BOARD_ICOUNT_SHIFT (\d+)/.exec(fs.readFileSync(`platform/boards/${board.replace(/^pico.*/, 'pico')}/board.cmake`, 'utf8'))[1];
   return new Promise((done, fail) => {
     const child = spawn('sh', [`platform/emulators/${emulator}/run.sh`, shift, file, ...options], {stdio: ['pipe', 'pipe', 'ignore'], detached: true});
     const end = () => {
