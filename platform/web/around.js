@@ -98,7 +98,7 @@ function lookOn(now) {
     drawFast(now);
   } else if (viewer.phase === 'waits' && viewer.view.camera !== viewer.camera) {
     if (asks) askLook(viewer);
-  } else if (viewer.phase === 'waits' && !isPlaying() && now - viewer.since > 120) {
+  } else if (viewer.phase === 'waits' && !isPlaying() && now - viewer.since > REST_MS) {
     follow();
     nextPicture(viewer);
   } else if (crew === null && viewer.phase in PHASES) {
@@ -123,9 +123,7 @@ function drawFast(now) {
   const began = performance.now();
   viewer.look.fast(viewer.step);
   const time = performance.now() - began;
-  // Every few pixels where that is what a frame has time for.
-  if (time > 40) viewer.step = Math.min(8, viewer.step * (time > 160 ? 4 : 2));
-  if (time < 10 && viewer.step > 1) viewer.step /= 2;
+  viewer.step = stepAfter(viewer.step, time);
   viewer.phase = 'waits';
   viewer.since = now;
   takeRows(0, viewer.board.height);
@@ -194,11 +192,10 @@ function stopFilm(error) {
   showPlays();
 }
 
-// What is drawn at rest, one after the other, and what is said meanwhile.
+// What is said while that is drawn.
 const PHASES = {expose: 'measures its light', coarse: 'coarse', lit: 'lit', fine: 'all samples'};
 function nextPicture(own) {
-  own.phase = {waits: own.view.isStars ? 'stars' : 'expose', stars: 'finished', expose: 'coarse', coarse: 'lit',
-    lit: 'fine', fine: 'finished'}[own.phase];
+  own.phase = phaseAfter(own.phase, own.view.isStars);
   own.row = 0;
   if (own.phase === 'stars') askStars(own);
   else if (own.phase in PHASES) own.crew?.draw({...own.view, exposure: own.exposure}, own.phase);

@@ -20,12 +20,9 @@ const MODULE_OF = {demo: 'scene', water: 'plane', particles: 'plane'};
 const MOST_PIXELS = 2 ** 23;  // of the picture in the window
 const LINK_BYTES = 8192;  // of a packed model that a link holds
 const TURN = 0.15;  // of the first picture, a second
-const FRAME_MS = 1000 / 30;
-const FILM_MS = 100;
 const SLICE_MS = 12;
 const RGB888 = 4;  // picture/pixel.h
 const TAP_MS = 300;  // shorter `s` saves
-const FIRST_EXPOSURE = 320;
 // To the right, up, forward, while held.
 const FLIGHTS = {w: [0, 0, 1], a: [-1, 0, 0], s: [0, 0, -1], d: [1, 0, 0], PageUp: [0, 1, 0], PageDown: [0, -1, 0],
   ArrowUp: [0, 0, 1], ArrowLeft: [-1, 0, 0], ArrowDown: [0, 0, -1], ArrowRight: [1, 0, 0]};

@@ -2,11 +2,6 @@
 // sheet (`thimble sheet FOLDER -o F.html`), whose pictures open so. Modules and scenes lie in it; share.html has the elements.
 'use strict';
 
-const FIRST_EXPOSURE = 320;
-const REST_MS = 120;  // without a hand before the picture at rest begins
-const FRAME_MS = 1000 / 30;
-const FILM_MS = 100;
-const MOST_STEP = 8;
 const KEY_TURN = Math.PI / 36;
 const $ = (id) => document.getElementById(id);
 const canvas = $('canvas');
@@ -138,17 +133,14 @@ class Share {
     const began = performance.now();
     this.look.fast(this.step);
     const time = performance.now() - began;
-    if (time > 40) this.step = Math.min(MOST_STEP, this.step * (time > 160 ? 4 : 2));
-    if (time < 8 && this.step > 1) this.step /= 2;
+    this.step = stepAfter(this.step, time);
     if (this.hasMoved || this.plays) this.put(0, this.look.rows(0, this.height));
     this.phase = 'waits';
     this.since = now;
     document.body.dataset.phase = this.phase;
   }
-  // What is drawn at rest, one after the other: coarse to fine.
   next() {
-    this.phase = {waits: this.view.isStars ? 'stars' : 'expose', stars: 'finished', expose: 'coarse', coarse: 'lit',
-      lit: 'fine', fine: 'finished'}[this.phase];
+    this.phase = phaseAfter(this.phase, this.view.isStars);
     document.body.dataset.phase = this.phase;
     if (this.phase === 'finished') return;
     const view = {...this.view, exposure: this.exposure};
