@@ -8,6 +8,8 @@
 namespace thimble::tools {
 namespace {
 
+constexpr std::int32_t kHalfVoxel = kUnitsPerVoxel / 2;
+
 /// The two coordinates that stay when `axis` is left out.
 constexpr std::array<std::array<std::size_t, 2>, 3> kPlane{{{1, 2}, {0, 2}, {0, 1}}};
 
@@ -45,17 +47,16 @@ std::int32_t last_block(std::int32_t high, int level) {
 /// Voxels first..last, row by row; what a plane decides is tested once for each row, column or cell.
 void emit_voxels(const TriangleBoxTest& test, const UnitPoint& first, const UnitPoint& last,
                  std::uint8_t material, const VoxelSink& sink) {
-  constexpr std::int32_t kHalf = kUnitsPerVoxel / 2;
   for (std::int32_t z = first[2]; z <= last[2]; ++z) {
     for (std::int32_t y = first[1]; y <= last[1]; ++y) {
-      UnitPoint center{0, y * kUnitsPerVoxel + kHalf, z * kUnitsPerVoxel + kHalf};
-      if (!test.meets_plane(0, center, kHalf)) {
+      UnitPoint center{0, y * kUnitsPerVoxel + kHalfVoxel, z * kUnitsPerVoxel + kHalfVoxel};
+      if (!test.meets_plane(0, center, kHalfVoxel)) {
         continue;
       }
       for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-        center[0] = x * kUnitsPerVoxel + kHalf;
-        if (test.meets_plane(1, center, kHalf) && test.meets_plane(2, center, kHalf) &&
-            test.meets_surface(center, kHalf)) {
+        center[0] = x * kUnitsPerVoxel + kHalfVoxel;
+        if (test.meets_plane(1, center, kHalfVoxel) && test.meets_plane(2, center, kHalfVoxel) &&
+            test.meets_surface(center, kHalfVoxel)) {
           sink(x, y, z, material);
         }
       }
@@ -76,12 +77,8 @@ void descend(const TriangleBoxTest& test, const TriangleBlock& root, std::uint8_
       sink(block.voxel[0], block.voxel[1], block.voxel[2], material);
       continue;
     }
-    const int level = block.level - 1;
     for (int child = 7; child >= 0; --child) {
-      TriangleBlock part{block.voxel, level, block.inside};
-      for (int axis = 0; axis < 3; ++axis) {
-        part.voxel[static_cast<std::size_t>(axis)] += (child >> axis & 1) << level;
-      }
+      const TriangleBlock part = child_of(block, child);
       if (meets_block(test, part)) {
         stack[depth++] = part;
       }
@@ -147,62 +144,54 @@ bool TriangleBoxTest::meets_bounds(const UnitPoint& center, std::int32_t half) c
   return true;
 }
 
-template <int kGrown>
-bool TriangleBoxTest::fits_slabs(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
+bool TriangleBoxTest::meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
   const auto [p, q] = kPlane[axis];
   const std::int64_t x = center[p] - origin_[p];
   const std::int64_t y = center[q] - origin_[q];
-  for (const Slab& slab : slabs_[axis]) {
+  return std::all_of(slabs_[axis].begin(), slabs_[axis].end(), [&](const Slab& slab) {
     const std::int64_t value = slab.u * x + slab.v * y;
-    const std::int64_t reach = kGrown * slab.reach * half;
-    if (value + reach < slab.low || value - reach > slab.high) {
-      return false;
-    }
-  }
-  return true;
+    const std::int64_t reach = slab.reach * half;
+    return value + reach >= slab.low && value - reach <= slab.high;
+  });
 }
 
-bool TriangleBoxTest::meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
-  return fits_slabs<1>(axis, center, half);
+std::uint64_t TriangleBoxTest::met_mask(const UnitPoint& voxel) const {
+  const std::uint64_t mask = surface_mask(voxel);
+  return mask == 0 ? 0 : mask & bounds_mask(voxel) & slabs_mask(voxel);
 }
 
-bool TriangleBoxTest::inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const {
-  return fits_slabs<-1>(axis, center, half);
-}
-
-std::uint64_t TriangleBoxTest::slab_mask(const UnitPoint& voxel, unsigned inside) const {
-  constexpr std::int32_t kHalf = kUnitsPerVoxel / 2;
+std::uint64_t TriangleBoxTest::bounds_mask(const UnitPoint& voxel) const {
   constexpr std::uint64_t kOnes = 0x1111111111111111U;
-  std::array<std::int64_t, 3> at{};  // the first voxel's centre from vertex 0
+  // Along x the bits of a nibble, along y nibbles, along z sixteen bits.
+  constexpr std::array<std::array<std::uint64_t, 4>, 3> kRows{
+      {{kOnes, kOnes << 1, kOnes << 2, kOnes << 3},
+       {0x000F000F000F000FU, 0x00F000F000F000F0U, 0x0F000F000F000F00U, 0xF000F000F000F000U},
+       {0xFFFFU, 0xFFFFULL << 16, 0xFFFFULL << 32, 0xFFFFULL << 48}}};
   std::uint64_t mask = ~std::uint64_t{0};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    at[axis] = voxel[axis] * kUnitsPerVoxel + kHalf - origin_[axis];
-    if ((inside & 8U) != 0) {
-      continue;
-    }
     const std::int32_t first = std::max(((low_[axis] - 1) >> kUnitBits) - voxel[axis], 0);
     const std::int32_t last = std::min((high_[axis] >> kUnitBits) - voxel[axis], 3);
-    // Along x the bits of a nibble, along y nibbles, along z sixteen bits.
-    constexpr std::array<std::array<std::uint64_t, 4>, 3> kRows{
-        {{kOnes, kOnes << 1, kOnes << 2, kOnes << 3},
-         {0x000F000F000F000FU, 0x00F000F000F000F0U, 0x0F000F000F000F00U, 0xF000F000F000F000U},
-         {0xFFFFU, 0xFFFFULL << 16, 0xFFFFULL << 32, 0xFFFFULL << 48}}};
     std::uint64_t rows = 0;
     for (std::int32_t i = first; i <= last; ++i) {
       rows |= kRows[axis][static_cast<std::size_t>(i)];
     }
     mask &= rows;
   }
+  return mask;
+}
+
+std::uint64_t TriangleBoxTest::slabs_mask(const UnitPoint& voxel) const {
+  std::uint64_t mask = ~std::uint64_t{0};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if ((inside >> axis & 1) != 0) {
-      continue;
-    }
     const auto [p, q] = kPlane[axis];
+    // The first voxel's centre from vertex 0.
+    const std::int64_t at_p = voxel[p] * kUnitsPerVoxel + kHalfVoxel - origin_[p];
+    const std::int64_t at_q = voxel[q] * kUnitsPerVoxel + kHalfVoxel - origin_[q];
     std::uint64_t cells = 0xFFFF;  // bit p + 4 q
     for (const Slab& slab : slabs_[axis]) {
-      const std::int64_t low = slab.low - slab.reach * kHalf;
-      const auto width = static_cast<std::uint64_t>(slab.high - slab.low + 2 * slab.reach * kHalf);
-      std::int64_t row = slab.u * at[p] + slab.v * at[q] - low;
+      const std::int64_t low = slab.low - slab.reach * kHalfVoxel;
+      const auto width = static_cast<std::uint64_t>(slab.high - slab.low + 2 * slab.reach * kHalfVoxel);
+      std::int64_t row = slab.u * at_p + slab.v * at_q - low;
       std::uint64_t passed = 0;
       for (int bit = 0; bit < 16; bit += 4, row += slab.v * kUnitsPerVoxel) {
         std::int64_t value = row;
@@ -217,11 +206,13 @@ std::uint64_t TriangleBoxTest::slab_mask(const UnitPoint& voxel, unsigned inside
   return mask;
 }
 
-std::uint64_t TriangleBoxTest::surface_mask(std::int64_t distance) const {
-  constexpr std::int32_t kHalf = kUnitsPerVoxel / 2;
-  const std::int64_t reach = normal_reach_ * kHalf;
-  // The first voxel's centre is a voxel and a half from the cube's on each axis.
-  std::int64_t slice = distance - (normal_[0] + normal_[1] + normal_[2]) * (3 * kHalf) + reach;
+std::uint64_t TriangleBoxTest::surface_mask(const UnitPoint& voxel) const {
+  const std::int64_t reach = normal_reach_ * kHalfVoxel;
+  // From the first voxel's centre on.
+  std::int64_t slice =
+      distance({voxel[0] * kUnitsPerVoxel + kHalfVoxel, voxel[1] * kUnitsPerVoxel + kHalfVoxel,
+                voxel[2] * kUnitsPerVoxel + kHalfVoxel}) +
+      reach;
   const auto width = static_cast<std::uint64_t>(2 * reach);
   std::uint64_t passed = 0;
   for (int z = 0; z < 64; z += 16, slice += normal_[2] * kUnitsPerVoxel) {
@@ -234,6 +225,21 @@ std::uint64_t TriangleBoxTest::surface_mask(std::int64_t distance) const {
     }
   }
   return passed;
+}
+
+TriangleBlock child_of(const TriangleBlock& block, int child) {
+  TriangleBlock part{block.voxel, block.level - 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    part.voxel[static_cast<std::size_t>(axis)] += (child >> axis & 1) << part.level;
+  }
+  return part;
+}
+
+bool meets_block(const TriangleBoxTest& test, const TriangleBlock& block) {
+  const std::int32_t half = kHalfVoxel << block.level;
+  return test.meets({block.voxel[0] * kUnitsPerVoxel + half, block.voxel[1] * kUnitsPerVoxel + half,
+                     block.voxel[2] * kUnitsPerVoxel + half},
+                    half);
 }
 
 std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bool z_up) {
@@ -283,7 +289,7 @@ void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, cons
   for (std::int32_t z = first[2]; z <= last[2]; ++z) {
     for (std::int32_t y = first[1]; y <= last[1]; ++y) {
       for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-        TriangleBlock block{{x << level, y << level, z << level}, level};
+        const TriangleBlock block{{x << level, y << level, z << level}, level};
         if (meets_block(test, block)) {
           descend(test, block, material, sink);
         }

@@ -55,44 +55,20 @@ class TriangleBoxTest {
 
   /// A cube by its centre and half its side, in units (voxel (i,j,k): 256 * i + 128, half 128).
   bool meets(const UnitPoint& center, std::int32_t half) const {
-    return meets_bounds(center, half) && meets_plane(0, center, half) && meets_plane(1, center, half) &&
-           meets_plane(2, center, half) && meets_surface(center, half);
+    return meets_surface(center, half) && meets_bounds(center, half) && meets_plane(0, center, half) &&
+           meets_plane(1, center, half) && meets_plane(2, center, half);
   }
 
   /// The parts of `meets`. The triangle's bounding box against the cube:
   bool meets_bounds(const UnitPoint& center, std::int32_t half) const;
   /// The edges' axes in the coordinate plane perpendicular to `axis`; `center[axis]` is not used.
   bool meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
-  /// Whether every cube within this one passes `meets_plane`: the cube lies inside the slabs of all edges.
-  bool inside_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
-  /// Which of the 4 x 4 x 4 voxels from `voxel` on pass `meets_bounds` and `meets_plane`: bit x + 4 y + 16 z. Of
-  /// a plane whose bit is set in `inside` all of them do, and where bit 3 is set all pass `meets_bounds`.
-  std::uint64_t slab_mask(const UnitPoint& voxel, unsigned inside) const;
-  /// Which of the 4 x 4 x 4 voxels pass `meets_surface`; `distance` is that of their cube's centre.
-  std::uint64_t surface_mask(std::int64_t distance) const;
   /// The triangle's plane against the cube.
   bool meets_surface(const UnitPoint& center, std::int32_t half) const {
-    return meets_surface(distance(center), half);
+    return std::abs(distance(center)) <= normal_reach_ * half;
   }
-  /// The same by the centre's distance from the plane, times the normal's length.
-  bool meets_surface(std::int64_t distance, std::int32_t half) const {
-    return std::abs(distance) <= normal_reach_ * half;
-  }
-  std::int64_t distance(const UnitPoint& center) const {
-    return normal_[0] * (center[0] - origin_[0]) + normal_[1] * (center[1] - origin_[1]) +
-           normal_[2] * (center[2] - origin_[2]);
-  }
-  /// Its length is twice the triangle's area.
-  const std::array<std::int64_t, 3>& normal() const { return normal_; }
-  /// Whether every cube within this one passes `meets_bounds`.
-  bool inside_bounds(const UnitPoint& center, std::int32_t half) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (low_[axis] > center[axis] - half || high_[axis] < center[axis] + half) {
-        return false;
-      }
-    }
-    return true;
-  }
+  /// Which of the 4 x 4 x 4 voxels from `voxel` on pass `meets`: bit x + 4 y + 16 z.
+  std::uint64_t met_mask(const UnitPoint& voxel) const;
 
   const UnitPoint& low() const { return low_; }
   const UnitPoint& high() const { return high_; }
@@ -104,9 +80,14 @@ class TriangleBoxTest {
     std::int64_t low = 0, high = 0;
     std::int64_t reach = 0;  ///< |u| + |v|
   };
-  /// Whether the cube's centre lies in the slabs, grown (1) or shrunk (-1) by the cube.
-  template <int kGrown>
-  bool fits_slabs(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
+  /// Of the centre from the triangle's plane, times the normal's length.
+  std::int64_t distance(const UnitPoint& center) const {
+    return normal_[0] * (center[0] - origin_[0]) + normal_[1] * (center[1] - origin_[1]) +
+           normal_[2] * (center[2] - origin_[2]);
+  }
+  std::uint64_t bounds_mask(const UnitPoint& voxel) const;
+  std::uint64_t slabs_mask(const UnitPoint& voxel) const;
+  std::uint64_t surface_mask(const UnitPoint& voxel) const;
 
   UnitPoint origin_;  ///< vertex 0
   UnitPoint low_;
@@ -157,19 +138,12 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
 struct TriangleBlock {
   UnitPoint voxel;
   int level;
-  /// Bit a: all that the block holds meets the slabs of the plane perpendicular to axis a; bit 3: it all meets the
-  /// triangle's bounding box.
-  std::uint8_t inside = 0;
 };
 
-/// `block.inside` where only the triangle's plane is left to test.
-inline constexpr std::uint8_t kAllInside = 0xF;
-
-/// Whether the triangle meets `block`; asks nothing that is known for the block it is part of, and adds to
-/// `block.inside` what its parts need not ask.
-bool meets_block(const TriangleBoxTest& test, TriangleBlock& block);
-/// The same where the block is known to meet the triangle's plane.
-bool meets_slabs(const TriangleBoxTest& test, TriangleBlock& block);
+/// Of eight parts, bit a of `child` says the upper half of axis a.
+TriangleBlock child_of(const TriangleBlock& block, int child);
+/// Whether the triangle meets the block.
+bool meets_block(const TriangleBoxTest& test, const TriangleBlock& block);
 
 /// A triangle and what its voxels are made of.
 struct CellTriangle {

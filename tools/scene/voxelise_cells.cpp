@@ -16,60 +16,6 @@ constexpr int kGroupLevel = 6;  ///< cells that are filled together: 4 x 4 x 4
 constexpr std::size_t kCubes = 64;
 constexpr std::uint64_t kFull = ~std::uint64_t{0};
 
-TriangleBlock child_of(const TriangleBlock& block, int child) {
-  TriangleBlock part{block.voxel, block.level - 1, block.inside};
-  for (int axis = 0; axis < 3; ++axis) {
-    part.voxel[static_cast<std::size_t>(axis)] += (child >> axis & 1) << part.level;
-  }
-  return part;
-}
-
-std::int32_t half_of(int level) {
-  return kUnitsPerVoxel / 2 << level;
-}
-
-UnitPoint center_of(const TriangleBlock& block) {
-  const std::int32_t half = half_of(block.level);
-  return {block.voxel[0] * kUnitsPerVoxel + half, block.voxel[1] * kUnitsPerVoxel + half,
-          block.voxel[2] * kUnitsPerVoxel + half};
-}
-
-/// A test that knows how the distance from the plane changes from a cube's centre to that of an eighth of it.
-class SteppingTest : public TriangleBoxTest {
- public:
-  explicit SteppingTest(const UnitTriangle& triangle) : TriangleBoxTest(triangle) {
-    for (std::size_t child = 0; child < 8; ++child) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        steps_[child] += (child >> axis & 1) != 0 ? normal()[axis] : -normal()[axis];
-      }
-    }
-  }
-  /// Bit a of `child`: the upper half of axis a. The eighth has sides of 2^`level` voxels.
-  std::int64_t distance_step(int child, int level) const {
-    return steps_[static_cast<std::size_t>(child)] * half_of(level);
-  }
-
- private:
-  std::array<std::int64_t, 8> steps_{};  ///< sums of the normal's components, each with the child's sign
-};
-
-/// A block and the distance of its centre from a triangle's plane, which steps from part to part.
-struct NearBlock {
-  TriangleBlock block;
-  std::int64_t distance;
-};
-
-/// Whether the triangle meets that part of `whole`, which becomes `part`.
-bool meets_part(const SteppingTest& test, const NearBlock& whole, int child, NearBlock* part) {
-  const int level = whole.block.level - 1;
-  part->distance = whole.distance + test.distance_step(child, level);
-  if (!test.meets_surface(part->distance, half_of(level))) {
-    return false;
-  }
-  part->block = child_of(whole.block, child);
-  return meets_slabs(test, part->block);
-}
-
 /// What one cell holds: a bit and a material a voxel.
 class Cell {
  public:
@@ -85,21 +31,21 @@ class Cell {
   bool is_full() const { return full_cubes_ == kFull; }
 
   /// Adds what a triangle meets and no later triangle has. `cell` is of kCellLevel.
-  void add(const SteppingTest& test, const CellTriangle& triangle, const NearBlock& cell) {
-    NearBlock part{};
-    NearBlock block{};
+  void add(const TriangleBoxTest& test, const CellTriangle& triangle, const TriangleBlock& cell) {
     for (int octant = 0; octant < 8; ++octant) {
       const std::uint64_t cubes = std::uint64_t{0xFF} << (8 * octant);
-      if ((full_cubes_ & cubes) == cubes || !meets_part(test, cell, octant, &part)) {
+      const TriangleBlock part = child_of(cell, octant);
+      if ((full_cubes_ & cubes) == cubes || !meets_block(test, part)) {
         continue;
       }
       for (int child = 0; child < 8; ++child) {
         const std::size_t cube =
             std::size_t{8} * static_cast<std::size_t>(octant) + static_cast<std::size_t>(child);
-        if (covered_[cube] != kFull && meets_part(test, part, child, &block)) {
-          const std::uint64_t met = missing_met(test, block, ~covered_[cube]);
+        const TriangleBlock block = child_of(part, child);
+        if (covered_[cube] != kFull && meets_block(test, block)) {
+          const std::uint64_t met = test.met_mask(block.voxel) & ~covered_[cube];
           if (shade_) {
-            take_shaded(cube, met, triangle, block.block);
+            take_shaded(cube, met, triangle, block);
           } else {
             take(cube, met, triangle.material);
           }
@@ -130,30 +76,6 @@ class Cell {
   }
 
  private:
-  /// Which of the voxels `missing` of a cube the triangle meets. A few are tested one by one.
-  static std::uint64_t missing_met(const SteppingTest& test, const NearBlock& cube, std::uint64_t missing) {
-    constexpr std::uint64_t kSome = 8;
-    std::uint64_t left = missing;
-    for (std::uint64_t i = 0; i < kSome; ++i) {
-      left &= left - 1;
-    }
-    const TriangleBlock& block = cube.block;
-    if (left != 0) {
-      const std::uint64_t met = test.surface_mask(cube.distance) & missing;
-      return met == 0 || block.inside == kAllInside ? met : met & test.slab_mask(block.voxel, block.inside);
-    }
-    std::uint64_t met = 0;
-    for (; missing != 0; missing &= missing - 1) {
-      const int bit = std::countr_zero(missing);
-      TriangleBlock voxel{
-          {block.voxel[0] + (bit & 3), block.voxel[1] + (bit >> 2 & 3), block.voxel[2] + (bit >> 4)},
-          0,
-          block.inside};
-      met |= std::uint64_t{meets_block(test, voxel)} << bit;
-    }
-    return met;
-  }
-
   void take_shaded(std::size_t cube, std::uint64_t met, const CellTriangle& triangle,
                    const TriangleBlock& block) {
     for (; met != 0; met &= met - 1) {
@@ -223,8 +145,7 @@ class Group {
   bool is_full() const { return full_ == all_; }
 
   void add(const CellTriangle& triangle, const TriangleBlock& group) {
-    const SteppingTest test(triangle.corners);
-    add_to(test, triangle, {group, test.distance(center_of(group))}, 0);
+    add_to(TriangleBoxTest(triangle.corners), triangle, group, 0);
   }
 
   /// Hands over what `block`, whose cells are `first` and on, holds; where it is full of one material says that and
@@ -271,9 +192,9 @@ class Group {
     return first + (static_cast<std::size_t>(child) << (3 * (block.level - 1 - kCellLevel)));
   }
 
-  void add_to(const SteppingTest& test, const CellTriangle& triangle, const NearBlock& whole,
+  void add_to(const TriangleBoxTest& test, const CellTriangle& triangle, const TriangleBlock& whole,
               std::size_t first) {
-    const int level = whole.block.level - 1;
+    const int level = whole.level - 1;
     if (level < kCellLevel) {
       const std::uint64_t bit = std::uint64_t{1} << first;
       Cell& cell = cells_[first];
@@ -286,10 +207,10 @@ class Group {
       return;
     }
     const std::uint64_t some = (std::uint64_t{1} << (1 << (3 * (level - kCellLevel)))) - 1;
-    NearBlock part{};
     for (int child = 0; child < 8; ++child) {
-      const std::size_t at = cell_of(whole.block, first, child);
-      if ((full_ >> at & some) != some && meets_part(test, whole, child, &part)) {
+      const std::size_t at = cell_of(whole, first, child);
+      const TriangleBlock part = child_of(whole, child);
+      if ((full_ >> at & some) != some && meets_block(test, part)) {
         add_to(test, triangle, part, at);
       }
     }
@@ -343,11 +264,9 @@ class Voxeliser {
       part.clear();
     }
     for (const std::uint32_t index : list) {
-      const SteppingTest test(triangles_[index].corners);
-      const NearBlock whole{block, test.distance(center_of(block))};
-      NearBlock part{};
+      const TriangleBoxTest test(triangles_[index].corners);
       for (int child = 0; child < 8; ++child) {
-        if (meets_part(test, whole, child, &part)) {
+        if (meets_block(test, child_of(block, child))) {
           parts[static_cast<std::size_t>(child)].push_back(index);
         }
       }
@@ -386,38 +305,6 @@ class Voxeliser {
 };
 
 }  // namespace
-
-bool meets_block(const TriangleBoxTest& test, TriangleBlock& block) {
-  return test.meets_surface(center_of(block), half_of(block.level)) && meets_slabs(test, block);
-}
-
-bool meets_slabs(const TriangleBoxTest& test, TriangleBlock& block) {
-  if (block.inside == kAllInside) {
-    return true;
-  }
-  const std::int32_t half = half_of(block.level);
-  const UnitPoint center = center_of(block);
-  if ((block.inside & 8U) == 0) {
-    if (!test.meets_bounds(center, half)) {
-      return false;
-    }
-    if (block.level > 0 && test.inside_bounds(center, half)) {
-      block.inside |= 8U;
-    }
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if ((block.inside >> axis & 1) != 0) {
-      continue;
-    }
-    if (!test.meets_plane(axis, center, half)) {
-      return false;
-    }
-    if (block.level > 0 && test.inside_plane(axis, center, half)) {
-      block.inside = static_cast<std::uint8_t>(block.inside | 1U << axis);
-    }
-  }
-  return true;
-}
 
 void voxelise_cells(std::span<const CellTriangle> triangles, int level, const BlockSink& sink,
                     const Progress& progress, const CellShade& shade) {
