@@ -72,6 +72,7 @@ struct Pool : Placed {
   uint32_t drops = 0;    ///< of the rain
   uint32_t touches = 0;
   uint32_t splashes = 0;
+  uint32_t crc = 0;  ///< of all bands that were drawn
   bool turns = false;
   bool redraws = false;  ///< every band of every frame
   bool moved = true;     ///< the camera
@@ -95,7 +96,7 @@ void put_fact(const char* name, uint64_t number) {
   put_fact(" columns stepped ", pool.water.columns.columns_updated());
   put_fact(" touches ", pool.touches);
   put_fact(" splashes ", pool.splashes);
-  put(" water ", Hex{pool.water.columns.state_crc32()},
+  put(" crc ", Hex{pool.crc}, " water ", Hex{pool.water.columns.state_crc32()},
       pool.water.columns.is_still() ? " still\n" : " moving\n");
 }
 
@@ -228,6 +229,12 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts, uint32_t
 #endif
 }
 
+/// Apart from `draw_frame`, whose stack lies below that of all rays.
+[[gnu::noinline]] void send(Pool* pool, const Band& band) {
+  pool->bands.send(band);
+  pool->crc = crc32(band.pixels, pool->crc);
+}
+
 /// Draws and flushes what can have changed.
 [[gnu::noinline]] Status draw_frame(Pool* pool) {
   const port::Display& screen = display();
@@ -265,7 +272,7 @@ Status draw_band(const Pool& pool, const Band& band, LitCounts* counts, uint32_t
       dirty.note_sees(i, counts.node_visits[static_cast<int>(LitRayKind::kWaterRay)] != 0);
     }
     dirty.note_passes(i, passed);
-    pool->bands.send(band);
+    send(pool, band);
     dirty.drawn(i);
   }
   return Status::kOk;
