@@ -19,7 +19,7 @@ constexpr std::size_t kSectionHeaderBytes = 40;
 constexpr std::uint32_t kBits = 1;
 constexpr std::uint32_t kStrings = 3;
 constexpr std::uint32_t kLoadedAndRun = 6;
-constexpr std::string_view kNames("\0.text\0.shstrtab\0\0\0", 20);
+constexpr std::string_view kNames("\0.text\0.shstrtab\0\0\0\0", 20);
 constexpr std::string_view kElf32(
     "\x7F"
     "ELF\x01\x01\x01",
