@@ -89,6 +89,8 @@ TEST_CASE("info: a mesh -> voxelised, y up turned to z up unless --z-up") {
   auto turned = info({path, "--depth", "3"});
   CHECK(turned["kind"] == "triangle mesh, voxelised");
   auto kept = info({path, "--depth", "3", "--z-up"});
+  CHECK(turned["up in the file"] == "y (--z-up says otherwise)");
+  CHECK(kept["up in the file"] == "z");
   CHECK(turned["occupied box"] != kept["occupied box"]);
   CHECK(info({path})["depth"].starts_with("9 "));
 }

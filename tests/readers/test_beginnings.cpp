@@ -134,6 +134,28 @@ TEST_CASE("info: a mesh and a cloud of text -> three times their bytes and 64 MB
   }
 }
 
+TEST_CASE(
+    "info: small files that name much -> what they hold and 64 MB, each file beside them counted once") {
+  const TemporaryFolder folder;
+  write_gzip(folder, "b.bin.gz", std::string(1 << 20, '\0'), 20);
+  std::string gltf = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}])";
+  const auto list = [&](const std::string& name, const std::string& begin, const std::string& end) {
+    gltf += ",\"" + name + "\":[";
+    for (int i = 0; i < 100; ++i) {
+      gltf += (i == 0 ? "" : ",") + begin + (end.empty() ? "" : std::to_string(i)) + end;
+    }
+    gltf += "]";
+  };
+  list("buffers", R"({"byteLength":20971520,"uri":"b.bin.gz"})", "");
+  list("bufferViews", R"({"byteLength":36,"buffer":)", "}");
+  list("accessors", R"({"componentType":5126,"count":3,"type":"VEC3","bufferView":)", "}");
+  gltf += R"(,"meshes":[{"name":"m")";
+  list("primitives", R"({"attributes":{"POSITION":)", "}}");
+  const CommandResult many = limited({"info", folder.write("a.gltf", gltf + "}]}"), "--depth", "5"}, 250);
+  CAPTURE(many.describe());
+  CHECK(many.status == 0);
+}
+
 #ifndef __SANITIZE_ADDRESS__
 TEST_CASE("info: a hundred million points in 4,096 places -> memory for the places") {
   const bool is_few = thimble::tests::takes_few();

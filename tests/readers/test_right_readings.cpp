@@ -140,8 +140,10 @@ TEST_CASE("colours: what full is follows the file's highest, noted where it is a
 }
 
 TEST_CASE("npy: N x 3 to N x 9 numbers of any type -> points, heights only by --as-heights") {
-  const std::string places = numbers<std::int64_t>({1, 2, 3, 2, 2, 3, 5, 5, 5});
-  CHECK(points_of(source_of(read_npy, npy("<i8", "3, 3", places))) == 3);
+  const std::string indices = npy("<i8", "3, 3", numbers<std::int64_t>({1, 2, 3, 2, 2, 3, 5, 5, 5}));
+  CHECK(points_of(source_of(read_npy, indices)) == 3);
+  CHECK(notes_hold(source_of(read_npy, indices), "--as-voxels makes them voxels"));
+  CHECK(notes_of(array_of(ArrayAs::kPoints, indices)).empty());
   for (int columns = 3; columns <= 9; ++columns) {
     CAPTURE(columns);
     const std::string rows = numbers(std::vector<float>(static_cast<std::size_t>(4 * columns), 0.25F));
@@ -245,7 +247,7 @@ TEST_CASE(
       head + "property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\nproperty float opacity\n" +
           "end_header\n0 0 0 1.7725 -1.7725 0 9\n1 0 0 0 0 0 -9\n2 0 0 -9 -9 9 0\n");
   CHECK(colors_of(splats) == Colors{{255, 0, 128}, kBlue});
-  CHECK(notes_hold(splats, "1 of 3 are nearly clear"));
+  CHECK(notes_hold(splats, "Gaussian splats are drawn as points; 1 of 3 are nearly clear"));
   const std::string face =
       "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   CHECK(notes_of(source_of(read_ply, head + face)).empty());
@@ -453,6 +455,28 @@ TEST_CASE("obj: materials beside it -> colours of faces; what is missing or not 
   const Source more = read(many + "usemtl my red\nf 1 2 3\nusemtl 7\nf 1 3 4\n");
   CHECK(notes_hold(more, "behind the first 65535"));
   CHECK(std::get<TriangleMesh>(more).face_colors.empty());
+}
+
+TEST_CASE("notes: many faults of a kind -> the first of them and how many more there are") {
+  std::string many = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nmtllib a.mtl\n";
+  std::string library;
+  for (const char* const name : {"a", "b", "c", "d", "e"}) {
+    many += "usemtl " + std::string(name) + "\nf 1/1 2/1 3/1\n";
+    library += "newmtl " + std::string(name) + "\nmap_Kd " + name + ".png\n";
+  }
+  const TemporaryFolder folder;
+  folder.write("a.mtl", library);
+  const std::string path = folder.write("a.obj", many);
+  const Notes notes = notes_of(read_obj(SharedBytes::own(many), {path}, {}));
+  REQUIRE(notes.size() == 4);
+  CHECK(contains(notes[0], "'a.png' is not drawn"));
+  CHECK(notes[3] == "2 more pictures are not drawn");
+
+  std::string large = "v 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib none.mtl\n";
+  for (int i = 0; i < 65537; ++i) {
+    large += "usemtl " + std::to_string(i) + "\nf 1 2 3\n";
+  }
+  CHECK(notes_hold(source_of(read_obj, large), "materials behind the first 65535 are not drawn"));
 }
 
 TEST_CASE("vox: models packed by zlib, a palette of sixteen entries -> read") {

@@ -549,6 +549,13 @@ TEST_CASE("vox: --frame -> what its keys say, in a box that holds all frames") {
   CHECK(voxels_of(*at(scene, 4)) == Voxels{{0, 0, 0, 1}});
   CHECK(voxels_of(*at(scene, 6)) == Voxels{{10, 0, 0, 1}});
   CHECK(voxels_of(*at(scene, 7)) == Voxels{{11, 0, 0, 2}});
+  // A later frame that shows a model which is not there is noted, once, and refused where it is wanted.
+  CHECK(read(scene)->notes.empty());
+  const Bytes broken = file(models + transform_chunk(0, 1, {first}) +
+                            shape_chunk(1, {{0, {{"_f", "0"}}}, {7, {{"_f", "3"}}}, {8, {{"_f", "4"}}}}));
+  REQUIRE(read(broken)->notes.size() == 1);
+  CHECK(read(broken)->notes[0].find("frame 3 is broken: it shows model 7, which is not among the 2") == 0);
+  CHECK_THROWS_AS(at(broken, 3), InputError);
   // All of it in one, each model once where it stands, whichever frame is taken.
   const auto in_frames = [](const VoxelModel& model) {
     Voxels voxels;

@@ -214,8 +214,8 @@ std::string baked_text(const BakeCommand& command, const BakingOptions& options,
     text += "note: " + command.note + "\n";
   }
   const double a_voxel = static_cast<double>(bytes) / static_cast<double>(tree.voxel_count());
-  text += grouped(tree.voxel_count()) + (tree.voxel_count() == 1 ? " voxel" : " voxels") + " in " +
-          grouped(bytes) + " bytes (depth " + std::to_string(tree.level()) +
+  text += counted(tree.voxel_count(), "voxel") + " in " + grouped(bytes) + " bytes (depth " +
+          std::to_string(tree.level()) +
           (tree.voxel_count() == 0 ? "" : ", " + fixed(a_voxel, 2) + " bytes a voxel") + ")\n";
   if (baked.effects != Effect::kNone) {
     text += "for the effects " + effects_text(baked.effects) + "\n";
@@ -228,8 +228,7 @@ std::string baked_text(const BakeCommand& command, const BakingOptions& options,
     text += "without light, for which there is no room\n";
   }
   if (tree.solid_added() != 0) {
-    text += "coarsened to fit: " + grouped(tree.solid_added()) +
-            (tree.solid_added() == 1 ? " voxel" : " voxels") + " of solid volume added\n";
+    text += "coarsened to fit: " + counted(tree.solid_added(), "voxel") + " of solid volume added\n";
   }
   return text;
 }

@@ -222,10 +222,9 @@ std::string boards_text() {
 }
 
 std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
-  std::string text = "\n" + printable(command.scene.arguments.scene) + "\n" + grouped(sizes.voxels) +
-                     (sizes.voxels == 1 ? " voxel" : " voxels") + " at depth " + std::to_string(sizes.depth) +
-                     ", " + grouped(sizes.baked_bytes) + " bytes baked, " + grouped(sizes.pool_bytes) +
-                     " bytes as a pool built on the chip\n\n";
+  std::string text = "\n" + printable(command.scene.arguments.scene) + "\n" + counted(sizes.voxels, "voxel") +
+                     " at depth " + std::to_string(sizes.depth) + ", " + grouped(sizes.baked_bytes) +
+                     " bytes baked, " + grouped(sizes.pool_bytes) + " bytes as a pool built on the chip\n\n";
   std::vector<Cells> rows{{"board", "scene flash", "scene", "RAM to draw", "fits", "RAM to build", "fits",
                            "deepest", "a second"}};
   for (const BoardFacts& board : platform::boards()) {

@@ -101,11 +101,8 @@ std::string lights(const LitDescription& lit) {
   const auto points = static_cast<std::size_t>(
       std::count_if(lit.lights.begin(), lit.lights.end(), [](const Light& light) { return light.is_point; }));
   const std::size_t distant = lit.lights.size() - points;
-  const auto counted = [](std::size_t number, const std::string& name) {
-    return number == 0 ? std::string() : std::to_string(number) + " " + name + (number == 1 ? "" : "s");
-  };
-  const std::string suns = counted(distant, "distant light");
-  const std::string lamps = counted(points, "lamp");
+  const std::string suns = distant == 0 ? "" : counted(distant, "distant light");
+  const std::string lamps = points == 0 ? "" : counted(points, "lamp");
   return suns + (suns.empty() || lamps.empty() ? "" : ", ") + lamps;
 }
 

@@ -36,9 +36,8 @@ void run(const ExportCommand& command) {
   outputs.commit();
   if (!command.scene.quiet) {
     const VoxelBox box = built.bounds();
-    std::fprintf(stderr, "%s %s, from %d,%d,%d to %d,%d,%d\n", grouped(built.voxels()).c_str(),
-                 built.voxels() == 1 ? "voxel" : "voxels", box.low.x, box.low.y, box.low.z, box.high.x - 1,
-                 box.high.y - 1, box.high.z - 1);
+    std::fprintf(stderr, "%s, from %d,%d,%d to %d,%d,%d\n", counted(built.voxels(), "voxel").c_str(),
+                 box.low.x, box.low.y, box.low.z, box.high.x - 1, box.high.y - 1, box.high.z - 1);
   }
 }
 

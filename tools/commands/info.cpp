@@ -133,6 +133,9 @@ void run(const SceneOptions& options) {
 
   row("scene", printable(options.arguments.scene));
   row("kind", source->kind());
+  if (source->is_mesh()) {
+    row("up in the file", source->is_z_up() ? "z" : "y (--z-up says otherwise)");
+  }
   for (const std::string& note : source->notes()) {
     row("note", note);
   }
@@ -160,8 +163,7 @@ void run(const SceneOptions& options) {
       grouped(built.tree_bytes()) + (built.voxels() == 0 ? "" : " (" + fixed(a_voxel, 2) + " a voxel)"));
   row("most bytes in use", grouped(built.high_water_bytes()));
   if (built.solid_added() != 0) {
-    row("solid added",
-        grouped(built.solid_added()) + (built.solid_added() == 1 ? " voxel, by" : " voxels, by coarsening"));
+    row("solid added", counted(built.solid_added(), "voxel") + ", by coarsening");
   }
   if (built.structure() == StructureKind::kCompact) {
     uint32_t place = 0;

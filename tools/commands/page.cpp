@@ -72,10 +72,6 @@ std::pair<std::string, std::string> around_scenes(
   return {std::move(before), page.substr(end + scenes.size())};
 }
 
-std::string voxels_text(std::uint64_t voxels) {
-  return voxels == 1 ? "1 voxel" : grouped(voxels) + " voxels";
-}
-
 std::string poster_url(const Image& image, std::size_t most_bytes) {
   std::vector<unsigned char> file;
   for (int quality = 90; quality >= 10; quality -= 10) {

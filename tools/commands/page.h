@@ -25,7 +25,6 @@ std::string load_page();
 std::pair<std::string, std::string> around_scenes(
     const std::string& page, std::initializer_list<std::pair<std::string_view, std::string>> values);
 
-std::string voxels_text(std::uint64_t voxels);
 /// The address of a JPEG of that picture within so many bytes: as good as there is room for. Throws InputError.
 std::string poster_url(const Image& image, std::size_t most_bytes);
 /// The first column's, at the top and at the bottom, for what is behind the picture.

@@ -429,10 +429,10 @@ void print_summary(const Stats& stats, const std::string& note) {
     std::fprintf(stderr, "note: %s\n", note.c_str());
   }
   std::fprintf(stderr,
-               "%s %s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
-               grouped(stats.voxels).c_str(), stats.voxels == 1 ? "voxel" : "voxels",
-               grouped(stats.tree_bytes).c_str(), stats.depth, grouped(stats.high_water_bytes).c_str(),
-               stats.frame_seconds, grouped(stats.hits).c_str(), grouped(stats.rays).c_str());
+               "%s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
+               counted(stats.voxels, "voxel").c_str(), grouped(stats.tree_bytes).c_str(), stats.depth,
+               grouped(stats.high_water_bytes).c_str(), stats.frame_seconds, grouped(stats.hits).c_str(),
+               grouped(stats.rays).c_str());
   if (stats.lit_counts) {
     std::string rays;
     for (int kind = 0; kind < kLitRayKinds; ++kind) {
@@ -444,8 +444,8 @@ void print_summary(const Stats& stats, const std::string& note) {
     std::fprintf(stderr, "lit: %s; rays: %s\n", effects_text(*stats.effects).c_str(), rays.c_str());
   }
   if (stats.solid_added != 0) {
-    std::fprintf(stderr, "coarsened to fit: %s %s of solid volume added\n",
-                 grouped(stats.solid_added).c_str(), stats.solid_added == 1 ? "voxel" : "voxels");
+    std::fprintf(stderr, "coarsened to fit: %s of solid volume added\n",
+                 counted(stats.solid_added, "voxel").c_str());
   }
 }
 

@@ -171,8 +171,8 @@ void print_look(const RenderCommand& command, const SceneSource& source, const L
     if (look.kind == LookKind::kLit && look.at_edges) {
       text += ", samples where edges are";
     } else if (look.kind == LookKind::kLit) {
-      text += ", " + std::to_string(look.across * look.across) + (look.across == 1 ? " sample" : " samples") +
-              " a pixel (" + grouped(studio.measured().rays) + " rays for four, which are taken up to " +
+      text += ", " + counted(static_cast<std::uint64_t>(look.across * look.across), "sample") + " a pixel (" +
+              grouped(studio.measured().rays) + " rays for four, which are taken up to " +
               grouped(kMostLookRays) + ")";
     }
     std::fprintf(stderr, "look: %s; exposure %s\n", text.c_str(),

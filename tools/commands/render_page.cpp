@@ -71,7 +71,7 @@ void render_page(const RenderCommand& command, const SceneSource& source, Output
   const std::string name = scene_name(command.scene.arguments.scene);
   const std::string title = xml_text(name.substr(0, name.find('.')));
   const auto [before, behind] = around_scenes(
-      page, {{"description", voxels_text(picture.stats.voxels) +
+      page, {{"description", counted(picture.stats.voxels, "voxel") +
                                  ", ray traced by Thimble. Drag to turn, wheel or pinch to come nearer."},
              {"version", version_number()},
              {"colors", edge_colors(picture.image)},

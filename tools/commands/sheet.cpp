@@ -98,7 +98,7 @@ struct Tile {
   Tile(const std::string& name, SmallPicture drawn)
       : picture(std::move(drawn)), file(name.substr(name.rfind('/') + 1)) {
     folder = name.substr(0, std::max<std::size_t>(name.size() - file.size(), 1) - 1);
-    count = picture.error.empty() ? voxels_text(picture.voxels) : "cannot be drawn";
+    count = picture.error.empty() ? counted(picture.voxels, "voxel") : "cannot be drawn";
   }
 
   SmallPicture picture;
@@ -106,10 +106,6 @@ struct Tile {
   std::string folder;  // in that folder; empty: in itself
   std::string count;   // of voxels
 };
-
-std::string scenes_text(std::size_t count) {
-  return grouped(count) + (count == 1 ? " scene" : " scenes");
-}
 
 // Draws them all, several at a time, and hands each on, in their order. How many could not be drawn.
 std::size_t draw_tiles(const SheetCommand& command, const std::vector<std::string>& names,
@@ -220,7 +216,7 @@ std::string figure_of(const Tile& tile, const std::string& path) {
 std::size_t write_page(const SheetCommand& command, const std::vector<std::string>& names, OutputFile* file) {
   const auto [before, behind] = around_scenes(
       load_page(),
-      {{"description", scenes_text(names.size()) + ", ray traced by Thimble. Click one to turn it."},
+      {{"description", counted(names.size(), "scene") + ", ray traced by Thimble. Click one to turn it."},
        {"version", version_number()},
        {"colors", "#202226, #202226"},
        {"turn", "0"},
@@ -247,7 +243,7 @@ void run(const SheetCommand& command) {
                                                         : write_sheet(command, names, outputs[0]);
   outputs.commit();
   if (!command.quiet) {
-    std::fprintf(stderr, "%s", scenes_text(names.size()).c_str());
+    std::fprintf(stderr, "%s", counted(names.size(), "scene").c_str());
     std::fprintf(stderr, failed == 0 ? "\n" : ", %s of them could not be drawn\n", grouped(failed).c_str());
   }
 }

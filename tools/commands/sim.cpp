@@ -204,10 +204,9 @@ void report(const SimCommand& command, const SessionResult& result, const std::s
                                                  : "rows drawn " + grouped(result.rows_sent) +
                                                        ", unchanged " + grouped(result.rows_kept) + "\n";
   const std::string by = engine.empty() ? std::string() : ", engine " + engine;
-  std::fprintf(stderr, "%s on %s: %s %s%s%s\n%s%s\n", command.session.application->name,
-               command.session.board->name, grouped(result.pictures).c_str(),
-               result.pictures == 1 ? "frame" : "frames", time.c_str(), by.c_str(), rows.c_str(),
-               memory_text(result.use, "\n").c_str());
+  std::fprintf(stderr, "%s on %s: %s%s%s\n%s%s\n", command.session.application->name,
+               command.session.board->name, counted(result.pictures, "frame").c_str(), time.c_str(),
+               by.c_str(), rows.c_str(), memory_text(result.use, "\n").c_str());
 }
 
 int run_and_write(SimCommand* command, std::string* sentence) {

@@ -51,6 +51,10 @@ std::string utf8_text(std::string_view text, bool for_xml) {
   return utf8;
 }
 
+std::string counted(std::uint64_t number, const std::string& one, const std::string& many) {
+  return grouped(number) + " " + (number == 1 ? one : many.empty() ? one + "s" : many);
+}
+
 std::string grouped(std::uint64_t number) {
   std::string text = std::to_string(number);
   for (std::size_t at = text.size(); at > 3; at -= 3) {

@@ -11,6 +11,8 @@ namespace thimble::tools {
 
 /// 48000000 as "48,000,000".
 std::string grouped(std::uint64_t number);
+/// "1 voxel", "48,000 voxels"; `many` where that is more than an s behind `one`.
+std::string counted(std::uint64_t number, const std::string& one, const std::string& many = {});
 
 /// "65536", "64K", "2M", "1G" (powers of 1024, either case, an optional B or iB after the letter) as bytes;
 /// nothing for anything else and for what exceeds 2^63 - 1.

@@ -52,10 +52,9 @@ std::string particle_summary(const PopulatedWorld& populated, const PlayedCounts
   const ParticleWorld& world = populated.world();
   const double step_us = 1e6 * step_seconds / static_cast<double>(counts.steps);
   const std::string time = counts.steps == 0 ? "" : ", " + fixed(step_us, 2) + " us a step";
-  return grouped(world.count()) + (world.count() == 1 ? " ball, " : " balls, ") + grouped(counts.steps) +
-         (counts.steps == 1 ? " step" : " steps") + time + "; asleep " + grouped(world.asleep()) +
-         ", collisions " + grouped(counts.ball_hits + counts.wall_hits) + "; " + grouped(world.used_bytes()) +
-         " bytes; state " + crc_text(world.state_crc32()) + "\n";
+  return counted(world.count(), "ball") + ", " + counted(counts.steps, "step") + time + "; asleep " +
+         grouped(world.asleep()) + ", collisions " + grouped(counts.ball_hits + counts.wall_hits) + "; " +
+         grouped(world.used_bytes()) + " bytes; state " + crc_text(world.state_crc32()) + "\n";
 }
 
 namespace {

@@ -31,6 +31,7 @@
 #include <utility>
 #include <vector>
 
+#include "output/units.h"
 #include "readers/gltf_draco.h"
 #include "readers/gltf_file.h"
 #include "readers/mesh.h"
@@ -635,8 +636,7 @@ class Scene {
     textures_.add_notes(mesh_.notes);
     for (const auto& [what, primitives] : undrawn_) {
       if (primitives != 0) {
-        mesh_.notes.push_back(what + " of " + std::to_string(primitives) +
-                              (primitives == 1 ? " primitive" : " primitives") + " are not drawn");
+        mesh_.notes.push_back(what + " of " + counted(primitives, "primitive") + " are not drawn");
       }
     }
     if (file_.count("scenes") > 1) {
@@ -645,12 +645,11 @@ class Scene {
     }
     mesh_.is_unlit = unlit_ != 0 && !has_lit_;
     if (unlit_ != 0 && has_lit_) {
-      mesh_.notes.push_back(std::to_string(unlit_) + (unlit_ == 1 ? " material is" : " materials are") +
+      mesh_.notes.push_back(counted(unlit_, "material is", "materials are") +
                             " unlit in the file and drawn in the scene's light like the others");
     }
     if (blended_ != 0) {
-      mesh_.notes.push_back("of " + std::to_string(blended_) +
-                            (blended_ == 1 ? " blended material" : " blended materials") +
+      mesh_.notes.push_back("of " + counted(blended_, "blended material") +
                             " (BLEND) what is at least a tenth opaque is drawn solid");
     }
     if (file_.count("animations") != 0 || file_.count("skins") != 0) {

@@ -16,6 +16,7 @@
 #include <set>
 #include <tuple>
 
+#include "output/units.h"
 #include "readers/formats.h"
 #include "readers/picture.h"
 
@@ -35,7 +36,7 @@ class GoxGrid final : public VoxelGrid {
   explicit GoxGrid(const SharedBytes& file) : file_(file) {
     read_chunks();
     if (left_out_ != 0) {
-      notes.push_back(std::to_string(left_out_) + (left_out_ == 1 ? " layer is" : " layers are") +
+      notes.push_back(counted(left_out_, "layer is", "layers are") +
                       " not drawn: a shape, or a copy of another that is more than moved by whole voxels");
     }
     place_blocks();

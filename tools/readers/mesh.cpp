@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "output/units.h"
+
 namespace thimble::tools {
 
 namespace {
@@ -220,8 +222,8 @@ Notes notes_of(const Source& source) {
 
 void note_left_out(Notes& notes, std::uint64_t points) {
   if (points != 0) {
-    notes.push_back(std::to_string(points) + (points == 1 ? " point is not finite and is left out"
-                                                          : " points are not finite and are left out"));
+    notes.push_back(counted(points, "point is not finite and is", "points are not finite and are") +
+                    " left out");
   }
 }
 

@@ -176,6 +176,9 @@ class ArrayPoints final : public PointCloud {
                       (has_color_ ? "1 to 3 are taken for places and " + std::to_string(first_color_ + 1) +
                                         " to " + std::to_string(first_color_ + 3) + " for colors"
                                   : "the first three are taken for places, none for colors"));
+    } else if (array_.header.type.kind != 'f' && options.as == ArrayAs::kByShape) {
+      notes.emplace_back(
+          "its rows of whole numbers are places; --as-voxels makes them voxels, --as-heights heights");
     }
   }
   void for_each(const Visit& visit) const override {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/mesh.h"
 #include "readers/text.h"
@@ -97,10 +98,6 @@ void read_library(std::string_view text, const std::string& folder,
   }
 }
 
-std::string count(std::size_t number, const char* one, const char* more) {
-  return std::to_string(number) + (number == 1 ? one : more);
-}
-
 // What materials say of what is behind them, of which only "nothing is there" is drawn.
 void note_clearness(const std::vector<ObjMaterial>& used, std::vector<std::string>& notes) {
   std::size_t unread = 0;
@@ -110,11 +107,11 @@ void note_clearness(const std::vector<ObjMaterial>& used, std::vector<std::strin
     partly += material.opacity && *material.opacity > 0 && *material.opacity < 1 ? 1U : 0U;
   }
   if (unread != 0) {
-    notes.push_back(count(unread, " material has", " materials have") +
+    notes.push_back(counted(unread, "material has", "materials have") +
                     " Tr and no d: Tr is not read, since programs contradict each other in it");
   }
   if (partly != 0) {
-    notes.push_back(count(partly, " material is", " materials are") + " partly clear (d) and drawn solid");
+    notes.push_back(counted(partly, "material is", "materials are") + " partly clear (d) and drawn solid");
   }
 }
 
@@ -229,7 +226,7 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
   textures.add_notes(mesh.notes);
   const bool has_others = !mesh.colors.empty() && !has_picture;  // vertices' colours, which are drawn
   if (missing != 0 && described.is_read && !has_others) {
-    mesh.notes.push_back(count(missing, " material has", " materials have") + " no description and no color");
+    mesh.notes.push_back(counted(missing, "material has", "materials have") + " no description and no color");
   } else if (missing != 0 && libraries_.empty() && !has_others) {
     mesh.notes.push_back("its materials are not drawn: no file is named that describes them (mtllib)");
   }
@@ -265,7 +262,7 @@ void ObjMaterials::color_faces(const std::string& path, TriangleMesh& mesh) cons
     ++kept;
   }
   if (kept < mesh.triangles.size()) {
-    mesh.notes.push_back(count(mesh.triangles.size() - kept, " triangle is", " triangles are") +
+    mesh.notes.push_back(counted(mesh.triangles.size() - kept, "triangle is", "triangles are") +
                          " wholly clear (d 0) and left out");
     mesh.triangles.resize(kept);
     mesh.texcoord_corners.resize(has_corners ? kept : 0);

@@ -574,8 +574,9 @@ class PlyCloud final : public PointCloud {
     note_left_out(notes, vertices_.count - finite);
     parts_.add_note(notes);
     if (is_splat(vertices_)) {
-      notes.push_back("Gaussian splats are drawn as points; " + std::to_string(finite - drawn) + " of " +
-                      std::to_string(finite) + " are nearly clear and left out");
+      const std::string clear = std::to_string(finite - drawn) + " of " + std::to_string(finite);
+      notes.push_back("Gaussian splats are drawn as points" +
+                      (finite == drawn ? "" : "; " + clear + " are nearly clear and left out"));
     }
   }
 

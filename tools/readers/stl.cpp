@@ -13,6 +13,7 @@
 #include <cmath>
 #include <string>
 
+#include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/text.h"
 
@@ -77,8 +78,7 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
                      " bytes follow it");
   }
   if (attributed != 0) {
-    mesh.notes.push_back(std::to_string(attributed) +
-                         (attributed == 1 ? " triangle has" : " triangles have") +
+    mesh.notes.push_back(counted(attributed, "triangle has", "triangles have") +
                          " attributes, which may be colors; they are not read");
   }
   if (reader.remaining() != 0) {

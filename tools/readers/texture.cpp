@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/mesh.h"
 #include "readers/picture.h"
@@ -236,8 +237,7 @@ void Textures::add_notes(Notes& notes) const {
   }
   if (faults_.size() > kMostSentences) {
     const std::size_t more = faults_.size() - kMostSentences;
-    notes.push_back(std::to_string(more) +
-                    (more == 1 ? " more picture is not drawn" : " more pictures are not drawn"));
+    notes.push_back(counted(more, "more picture is", "more pictures are") + " not drawn");
   }
 }
 

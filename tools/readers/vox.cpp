@@ -366,6 +366,10 @@ void VoxFile::place_scene() {
       scene_.place_models(key, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t) {
         if (keys.size() > 1 && number < models_.size()) {
           add_to_frames(make_instance(number, models_[number], transform));
+        } else if (keys.size() > 1 && notes.empty()) {
+          notes.push_back("frame " + std::to_string(key) + " is broken: it shows model " +
+                          std::to_string(number) + ", which is not among the " +
+                          std::to_string(models_.size()) + " models of this file");
         }
       });
     }

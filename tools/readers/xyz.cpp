@@ -39,6 +39,7 @@
 #include <string_view>
 #include <utility>
 
+#include "output/units.h"
 #include "readers/color_scale.h"
 #include "readers/text.h"
 
@@ -513,9 +514,8 @@ void check_columns(std::string_view line, std::uint64_t number, Layout& layout) 
                     (columns.ends_open() && count + 1 == layout.model_columns) ||
                     (layout.model_ends_open && count == layout.model_columns + 1);
   if (!fits) {
-    fail_at_line(number, std::to_string(count) + (count == 1 ? " column" : " columns") + ", but line " +
-                             std::to_string(layout.model_line) + " has " +
-                             std::to_string(layout.model_columns));
+    fail_at_line(number, counted(count, "column") + ", but line " + std::to_string(layout.model_line) +
+                             " has " + std::to_string(layout.model_columns));
   }
   // A header that names the columns has settled it by their number.
   const bool has_names = layout.model_line < layout.first_point_line;

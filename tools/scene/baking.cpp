@@ -486,7 +486,7 @@ std::string too_large_text(const FlashLimit& limit, const Baked& baked, const Ba
   const std::uint64_t over = baked.bytes.size() - most;
   return (options.coarsen ? "even the coarsest tree takes " : "takes ") + grouped(baked.bytes.size()) +
          " bytes at depth " + std::to_string(level) + ", " + limit_text(limit, baked.effects, most) + ": " +
-         grouped(over) + (over == 1 ? " byte" : " bytes") + " too many";
+         counted(over, "byte") + " too many";
 }
 
 }  // namespace thimble::tools

@@ -151,8 +151,8 @@ class CubeGather {
 std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::optional<int> depth) {
   const std::shared_ptr<const VoxelGrid> grid = std::move(read);
   SourceFacts facts;
-  facts.kind = "voxel grid";
   facts.is_landscape = grid->is_landscape();
+  facts.kind = facts.is_landscape ? "heights, as a landscape a sixth as high as wide" : "voxel grid";
   ColorHistogram histogram;
   const bool has_color = grid->has_color();
   Rgb counted;  // its run is counted in one
@@ -282,6 +282,7 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
   const auto colors = std::make_shared<const PaletteMap>(mesh_colors(*mesh, facts.level, z_up));
   facts.points = mesh->positions.size();
   facts.is_mesh = true;
+  facts.is_z_up = z_up;
   facts.single_material = colors->colors() == 0;
   facts.palette = colors->palette();
   facts.color_error = colors->error();

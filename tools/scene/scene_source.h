@@ -28,6 +28,7 @@ struct SourceFacts {
   std::uint64_t points = 0;   ///< what the input counts: points, voxels of the file, vertices
   bool is_point_set = false;  ///< single voxels strewn about, of which a list is smaller than a pool of nodes
   bool is_mesh = false;       ///< every stream voxelises triangles again
+  bool is_z_up = false;       ///< a mesh whose y and z were not turned
   bool is_landscape = false;  ///< heights, whose steps stand for a slope
   bool single_material = false;  ///< all voxels have material 0
   std::optional<bool>
@@ -62,6 +63,8 @@ class SceneSource {
   std::uint64_t points() const { return facts_.points; }
   bool is_point_set() const { return facts_.is_point_set; }
   bool is_mesh() const { return facts_.is_mesh; }
+  /// Of a mesh: z is up in the file.
+  bool is_z_up() const { return facts_.is_z_up; }
   bool is_landscape() const { return facts_.is_landscape; }
   bool single_material() const { return facts_.single_material; }
   std::array<std::int32_t, 3> extent() const;
