@@ -14,5 +14,4 @@ for offset in 160 178 189; do
   sh "$emulator/run.sh" 0 "$work/other.gba" </dev/null >/dev/null 2>"$work/other.said" || status=$?
   { [ $status = 96 ] && grep -q 'wrong checksum' "$work/other.said"; } || fail "byte $offset changed: exit status $status"
 done
-[ $failed = 1 ] || say "its picture is zero; other checksums are refused"
-exit $failed
+ends "its picture is zero; other checksums are refused"

@@ -30,21 +30,9 @@ fi
 size_of() {
   cut -d , -f 3 "$work/effects_$1.memory.csv"
 }
-names='0x001 kDirectLight
-0x002 kShadows
-0x004 kAmbientOcclusion
-0x008 kEmission
-0x010 kMirror
-0x020 kGlass
-0x040 kMedia
-0x080 kWater
-0x100 kFog
-0x200 kSky
-0x400 kDepthCue
-0x800 kSmoothNormals
-0x1000 kEmitterLight
-0x2000 kEdges
-0x4000 kRipples'
+# `0x001 kDirectLight` and so on.
+names=$(sed -n 's/^  static constexpr EffectSet \(k[A-Za-z]*\) = 1U << \([0-9]*\);.*/\1 \2/p' include/thimble/light/scene.h |
+  while read -r name bit; do printf '0x%03x %s\n' $((1 << bit)) "$name"; done)
 {
   cat <<'TEXT'
 /// What each effect takes of the flash of a firmware image, measured by linking: lm3s6965evb (Cortex-M3),

@@ -7,19 +7,10 @@ export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}/emulate"
 board=microbit
 work=$PWD/$THIMBLE_FIRMWARE
 mkdir -p "$work"
-failed=0
-say() {
-  printf '%-18s %-10s %s\n' "$board" emulate "$1"
-}
-fail() {
-  say "FAILED: $1"
-  failed=1
-}
+app=emulate
+. tests/boards/say.sh
 # With light that is slow the demonstration stands still, so that the picture does not depend on when it is requested.
-EFFECTS=depth-cue sh platform/build.sh $board demo demo >"$work/build.log" 2>&1 || {
-  tail -n 5 "$work/build.log" >&2
-  exit 1
-}
+EFFECTS=depth-cue builds demo demo
 picture=$work/picture.png
 rm -f "$picture"
 if ! SHOT=$picture timeout 120 sh platform/emulate.sh $board demo >"$work/shot.log" 2>&1; then
@@ -35,10 +26,8 @@ fi
 board=mps2-an500
 rm -f "$picture"
 export FRAMES=3
-if ! HOLD=true EFFECTS=none sh platform/build.sh $board demo demo >"$work/build.log" 2>&1; then
-  tail -n 5 "$work/build.log" >&2
-  fail "does not build"
-elif ! SHOT=$picture timeout 240 sh platform/emulate.sh $board demo >"$work/shot.log" 2>&1; then
+HOLD=true EFFECTS=none builds demo demo
+if ! SHOT=$picture timeout 240 sh platform/emulate.sh $board demo >"$work/shot.log" 2>&1; then
   tail -n 3 "$work/shot.log" >&2
   fail "no picture came over the UART"
 elif ! build/release/thimble sim demo --effects none --board $board --display none --frames 3 --check "$picture" --quiet \
@@ -54,10 +43,7 @@ if SHOT=$picture sh platform/emulate.sh $board bench >/dev/null 2>"$work/why" ||
 fi
 
 # It turns now, and would tell of every frame. Keys arrive; q ends with the application's status.
-EFFECTS=none sh platform/build.sh $board demo demo >"$work/build.log" 2>&1 || {
-  tail -n 5 "$work/build.log" >&2
-  exit 1
-}
+EFFECTS=none builds demo demo
 # talk OUT: for three seconds, then q until it ends.
 talk() {
   status=0

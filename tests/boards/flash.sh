@@ -5,11 +5,8 @@ set -eu
 cd "$(dirname "$0")/../.."
 mkdir -p "$1"
 work=$(cd "$1" && pwd)
-failed=0
-fail() {
-  printf '%-18s %-10s FAILED: %s\n' "$board" flash "$1"
-  failed=1
-}
+app=flash
+. tests/boards/say.sh
 # flash: writes $board's demo onto the drive. Sets `status` and `said`.
 flash() {
   status=0
@@ -83,6 +80,4 @@ flash
 new_drive
 flash
 { [ $status = 0 ] && [ "$(ls "$work/drive")" = kernel.img ]; } || fail "an empty drive: exit status $status, $(ls "$work/drive")"
-board=microbit
-[ $failed = 1 ] || printf '%-18s %-10s %s\n' raspi0 flash "FAIL.TXT of a drive is an error; a kernel.img that was there is kept"
-exit $failed
+ends "FAIL.TXT of a drive is an error; a kernel.img that was there is kept"

@@ -11,22 +11,12 @@ board=$1
 work=$THIMBLE_FIRMWARE/$board
 thimble=build/release/thimble
 measured=$THIMBLE_FIRMWARE/$board.measured
-failed=0
+app=own
+. tests/boards/say.sh
 . tests/boards/blocks.sh
-fail() {
-  echo "FAILED: own scene on $board: $*"
-  failed=1
-}
-say() {
-  [ $failed = 1 ] || echo "own scene on $board: $*"
-}
-# build APPS HEADER: leaves the log where it can be shown.
+# build APPS HEADER: and what the image of demo holds.
 build() {
-  FRAMES=3 sh platform/build.sh "$board" "$1" "$2" >"$work/own.log" 2>&1 || {
-    tail -n 5 "$work/own.log"
-    fail "the firmware does not build"
-    exit 1
-  }
+  FRAMES=3 builds "$1" "$2"
   arm-none-eabi-nm -C "$work/demo.elf" >"$work/own.symbols"
 }
 holds() {
@@ -96,7 +86,7 @@ too_large() {
   export BAKE=--coarsen EFFECTS=none
   build demo demo,depth=8
   unset BAKE EFFECTS
-  left=$(sed -n 's/.*flash \([0-9]*\) of \([0-9]*\),.*/\2 \1/p' "$work/own.log" | awk 'END { print $1 - $2 }')
+  left=$(sed -n 's/.*flash \([0-9]*\) of \([0-9]*\),.*/\2 \1/p' "$work/own.build.log" | awk 'END { print $1 - $2 }')
   [ "${left:-99999}" -lt 4096 ] || fail "coarsened to fit it leaves ${left:-no} bytes of the flash"
   say "a scene that is too large beside demo is refused with what makes it fit; coarsened it leaves $left bytes"
 }

@@ -10,14 +10,12 @@ work=$PWD/$THIMBLE_FIRMWARE
 thimble=build/release/thimble
 . tests/boards/three_digits.sh
 mkdir -p "$work/programs"
+app=frames
+. tests/boards/say.sh
 printf 'yes!' >"$work/yes"
 "$thimble" bake demo,depth=4 --board lm3s6965evb --effects none --quiet -o "$work/small.h"
-failed=0
 for board in $(sed '/^#/d; /^board/d; s/;.*//' $table | sort -u); do
-  WITHIN=0 sh platform/build.sh "$board" bench "$work/small.h" >"$work/build.log" 2>&1 || {
-    tail -n 5 "$work/build.log"
-    exit 1
-  }
+  WITHIN=0 builds bench "$work/small.h" >&2
   objcopy=arm-none-eabi-objcopy
   [ "$board" != sifive_e ] || objcopy=riscv64-unknown-elf-objcopy
   # `thimble image` knows applications that show scenes; for emulators this one is to tell its exit status.
@@ -30,8 +28,7 @@ for board in $(sed '/^#/d; /^board/d; s/;.*//' $table | sort -u); do
     echo "$board;$scene;$cost"
     most=$(grep -F "$board;$scene;" $table | cut -d ';' -f 3)
     if [ -z "$cost" ] || [ "$cost" -gt $((most + most / 100)) ]; then
-      printf '%-18s %-10s FAILED: a frame of %s takes %s instructions, %s says %s\n' "$board" frames "$scene" "${cost:-no}" $table "$most" >&2
-      failed=1
+      fail "a frame of $scene takes ${cost:-no} instructions, $table says $most" >&2
     fi
   done
 done >"$work/measured"

@@ -11,11 +11,8 @@ thimble=build/release/thimble
 export PLACE=flash
 . platform/board_facts.sh
 mkdir -p "$work"
-failed=0
-fail() {
-  echo "FAILED: $board, $*"
-  failed=1
-}
+app=scenes
+. tests/boards/say.sh
 # A mesh: a pyramid.
 printf 'OFF\n5 6 0\n0 0 0\n9 0 0\n9 9 0\n0 9 0\n4 5 7\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n3 0 2 1\n3 0 3 2\n' >"$work/mesh.off"
 "$thimble" bake tools/gallery/scenes/room.scene --board "$board" -o "$work/lights.oct" --quiet 2>"$work/scenes.log" ||
@@ -32,9 +29,9 @@ for scene in tools/gallery/scenes/castle.vox "$work/mesh.off" "$work/lights.oct"
     # Effects that share parts take less than their sum.
     [ "$program" -le "${says:-0}" ] || fail "$name: the program takes $program bytes, program_flash.h says ${says:-nothing}"
     [ "$program" -gt $((says - says / 16)) ] || fail "$name: the program takes $program bytes, program_flash.h says $says, too many"
-    echo "$board: $name is built, program $program bytes of at most $says, scene $scene_bytes"
+    say "$name is built, program $program bytes of at most $says, scene $scene_bytes"
   elif grep -q '^thimble: .* bytes too many.*--' "$work/scenes.log" && [ ! -e "$work/demo.memory.csv" ]; then
-    echo "$board: $name is refused: $(sed -n 's/^thimble: [^ ]*: //p' "$work/scenes.log" | cut -c 1-100)"
+    say "$name is refused: $(sed -n 's/^thimble: [^ ]*: //p' "$work/scenes.log" | cut -c 1-100)"
   else
     tail -n 5 "$work/scenes.log"
     fail "$name is neither built nor refused"

@@ -8,18 +8,11 @@ board=$1
 export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
 work=$THIMBLE_FIRMWARE/$board
 case $(fact ARCH) in riscv) prefix=riscv64-unknown-elf- ;; *) prefix=arm-none-eabi- ;; esac
-failed=0
-fail() {
-  printf '%-18s %-10s FAILED: %s\n' "$board" silicon "$1"
-  failed=1
-}
-FRAMES=1 PLACE=flash sh platform/build.sh "$board" "particles;faults" "" >"$work/silicon.build.log" 2>&1 || {
-  tail -n 5 "$work/silicon.build.log" >&2
-  fail "does not build"
-  exit 1
-}
+app=silicon
+. tests/boards/say.sh
+FRAMES=1 PLACE=flash builds "particles;faults" ""
 if [ -n "$(fact EMULATOR)" ] && ! why=$(sh "platform/emulators/$(fact EMULATOR)/fetch.sh"); then
-  printf '%-18s %-10s %s\n' "$board" silicon "skipped: $why"
+  say "skipped: $why"
   exit 0
 fi
 
@@ -120,5 +113,4 @@ if [ "$board" = lm3s6965evb ]; then
     }' >"$work/silicon.oled"
   [ ! -s "$work/silicon.oled" ] || fail "$(head -n 1 "$work/silicon.oled")"
 fi
-[ $failed = 1 ] || printf '%-18s %-10s %s\n' "$board" silicon "without a debugger it ends without a fault and tells one once; vectors and segments are a chip's"
-exit $failed
+ends "without a debugger it ends without a fault and tells one once; vectors and segments are a chip's"

@@ -7,19 +7,9 @@ export THIMBLE_FIRMWARE="${THIMBLE_FIRMWARE:-build/boards}"
 board=lm3s6965evb
 work=$THIMBLE_FIRMWARE/$board
 scene=tools/gallery/scenes/waves.scene
-failed=0
-say() {
-  printf '%-18s %-10s %s\n' $board water "$1"
-}
-fail() {
-  say "FAILED: $1"
-  failed=1
-}
-FRAMES=4 sh platform/build.sh $board water $scene >"$work/water.build.log" 2>&1 || {
-  tail -n 5 "$work/water.build.log" >&2
-  fail "does not build"
-  exit 1
-}
+app=water
+. tests/boards/say.sh
+FRAMES=4 builds water $scene
 status=0
 timeout 300 sh platform/emulate.sh $board water </dev/null >"$work/water.log" 2>"$work/water.noise" || status=$?
 build/release/thimble sim $scene --app water --board $board --display none --frames 4 --quiet >"$work/water.sim" 2>&1 || true
@@ -28,5 +18,4 @@ if [ $status != 0 ] || [ -z "$counted" ] || ! grep -qx "frames $counted" "$work/
   fail "exit status $status; it counts '$counted', the simulator '$(grep '^frames' "$work/water.sim" || echo nothing)'"
 fi
 said=$(sh tests/boards/budget.sh $board water "$work/water.log") || fail "$said"
-[ $failed = 1 ] || say "counts what the simulator does; $said"
-exit $failed
+ends "counts what the simulator does; $said"
