@@ -10,10 +10,8 @@ tool=$THIMBLE_FIRMWARE/qemu_screen
 # The images lie where emulate.sh looks for them.
 THIMBLE_FIRMWARE=$PWD/$THIMBLE_FIRMWARE/new
 work=$THIMBLE_FIRMWARE/castle-$board
-fail() {
-  printf '%-18s %-10s FAILED: %s\n' "$board" new "$1"
-  exit 1
-}
+app=new
+. tests/boards/say.sh
 if [ -n "$(fact EMULATOR)" ] && ! sh "platform/emulators/$(fact EMULATOR)/fetch.sh" >/dev/null; then
   exit 0
 fi
@@ -25,6 +23,7 @@ hold=$([ "$(fact DISPLAY)" != none ] && [ -z "$(fact EMULATOR)" ] && echo true |
   -DTHIMBLE_HOLD="$hold" && CCACHE_DISABLE=1 cmake --build "$work/castle/build"; } >"$work/build.log" 2>&1 || {
   tail -n 5 "$work/build.log"
   fail "the project does not build"
+  exit 1
 }
 ln -s "$work/castle/build/thimble" "$THIMBLE_FIRMWARE/$board"
 if [ "$hold" = true ]; then
@@ -47,16 +46,18 @@ else
   timeout 300 sh platform/emulate.sh "$board" castle $shot </dev/null >"$work/log" 2>&1 || fail "it ends with status $?: $(tail -n 1 "$work/log")"
 fi
 if [ "$(fact DISPLAY)" = none ]; then
-  printf '%-18s %-10s %s\n' "$board" new "a project draws its scene and ends"
-  exit 0
+  ends "a project draws its scene and ends"
 fi
 awk '/^static const uint8_t/ { inside = 1; next } /^};/ { inside = 0 } inside' "$work/castle/scene.h" | tr -dc '0-9,' | tr ',' '\n' |
   awk 'NF { printf "\\%03o", $1 }' >"$work/octal"
 printf "$(cat "$work/octal")" >"$work/scene.oct"
-ending=ppm bytes=3
-case $(fact FORMAT) in gray*) ending=pgm bytes=1 ;; esac
+ending=ppm bytes=3 shade=color
+case $(fact FORMAT) in
+  gray*) ending=pgm bytes=1 ;;
+  mono*) ending=pgm bytes=1 shade=ink ;;
+esac
 size=$(fact WIDTH_PX)x$(fact HEIGHT_PX)
-build/release/thimble render "$work/scene.oct" --size "$size" --shade color --quiet -o "$work/right.$ending"
+build/release/thimble render "$work/scene.oct" --size "$size" --shade $shade --quiet -o "$work/right.$ending"
 pixels=$((${size%x*} * ${size#*x}))
 tail -c $((3 * pixels)) "$work/shown.ppm" | od -An -v -tu1 -w3 >"$work/shown"
 tail -c $((bytes * pixels)) "$work/right.$ending" | od -An -v -tu1 -w$bytes >"$work/right"
@@ -65,4 +66,4 @@ worse=$(paste "$work/shown" "$work/right" | awk -v gray=$((3 - bytes)) '
   { for (i = 1; i <= 3; i++) { difference = $i - $(gray ? 4 : 3 + i); if (difference < -9 || difference > 9) { worse++ } } }
   END { print NR == '$pixels' ? worse + 0 : "not all" }')
 [ "$worse" = 0 ] || fail "$worse channels of the picture are not this machine's"
-printf '%-18s %-10s %s\n' "$board" new "a project shows its scene"
+ends "a project shows its scene"

@@ -49,8 +49,8 @@ if [ "${1:-}" = --job ]; then
       examples | emulate | frames) ;;
       *) [ -z "${LONG:-}" ] || sh "$here/images.sh" "$2" || status=1 ;;
     esac
-    # One board of each kind of core and start-up.
-    case $2 in lm3s6965evb | sifive_e | raspi0 | pico | gba) sh "$here/new.sh" "$2" || status=1 ;; esac
+    # One board of each kind of core and start-up, and a display of one bit.
+    case $2 in lm3s6965evb | sifive_e | raspi0 | pico | pico-oled | gba) sh "$here/new.sh" "$2" || status=1 ;; esac
   } >"$log" 2>&1
   cat "$log"
   exit $status

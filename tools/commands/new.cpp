@@ -163,6 +163,7 @@ void check(const NewCommand& command) {
 
 // The files of the project by name.
 std::map<std::string, std::string> project(const NewCommand& command, const Baked& baked) {
+  const platform::BoardFacts& board = *command.scene.board;
   const std::string kit = command.kit();
   const bool has_map = !baked.scene.section(SectionKind::kBrickMap).empty();
   const std::string main = kit == "arduino" ? command.name() + ".ino" : command.in_c ? "main.c" : "main.cpp";
@@ -170,19 +171,19 @@ std::map<std::string, std::string> project(const NewCommand& command, const Bake
   Meanings words{{"SCENE", std::filesystem::path(command.scene.arguments.scene).filename().string()},
                  {"MAIN", folder + main},
                  {"MAP", has_map ? "bricks, " : ""},
-                 {"WHERE", "the display of " + std::string(command.scene.board->title)},
+                 {"WHERE", "the display of " + std::string(board.title)},
                  {"C_RENDER", has_map ? "thimble_scene_render_fast(&scene, &bricks, &camera, &shading, &band)"
                                       : "thimble_scene_render(&scene, &camera, &shading, &band)"}};
   say_board(command, &words);
-  std::set<std::string> kinds{kit, command.build, has_map ? "map" : "no-map"};
+  // Ink where the RAM holds its two pictures beside what a sketch has.
+  const bool is_ink = bits_per_pixel(board.format) == 1 && board.ram_bytes > 65536;
+  std::set<std::string> kinds{kit, command.build, has_map ? "map" : "no-map", is_ink ? "ink" : "bands"};
   std::map<std::string, std::string> files;
   if (const PanelKind* const panel = command.panel) {
     say_panel(*panel, &words);
     const std::string chip = kit == "pico-sdk" ? "pico" : "ino";
     const std::string bus = panel->is_i2c ? "i2c" : "spi";
-    // Ink where the RAM holds its two pictures beside what a sketch has.
-    const bool is_ink = panel->format == PixelFormat::kMono1Pages && command.scene.board->ram_bytes > 65536;
-    kinds.insert({"panel", chip, bus, chip + "-" + bus, is_ink ? "ink" : "bands"});
+    kinds.insert({"panel", chip, bus, chip + "-" + bus});
     files[folder + "wiring.h"] = filled("wiring.h", kinds, words);
   }
   files[folder + main] = filled(kit == "port"  ? "port.cpp"
