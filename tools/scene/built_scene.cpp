@@ -28,14 +28,6 @@ Vec3i extent_of(const SceneSource& source) {
   return {extent[0], extent[1], extent[2]};
 }
 
-// What building writes in any case, if that is known before: a key of each point. Few points are left out, whose
-// places may be fewer than points.
-std::size_t bytes_to_be_written(const SceneSource& source, std::size_t most) {
-  const bool has_keys = source.is_point_set() && source.baked() == nullptr;
-  const std::uint64_t bytes = has_keys ? source.points() * sizeof(std::uint32_t) : 0;
-  return static_cast<std::size_t>(std::min<std::uint64_t>(bytes, most));
-}
-
 // How many different voxels `source` streams. For reporting only, in memory beside the arena: the voxels are
 // counted in as many turns as keep a list of them below 256 MiB, each turn a part of the world.
 std::uint64_t count_distinct(const SceneSource& source, const Progress& progress) {
@@ -480,7 +472,6 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
                                                 " bytes (" + options.budget_name + ")"
                                           : "this machine has no memory left for the scene");
   }
-  use_large_pages(memory_.bytes().subspan(0, bytes_to_be_written(source, memory_.bytes().size)));
   if (!try_to_build(source, progress)) {
     throw InputError(options.memory_bytes ? shortage_text(source, options, progress)
                                           : "the scene does not fit into this machine's memory");

@@ -33,10 +33,4 @@ class HostMemory {
   std::size_t size_ = 0;
 };
 
-/// Tells the system that all of `bytes` is going to be written, so that it may give whole pages of 2 MiB: a
-/// page of 4 KiB takes 1.5 us when it is first written, a five hundredth of a large one a fifth of that. Only
-/// pages that lie wholly within are meant: no more memory is taken than without. Nothing happens where the
-/// system has no such pages.
-void use_large_pages(Bytes bytes);
-
 }  // namespace thimble::tools

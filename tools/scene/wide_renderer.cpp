@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "scene/built_scene.h"
-#include "scene/host_memory.h"
 #include "wide/raster/renderer.h"
 #include "wide/rays/ray_map.h"
 #include "wide/threads.h"
@@ -24,8 +23,9 @@ std::vector<std::string> WideRenderer::instruction_sets() {
 namespace {
 
 // As many of the threads as have room beside the smaller one of the lists; at least one.
-int threads_within(const CompactTree& tree, const Arena& arena, std::size_t box_bytes, std::int32_t width_px,
-                   std::int32_t rows, int threads) {
+int threads_within(const CompactTree& tree, const Arena& arena, std::int32_t width_px, std::int32_t rows,
+                   int threads) {
+  const std::size_t box_bytes = wide::VoxelLists::bytes(tree, wide::ListKind::kBoxes);
   const auto fits = [&](std::size_t lists) {
     return wide::workspace_bytes(width_px, rows, threads) + WideRenderer::kWorkspaceAlignment + lists <=
            arena.free_bytes();
@@ -67,7 +67,7 @@ class InArena final : public WideRenderer {
 };
 
 std::unique_ptr<WideRenderer> make_with(const CompactTree& tree, Arena* arena, std::int32_t width_px,
-                                        std::int32_t height_px, int threads, std::size_t box_bytes) {
+                                        std::int32_t height_px, int threads) {
   const auto start = std::chrono::steady_clock::now();
   const std::size_t mark = arena->used_bytes();
   const std::int32_t least_rows = std::min(height_px, WideRenderer::kLeastRows);
@@ -79,7 +79,6 @@ std::unique_ptr<WideRenderer> make_with(const CompactTree& tree, Arena* arena, s
     return nullptr;
   }
   Arena part(arena->rest().subspan(0, arena->free_bytes() - kept));
-  use_large_pages(part.rest().subspan(0, std::min(box_bytes, part.free_bytes())));
   wide::VoxelLists lists;
   if (wide::VoxelLists::make(tree, &part, &lists) != Status::kOk &&
       wide::VoxelLists::make(tree, &part, &lists, wide::ListKind::kBoxes) != Status::kOk) {
@@ -109,14 +108,11 @@ std::size_t WideRenderer::bytes(const CompactTree& tree, std::int32_t width_px, 
 
 std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena* arena, std::int32_t width_px,
                                                  std::int32_t height_px, int threads) {
-  // About as much will be written, whichever lists are made.
-  const std::size_t box_bytes = wide::VoxelLists::bytes(tree, wide::ListKind::kBoxes);
-  const int crew =
-      threads_within(tree, *arena, box_bytes, width_px, std::min(height_px, kLeastRows), threads);
-  auto renderer = make_with(tree, arena, width_px, height_px, crew, box_bytes);
+  const int crew = threads_within(tree, *arena, width_px, std::min(height_px, kLeastRows), threads);
+  auto renderer = make_with(tree, arena, width_px, height_px, crew);
   if (renderer == nullptr && crew > 1) {
     // Lists may take some bytes more, for where they begin.
-    renderer = make_with(tree, arena, width_px, height_px, crew - 1, box_bytes);
+    renderer = make_with(tree, arena, width_px, height_px, crew - 1);
   }
   return renderer;
 }

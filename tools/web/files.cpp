@@ -136,8 +136,6 @@ void each_task(std::size_t tasks, int /*threads*/,
   }
 }
 
-void use_large_pages(Bytes /*bytes*/) {}  // there are none
-
 // What fits a page is few points.
 PointTree build_point_tree(const SceneSource& /*source*/, Bytes /*room*/, int /*threads*/,
                            const Progress& /*progress*/, std::uint64_t /*most_list_bytes*/) {
