@@ -136,11 +136,12 @@ void judge(std::mt19937_64& random, std::uint64_t seed, const WideScene& scene, 
 // Four frames of one world by every engine, in light and by the judge.
 void draw_frames(std::uint64_t seed, const std::vector<Engine>& engines, Tallies* tallies) {
   std::mt19937_64 random(seed);
-  const WorldRow kWorlds[] = {worlds::kAny, worlds::kCabinet, worlds::kDeep, worlds::kSolid, worlds::kSolid};
+  const WorldRow kWorlds[] = {worlds::kAny,   worlds::kCabinet, worlds::kDeep,
+                              worlds::kSolid, worlds::kSolid,   worlds::kStars};
   std::vector<Subject>& real = real_worlds();
   std::optional<Subject> own;
   if (pick(random, 0, 3) != 0) {
-    own.emplace(kWorlds[pick(random, 0, 4)].make(random));
+    own.emplace(kWorlds[pick(random, 0, 5)].make(random));
   }
   Subject& subject =
       own ? *own
@@ -148,8 +149,13 @@ void draw_frames(std::uint64_t seed, const std::vector<Engine>& engines, Tallies
   for (int view = 0; view < 4; ++view) {
     // Most of a deep world is empty: a camera that finds what is solid.
     const bool is_deep = subject.map().level() > kMaxBrickMapLevel && view % 2 == 1;
+    const bool is_large = subject.tree().level() > wide::kCubeLevel && view % 2 == 1;
     FrameCase frame;
-    if (!make_frame(random, subject.scene(), is_deep ? cameras::kDeep : cameras::kHard, &frame)) {
+    if (!make_frame(random, subject.scene(),
+                    is_large  ? cameras::kFine
+                    : is_deep ? cameras::kDeep
+                              : cameras::kHard,
+                    &frame)) {
       continue;
     }
     (void)draw_by_all(engines, subject, frame, random, seed, tallies);

@@ -124,6 +124,28 @@ WideScene make_strewn(Random& random) {
       },
       std::size_t{24} << 20);
 }
+// A dense cloud in a large world, whose list has short entries; often where cubes of entries meet.
+WideScene make_stars(Random& random) {
+  const int level = pick_int(random, 11, 12);
+  const std::int32_t side = std::int32_t{1} << level;
+  const std::int32_t cloud = pick_int(random, 48, 128);
+  Vec3i corner;
+  for (int axis = 0; axis < 3; ++axis) {
+    corner[axis] = pick_int(random, 0, 1) == 0 ? 1024 - cloud / 2 : pick_int(random, 0, side - cloud);
+  }
+  const double share = 0.01 * pick_int(random, 1, 6);
+  return make_scene(
+      level,
+      [&](Octree* octree) {
+        for (double n = share * cloud * cloud * cloud; n > 0; --n) {
+          const Vec3i at = random_voxel(random, 0, cloud - 1);
+          if ((at.x & at.y & at.z & 1) == 0) {  // no block
+            REQUIRE(octree->insert({corner.x + at.x, corner.y + at.y, corner.z + at.z}, 1) == Status::kOk);
+          }
+        }
+      },
+      std::size_t{24} << 20);
+}
 WideScene make_chip(Random& random) {
   return scene_of(
       make_chip_scene(random, kChipWorlds[pick_int(random, 0, 5)], pick_int(random, 3, 6)).tree_bytes.view(),
@@ -157,6 +179,46 @@ bool set_large(Random& random, const WideScene& scene, Camera* camera) {
   view.fov_degrees = Q16::saturate(pick_int(random, 20, 110));
   view.width_px = pick_int(random, 33, 400);
   view.height_px = pick_int(random, 20, 260);
+  return camera->set(view, scene.level) == Status::kOk;
+}
+// Voxels of a twentieth of a pixel to two pixels, seen from any side or along an axis.
+bool set_fine(Random& random, const WideScene& scene, Camera* camera) {
+  Vec3Q8 target;
+  Vec3i away;
+  const int along = pick_int(random, 0, 5);
+  for (int axis = 0; axis < 3; ++axis) {
+    target[axis] = Q8::from_raw(
+        pick_int(random, 256 * scene.tree.bounds().low[axis], 256 * scene.tree.bounds().high[axis]));
+    away[axis] = along > 2 || along == axis ? pick_int(random, -100, 100) : 0;
+  }
+  const double length = std::sqrt(double{1} * away.x * away.x + away.y * away.y + away.z * away.z);
+  const double voxel_px = 0.05 * std::pow(40.0, 0.001 * pick_int(random, 0, 1000));
+  const auto eye_at = [&](double distance) {
+    Vec3Q8 eye;
+    for (int axis = 0; axis < 3; ++axis) {
+      eye[axis] =
+          Q8::from_raw(target[axis].raw + static_cast<std::int32_t>(256 * distance * away[axis] / length));
+    }
+    return eye;
+  };
+  if (pick_int(random, 0, 1) == 0) {
+    OrthographicView view;
+    view.eye = eye_at(300);
+    view.forward = look_at(view.eye, target);
+    view.up = random_up(random);
+    view.width_px = pick_int(random, 20, 120);
+    view.height_px = pick_int(random, 20, 90);
+    view.span = Q14::from_raw(static_cast<std::int32_t>(view.width_px / voxel_px * Q14::kOne));
+    return camera->set(view, scene.level) == Status::kOk;
+  }
+  PerspectiveView view;
+  const int degrees = pick_int(random, 5, 90);
+  view.width_px = pick_int(random, 20, 120);
+  view.height_px = pick_int(random, 20, 90);
+  view.eye = eye_at(view.height_px / 2 / std::tan(degrees * 3.14159 / 360) / voxel_px);
+  view.forward = look_at(view.eye, target);
+  view.up = random_up(random);
+  view.fov_degrees = Q16::saturate(degrees);
   return camera->set(view, scene.level) == Status::kOk;
 }
 // Few pixels of wide pictures, along axes and diagonals.
@@ -262,6 +324,7 @@ const WorldRow kSolid{"solid", [](std::mt19937_64& random) {
                         return solid_scene(random, pick_int(random, 2, pick_int(random, 0, 2) == 0 ? 12 : 8));
                       }};
 const WorldRow kStrewn{"strewn", make_strewn};
+const WorldRow kStars{"stars", make_stars};
 const WorldRow kChip{"chip", make_chip};
 const WorldRow kDeep{"deep", make_deep};
 }  // namespace worlds
@@ -271,6 +334,7 @@ const CameraRow kChip{"chip", set_chip};
 const CameraRow kDeep{"deep", set_deep};
 const CameraRow kLarge{"large", set_large};
 const CameraRow kDiagonal{"diagonal", set_diagonal};
+const CameraRow kFine{"fine", set_fine};
 }  // namespace cameras
 
 void Tallies::add(const std::string& name, std::uint64_t pixels, bool is_right, std::uint64_t seed) {

@@ -69,11 +69,11 @@ struct CameraRow {
 
 namespace worlds {
 inline constexpr WorldRow kAny{"any", random_scene};
-extern const WorldRow kCabinet, kSolid, kStrewn, kChip, kDeep;
+extern const WorldRow kCabinet, kSolid, kStrewn, kStars, kChip, kDeep;
 }  // namespace worlds
 namespace cameras {
 inline constexpr CameraRow kAny{"any", nullptr};
-extern const CameraRow kHard, kChip, kDeep, kLarge, kDiagonal;
+extern const CameraRow kHard, kChip, kDeep, kLarge, kDiagonal, kFine;
 }  // namespace cameras
 
 /// What an engine drew so far, and how much of it was not the core's.

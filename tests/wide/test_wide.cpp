@@ -28,4 +28,9 @@ TEST_CASE(
                 3});
 }
 
+TEST_CASE("wide: clouds in large worlds, whose lists have short entries -> every pixel is the core's") {
+  check_frames(
+      {wide_engines(), {worlds::kStars}, {cameras::kFine, cameras::kHard}, 5000, 2'000'000, 150'000, 3});
+}
+
 }  // namespace thimble::tests

@@ -20,8 +20,8 @@ TEST_CASE("wide surface: bytes go by the surface; what does not fit takes nothin
     const std::size_t side = std::size_t{1} << level;
     REQUIRE(scene.lists().is_surface());
     REQUIRE(scene.lists().has_boxes_beside());
-    CHECK(scene.lists().boxes_beside().entries().size == 1);
-    CHECK(scene.lists().entries().size == 6 * side * side - 12 * side + 8);
+    CHECK(scene.lists().boxes_beside().size() == 1);
+    CHECK(scene.lists().size() == 6 * side * side - 12 * side + 8);
     const std::size_t bytes = wide::VoxelLists::bytes(scene.tree);
     CHECK(bytes < 4400 + (before == 0 ? bytes : 45 * before / 10));
     before = bytes;
@@ -44,7 +44,7 @@ TEST_CASE("wide surface: bytes go by the surface; what does not fit takes nothin
     }
   });
   CHECK_FALSE(dust.lists().is_surface());
-  CHECK(dust.lists().entries().size == dust.tree.voxel_count());
+  CHECK(dust.lists().size() == dust.tree.voxel_count());
 }
 
 }  // namespace thimble::tests

@@ -326,7 +326,7 @@ class Haze {
 }  // namespace
 
 CostEstimate estimate_cost(const VoxelLists& lists, const WideFrame& frame, bool by_rows) {
-  return lists.entries().size > kFewBoxes ? Haze(lists, frame, by_rows).cost() : CostEstimate{};
+  return lists.size() > kFewBoxes ? Haze(lists, frame, by_rows).cost() : CostEstimate{};
 }
 
 bool boxes_pay(const CostEstimate& boxes, const CostEstimate& surface, bool perspective) {

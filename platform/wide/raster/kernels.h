@@ -110,6 +110,27 @@ struct Picked {
 };
 inline constexpr int kPlaceBits = 14;
 
+/// The map of a block of short entries to the picture, in fixed point modulo 2^16: a voxel's first pixel is at
+///
+///     a + a b 2^-16 + base,   a = x step[0] + y step[1] + z step[2] + last,   b = x bend[0] + ... + bend_last
+///
+/// with x, y and z the entry's own; a is the distance from the block's middle in parts of a pixel, and there is b only in
+/// perspective, while `base` is part of `last` otherwise.
+struct ShortMap {
+  struct Axis {
+    int16_t step[3];
+    int16_t last;
+    int16_t base;
+    int16_t least;  ///< a voxel covers its first pixel where the place's fraction is greater
+    float middle;   ///< the block's, by the steps
+    double below;   ///< how far a voxel reaches below the place of its middle, in pixels
+  };
+  Axis x, y;
+  int16_t bend[3];
+  int16_t bend_last;
+  uint32_t kind = 0;  ///< the kind of blocks that the map is for: their side and place in the cube; 0: none
+};
+
 /// What one thread is working on, kept also from run to run. Less than 32 KiB.
 struct Batch {
   Picked picked;  ///< not yet paired with their pixels; empty when `boxes` is not
@@ -130,6 +151,7 @@ struct Batch {
   /// looked at.
   const uint32_t* ahead = nullptr;
   const uint32_t* ahead_end = nullptr;
+  ShortMap short_map;
   Counts counts;
   /// Whether all of the picture lies in front of `boxes`, as their runs said (Run::behind).
   bool all_behind = true;
@@ -165,6 +187,13 @@ static_assert(sizeof(Block) == 48);
 /// Entries and numbers are read by whole vectors, so up to so many behind the last may be read.
 inline constexpr uint32_t kReadAhead = 64;
 
+/// Short entries (voxel_lists.h) of a block of at most 32 voxels a side are drawn at once, or widened to entries.
+inline constexpr uint32_t kMostShortEntries = 4096;
+struct ShortEntries {
+  const uint16_t* entries;  ///< kReadAhead more can be read
+  uint32_t cube;            ///< the lowest corner of their cube of 32 a side, packed as an entry
+};
+
 /// A run of entries (voxel_lists.h) of the cube whose lowest corner is `corner` (in voxels).
 struct Run {
   const uint32_t* entries;  ///< `count`, and kReadAhead more that can be read
@@ -189,6 +218,13 @@ struct Run {
 
 /// Draws the boxes of a run. Some may wait in the batch until `finish`.
 void draw_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch);
+/// Draws a block of short entries, behind all that is in the picture; `run` has all but its entries. Returns false, with
+/// nothing done, where voxels are too large on the picture or the block is too near, and where the instruction set has
+/// no loop for it.
+bool draw_short_run(const WideFrame& frame, const Run& run, const ShortEntries& from, const Depths& depths,
+                    Batch* batch);
+/// Writes short entries as entries of their cube of 1024 a side, and up to kReadAhead more.
+void widen(const ShortEntries& from, uint32_t count, uint32_t* entries);
 /// Draws the boxes that wait in the batch.
 void finish(const WideFrame& frame, const Depths& depths, Batch* batch);
 

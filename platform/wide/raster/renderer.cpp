@@ -16,14 +16,14 @@ bool is_sparse(const VoxelLists& lists, const Camera& camera, const Band& band, 
   const size_t words = strips_of(camera.width_px()) * static_cast<size_t>(band.rows);
   // Not with surfaces: the pixels that the core decides (hidden_voxels.h) are written without clearing their pieces.
   return threads == 1 && !by_blocks && !lists.is_surface() && painter.takes_sparse() &&
-         words >= Workspace::kLeastSparseWords && lists.entries().size < words / kPieceWords;
+         words >= Workspace::kLeastSparseWords && lists.size() < words / kPieceWords;
 }
 
 // Whether a pixel has room for the numbers of all entries: where these are told apart (TileDrawer::draw_block), else for
 // those of a cube.
 bool numbers_fit(const VoxelLists& lists) {
   constexpr size_t kMost = size_t{1} << kEntryBits;
-  if (lists.entries().size <= kMost) {
+  if (lists.size() <= kMost) {
     return true;
   }
   if (lists.has_blocks() || !lists.materials().empty()) {
@@ -107,7 +107,7 @@ Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& 
   SolidStarts starts;
   if (lists.is_surface()) {
     frame.hidden_in = &lists.tree();
-    frame.first_hidden = static_cast<uint32_t>(lists.entries().size);
+    frame.first_hidden = static_cast<uint32_t>(lists.size());
     starts = find_solid_starts(lists.tree(), frame);
   }
   const bool by_blocks = plan.order == Order::kBlocks;

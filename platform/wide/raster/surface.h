@@ -24,10 +24,14 @@ inline uint32_t packed(const uint32_t (&corner)[3], int level) {
   const uint32_t more = level < 3 ? 0 : static_cast<uint32_t>(level - 3);
   return x | more | y << 10 | z << 20 | side << 30;
 }
+inline uint16_t packed_short(const uint32_t (&corner)[3]) {
+  return static_cast<uint16_t>((corner[0] & 31U) | (corner[1] & 31U) << 5 | (corner[2] & 31U) << 10);
+}
 
 /// Where a list is written. `materials` and `merged` are null where the tree has none.
 struct ListTo {
   uint32_t* entries;
+  uint16_t* short_entries;  ///< null, or in place of `entries`
   BlockNode* nodes;
   uint8_t* materials;
   uint8_t* merged;

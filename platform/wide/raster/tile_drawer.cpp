@@ -17,6 +17,8 @@ constexpr uint32_t kBlockBoxes = 320;
 // Blocks of at most so many pixels a side are drawn whole: too little of them is hidden for a cut to pay.
 constexpr int32_t kTinyPx = 16;
 constexpr uint32_t kTinyBoxes = 1024;
+// Blocks of short entries are cut into the cubes within which these count, unless they hold no more than this.
+constexpr uint32_t kSparseBoxes = 256;
 // The limits of blocks that are drawn by tables.
 constexpr uint32_t kTableBoxes = 1900;
 constexpr int32_t kTablePx = 56;
@@ -32,6 +34,9 @@ constexpr uint32_t kMostLines = 64;
 // Tiles with fewer rows, or fewer remaining boxes, are not split.
 constexpr int32_t kLeastRows = 2 * kPatchRows;
 constexpr float kLeastWork = 4000;
+
+constexpr uint32_t kCubeSide = uint32_t{1} << kCubeLevel;
+constexpr uint32_t kShortSide = uint32_t{1} << kShortLevel;
 
 int32_t width_of(const Rectangle& where) {
   return std::max(where.x1 - where.x0, where.y1 - where.y0);
@@ -226,6 +231,9 @@ bool TileDrawer::is_leaf(const Block& block, const BlockNode& node, unsigned mas
   if (widest <= kTinyPx) {
     most = std::max(most, kTinyBoxes);
   }
+  if (!lists_.short_entries().empty() && block.level > kShortLevel) {
+    most = kSparseBoxes;
+  }
   return node.entries <= most && block.level <= kCubeLevel;
 }
 
@@ -261,18 +269,30 @@ void TileDrawer::enqueue(const Block& block, const BlockNode& node) {
     fetch(node, 0);
     return;
   }
-  const uint32_t* const first = lists_.entries().data + node.first_entry;
+  const uint32_t* const first = lines_of(node);
   batch_->ahead = first;
-  batch_->ahead_end = first + node.entries;
+  batch_->ahead_end = first + 16 * line_count(node);
   draw_oldest();
   fetch(node, static_cast<uint32_t>(batch_->ahead - first) / 16);
 }
 
+// The entries of a node, as cache lines.
+const uint32_t* TileDrawer::lines_of(const BlockNode& node) const {
+  return lists_.short_entries().empty()
+             ? lists_.entries().data + node.first_entry
+             : reinterpret_cast<const uint32_t*>(lists_.short_entries().data + (node.first_entry & ~1U));
+}
+uint32_t TileDrawer::line_count(const BlockNode& node) const {
+  const uint32_t in_line = lists_.short_entries().empty() ? 16 : 32;
+  return (node.entries + in_line - 1) / in_line;
+}
+
 // Prefetches the boxes of a block, except the first `done` cache lines.
 void TileDrawer::fetch(const BlockNode& node, uint32_t done) const {
-  const uint32_t* entries = lists_.entries().data + node.first_entry;
-  for (uint32_t line = done; 16 * line < node.entries && line < kMostLines; ++line) {
-    __builtin_prefetch(entries + 16 * line);
+  const uint32_t* const lines = lines_of(node);
+  const uint32_t count = std::min(line_count(node), kMostLines);
+  for (uint32_t line = done; line < count; ++line) {
+    __builtin_prefetch(lines + 16 * line);
   }
 }
 
@@ -297,7 +317,7 @@ Run TileDrawer::run_of(const Block& block) const {
   run.behind = by_blocks_;
   run.voxel_px = voxel_px(block);
   run.side = uint32_t{1} << block.level;
-  const uint32_t cube = (uint32_t{1} << kCubeLevel) - 1;
+  const uint32_t cube = kCubeSide - 1;
   for (int axis = 0; axis < 3; ++axis) {
     run.corner[axis] = block.corner[axis] & ~cube;
     run.block[axis] = block.corner[axis] & cube;
@@ -321,8 +341,14 @@ bool TileDrawer::is_worth_sorting(const Block& block, const BlockNode& node) con
 
 void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
   Run run = run_of(block);
-  run.entries = lists_.entries().data + node.first_entry;
   run.count = node.entries;
+  if (lists_.short_entries().empty()) {
+    run.entries = lists_.entries().data + node.first_entry;
+  } else if (draw_short(block, node, run)) {
+    return;
+  } else {
+    run.entries = widened_;
+  }
   // Nothing asks for numbers of voxels of one material. Without them a list may be longer than numbers reach.
   const bool has_numbers = lists_.has_blocks() || !lists_.materials().empty();
   run.first = has_numbers ? node.first_entry : 0;
@@ -335,6 +361,46 @@ void TileDrawer::draw_block(const Block& block, const BlockNode& node) {
     return;
   }
   draw_run(frame_, run, depths_, batch_);
+}
+
+// Draws a block of short entries, or widens them. Returns whether it is drawn.
+bool TileDrawer::draw_short(const Block& block, const BlockNode& node, const Run& run) {
+  const uint32_t corner[3] = {block.corner[0], block.corner[1], block.corner[2]};
+  if (block.level > kShortLevel) {
+    widen_all(corner, block.level, block.node, widened_);
+    return false;
+  }
+  const ShortEntries from = short_entries_of(node, corner);
+  if (by_blocks_ && draw_short_run(frame_, run, from, depths_, batch_)) {
+    return true;
+  }
+  widen(from, run.count, widened_);
+  return false;
+}
+
+ShortEntries TileDrawer::short_entries_of(const BlockNode& node, const uint32_t (&corner)[3]) const {
+  const uint32_t cube = kCubeSide - kShortSide;
+  return {lists_.short_entries().data + node.first_entry,
+          packed({corner[0] & cube, corner[1] & cube, corner[2] & cube}, 0)};
+}
+
+// Widens the entries of a node above kShortLevel. Its entries stand in the order of its children.
+void TileDrawer::widen_all(const uint32_t (&corner)[3], int level, uint32_t number, uint32_t* entries) const {
+  const BlockNode& node = lists_.nodes()[number];
+  if (level == kShortLevel) {
+    widen(short_entries_of(node, corner), node.entries, entries);
+    return;
+  }
+  uint32_t child = node.first_child;
+  for (unsigned left = lists_.children(number); left != 0; left &= left - 1, ++child) {
+    const unsigned octant = static_cast<unsigned>(__builtin_ctz(left));
+    uint32_t at[3];
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      at[axis] = corner[axis] + ((octant >> axis & 1U) << (level - 1));
+    }
+    widen_all(at, level - 1, child, entries);
+    entries += lists_.nodes()[child].entries;
+  }
 }
 
 // Draws a solid block of several cubes, which has an entry for each cube, in Morton order.

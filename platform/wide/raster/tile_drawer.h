@@ -73,11 +73,16 @@ class TileDrawer {
 
   void push_children(const Block& block, const BlockNode& node, unsigned mask);
   void enqueue(const Block& block, const BlockNode& node);
+  const uint32_t* lines_of(const BlockNode& node) const;
+  uint32_t line_count(const BlockNode& node) const;
   void fetch(const BlockNode& node, uint32_t done) const;
   void draw_oldest();
   void draw_starts();
   Run run_of(const Block& block) const;
   void draw_block(const Block& block, const BlockNode& node);
+  ShortEntries short_entries_of(const BlockNode& node, const uint32_t (&corner)[3]) const;
+  bool draw_short(const Block& block, const BlockNode& node, const Run& run);
+  void widen_all(const uint32_t (&corner)[3], int level, uint32_t node, uint32_t* entries) const;
   void draw_cubes(const Block& block, const BlockNode& node, Run* run);
 
   void split();
@@ -99,6 +104,8 @@ class TileDrawer {
   uint32_t ahead_first_ = 0;
   uint32_t ahead_count_ = 0;
   SortedRun sorted_;
+  uint32_t
+      widened_[kMostShortEntries + 2 * kReadAhead];  ///< the entries of a block whose list has short ones
 };
 
 }  // namespace thimble::wide

@@ -25,6 +25,9 @@ constexpr uint64_t kVoxelsPerHidden = 4;
 constexpr uint64_t kFewBoxesBeside = uint64_t{1} << 20;
 constexpr uint64_t kVoxelsPerBoxBeside = 4;
 
+// Entries are short where there are at least so many in a cube of theirs.
+constexpr uint64_t kVoxelsPerShortCube = 64;
+
 // Solid blocks larger than a cube of entries are listed as such cubes.
 uint32_t pieces_of(int level) {
   return level > kCubeLevel ? uint32_t{1} << (3 * (level - kCubeLevel)) : 1;
@@ -165,7 +168,11 @@ class ListWriter {
       to_.merged[written_] = tree_.is_merged(node) ? 1 : 0;
     }
     face_area_ += uint64_t{1} << (2 * box_level);
-    to_.entries[written_++] = packed(at, box_level);
+    if (to_.short_entries != nullptr) {
+      to_.short_entries[written_++] = packed_short(at);
+    } else {
+      to_.entries[written_++] = packed(at, box_level);
+    }
   }
 
   const CompactTree& tree_;
@@ -184,6 +191,7 @@ struct Plan {
   SurfaceCount surface;
   bool has_surface = false;
   bool has_boxes = true;
+  bool is_short = false;  // whether the entries of the boxes are short
   int box_level = 0;      // the block level of either list
   int surface_level = 0;  // the same
 
@@ -213,30 +221,39 @@ bool make_plan(const CompactTree& tree, ListKind kind, Plan* plan) {
     split_blocks(tree, may_be_surface && !is_solid, &census);
   }
   plan->box_level = choose_block_level(tree.level(), census.level_begin, census.boxes, 1);
+  plan->is_short = tree.level() > kCubeLevel && !plan->has_surface && !census.has_blocks &&
+                   !tree.many_materials() && plan->box_level < kShortLevel &&
+                   census.boxes / kVoxelsPerShortCube >=
+                       census.level_begin[kShortLevel - 1] - census.level_begin[kShortLevel];
   return true;
 }
 
-size_t bytes_of(uint64_t entries, uint64_t nodes, bool has_materials, bool has_merged) {
-  return static_cast<size_t>(entries * (sizeof(uint32_t) + (has_materials ? 1 : 0) + (has_merged ? 1 : 0)) +
+size_t bytes_of(uint64_t entries, size_t entry_bytes, uint64_t nodes, bool has_materials, bool has_merged) {
+  return static_cast<size_t>(entries * (entry_bytes + (has_materials ? 1 : 0) + (has_merged ? 1 : 0)) +
                              kEntriesAhead * sizeof(uint32_t) + nodes * sizeof(BlockNode) + 4 * 64);
 }
 
+// Takes room for the entries, with zeros behind them.
+template <class T>
+T* take_entries(uint64_t entries, Arena* arena) {
+  T* const to = array<T>(arena, entries + kEntriesAhead);
+  for (uint32_t i = 0; to != nullptr && i < kEntriesAhead; ++i) {
+    to[entries + i] = 0;
+  }
+  return to;
+}
+
 // Takes room for a list. Returns whether there was enough.
-bool take_list(uint64_t entries, uint64_t nodes, bool has_materials, uint64_t materials_behind,
+bool take_list(uint64_t entries, bool is_short, uint64_t nodes, bool has_materials, uint64_t materials_behind,
                bool has_merged, Arena* arena, ListTo* to) {
-  to->entries = array<uint32_t>(arena, entries + kEntriesAhead);
+  to->entries = is_short ? nullptr : take_entries<uint32_t>(entries, arena);
+  to->short_entries = is_short ? take_entries<uint16_t>(entries, arena) : nullptr;
   to->nodes = array<BlockNode>(arena, nodes);
   to->materials = has_materials ? array<uint8_t>(arena, entries + materials_behind) : nullptr;
   to->merged = has_merged ? array<uint8_t>(arena, entries) : nullptr;
-  if (to->entries == nullptr || (to->nodes == nullptr && nodes != 0) ||
-      (to->materials == nullptr && has_materials && entries != 0) ||
-      (to->merged == nullptr && has_merged && entries != 0)) {
-    return false;
-  }
-  for (uint32_t i = 0; i < kEntriesAhead; ++i) {
-    to->entries[entries + i] = 0;
-  }
-  return true;
+  return (to->entries != nullptr || to->short_entries != nullptr) && (to->nodes != nullptr || nodes == 0) &&
+         (to->materials != nullptr || !has_materials || entries == 0) &&
+         (to->merged != nullptr || !has_merged || entries == 0);
 }
 
 }  // namespace
@@ -248,7 +265,8 @@ class ListMaker {
   bool make_boxes(Arena* arena, VoxelLists::List* list) const {
     const Census& census = plan_.census;
     ListTo to{};
-    if (!take_list(census.boxes, plan_.box_nodes(), tree_.many_materials(), 0, tree_.merged(), arena, &to)) {
+    if (!take_list(census.boxes, plan_.is_short, plan_.box_nodes(), tree_.many_materials(), 0, tree_.merged(),
+                   arena, &to)) {
       return false;
     }
     ListWriter writer(tree_, census, plan_.box_level, to);
@@ -265,7 +283,8 @@ class ListMaker {
   bool make_surface(Arena* arena, VoxelLists::List* list) const {
     const uint64_t entries = plan_.surface.entries;
     ListTo to{};
-    if (!take_list(entries, plan_.surface_nodes(), tree_.many_materials(), kMaterials, false, arena, &to)) {
+    if (!take_list(entries, false, plan_.surface_nodes(), tree_.many_materials(), kMaterials, false, arena,
+                   &to)) {
       return false;
     }
     write_surface(tree_, plan_.census.level_begin, plan_.surface, plan_.surface_level, to);
@@ -285,7 +304,8 @@ class ListMaker {
   static void fill(const ListTo& to, uint64_t entries, uint64_t nodes, uint64_t materials_behind,
                    VoxelLists::List* list) {
     const size_t size = static_cast<size_t>(entries);
-    list->entries = Span<const uint32_t>(to.entries, size);
+    list->entries = Span<const uint32_t>(to.entries, to.entries == nullptr ? 0 : size);
+    list->short_entries = Span<const uint16_t>(to.short_entries, to.short_entries == nullptr ? 0 : size);
     list->nodes = Span<const BlockNode>(to.nodes, static_cast<size_t>(nodes));
     list->merged = Span<const uint8_t>(to.merged, to.merged == nullptr ? 0 : size);
     list->materials = Span<const uint8_t>(
@@ -309,8 +329,12 @@ size_t VoxelLists::bytes(const CompactTree& tree, ListKind kind) {
     return 0;
   }
   const bool many = tree.many_materials();
-  return (plan.has_surface ? bytes_of(plan.surface.entries, plan.surface_nodes(), many, false) + 256 : 0) +
-         (plan.has_boxes ? bytes_of(plan.census.boxes, plan.box_nodes(), many, tree.merged()) : 0);
+  const size_t entry_bytes = plan.is_short ? sizeof(uint16_t) : sizeof(uint32_t);
+  return (plan.has_surface
+              ? bytes_of(plan.surface.entries, sizeof(uint32_t), plan.surface_nodes(), many, false) + 256
+              : 0) +
+         (plan.has_boxes ? bytes_of(plan.census.boxes, entry_bytes, plan.box_nodes(), many, tree.merged())
+                         : 0);
 }
 
 Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists, ListKind kind) {

@@ -15,6 +15,13 @@
 /// boxes stands beside that of the surface, for views in which voxels look large. Trees that were coarsened are listed
 /// as their boxes: a merged block stays one.
 ///
+/// Lists of single voxels of one material, in worlds of several cubes where voxels are dense, hold short entries of 16
+/// bits, which take half the memory and are looked at twice as many at a time:
+///
+///     bits  0..4    x     within the aligned cube of 32 a side
+///     bits  5..9    y
+///     bits 10..14   z
+///
 /// A node covers a run of entries. The lists keep the nodes of `block_level` and above with their runs, so that whole
 /// blocks can be skipped, or drawn front to back. A list of boxes has the tree's nodes; a list of a surface has nodes
 /// of its own, also within solid blocks, and only such as have entries.
@@ -31,6 +38,8 @@ namespace thimble::wide {
 
 /// Worlds above this level are several cubes of entries.
 inline constexpr int kCubeLevel = 10;
+/// The side of the cube within which short entries count.
+inline constexpr int kShortLevel = 5;
 
 /// So many zeros follow the entries, so that whole vectors can be read up to the end.
 inline constexpr uint32_t kEntriesAhead = 64;
@@ -56,7 +65,7 @@ enum class ListKind : uint8_t {
   kBoxes,    ///< only the tree's boxes, cut into voxels where that adds at most an eighth
 };
 
-/// The lists of one tree, in bytes that the caller gave: 4 bytes a box, 1 more with several materials, 1 more with
+/// The lists of one tree, in bytes that the caller gave: 4 bytes a box (2 where entries are short), 1 more with several materials, 1 more with
 /// merged blocks, and 16 bytes a node of block_level and above. Of these nodes there is at most one for 16 boxes, or
 /// 4096, or one for 4 boxes up to 65536.
 class VoxelLists {
@@ -70,7 +79,11 @@ class VoxelLists {
   static size_t bytes(const CompactTree& tree, ListKind kind = ListKind::kFastest);
 
   const CompactTree& tree() const { return tree_; }
+  /// How many boxes there are.
+  size_t size() const { return list_.entries.size + list_.short_entries.size; }
+  /// One of these is empty.
   Span<const uint32_t> entries() const { return list_.entries; }
+  Span<const uint16_t> short_entries() const { return list_.short_entries; }
   /// Materials of the entries; empty where the tree has one material. In a list of a surface all 256 materials follow,
   /// in order.
   Span<const uint8_t> materials() const { return list_.materials; }
@@ -84,7 +97,7 @@ class VoxelLists {
   /// Whether any entry is larger than one voxel.
   bool has_blocks() const { return list_.has_blocks; }
   /// Whether voxels with six solid neighbours are left out. A hidden voxel that a ray hits all the same is numbered
-  /// entries().size + its material.
+  /// size() + its material.
   bool is_surface() const { return list_.is_surface; }
   /// Whether a list of boxes stands beside that of the surface; and that list.
   bool has_boxes_beside() const { return beside_.entries.size != 0; }
@@ -107,6 +120,7 @@ class VoxelLists {
   friend class ListMaker;
   struct List {
     Span<const uint32_t> entries;
+    Span<const uint16_t> short_entries;
     Span<const uint8_t> materials;
     Span<const uint8_t> merged;
     Span<const BlockNode> nodes;

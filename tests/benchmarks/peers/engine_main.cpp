@@ -66,7 +66,7 @@ class Table {
     row.world = world.name();
     row.camera = view.name;
     row.voxels = world.tree().voxel_count();
-    row.boxes = world.lists().entries().size;
+    row.boxes = world.lists().size();
     row.list_bytes = world.list_bytes();
     row.box_list_bytes = world.box_list_bytes();
     shading_ = tools::timed_shading(view.camera, world.tree().bounds());
@@ -339,12 +339,11 @@ int run(int count, char** words) {
       return 0;
     }
     std::printf("%s: %zu entries%s%s, %.1f MB and %.3f s; boxes alone %zu, %.1f MB and %.3f s\n",
-                short_name(name).c_str(), world.lists().entries().size,
+                short_name(name).c_str(), world.lists().size(),
                 world.lists().is_surface() ? " of the surface" : "",
                 world.lists().has_boxes_beside() ? " and boxes beside" : "",
-                static_cast<double>(world.list_bytes()) / 1e6, world.list_seconds(),
-                world.box_lists().entries().size, static_cast<double>(world.box_list_bytes()) / 1e6,
-                world.box_list_seconds());
+                static_cast<double>(world.list_bytes()) / 1e6, world.list_seconds(), world.box_lists().size(),
+                static_cast<double>(world.box_list_bytes()) / 1e6, world.box_list_seconds());
     for (const tests::TrialView& view : tests::trial_views(world.tree(), kWidthPx, kHeightPx)) {
       if (!is_large || is_one_of_six(view.name)) {
         rows.push_back(table.draw(world, view, frames));

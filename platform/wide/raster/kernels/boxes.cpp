@@ -9,6 +9,7 @@
 #include "wide/raster/kernels/large-inl.h"
 #include "wide/raster/kernels/pick-inl.h"
 #include "wide/raster/kernels/scatter-inl.h"
+#include "wide/raster/kernels/short-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
@@ -231,11 +232,20 @@ HWY_AFTER_NAMESPACE();
 namespace thimble::wide {
 
 HWY_EXPORT(draw_run);
+HWY_EXPORT(draw_short_run);
+HWY_EXPORT(widen);
 HWY_EXPORT(finish);
 HWY_EXPORT(cull_run);
 
 void draw_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
   HWY_DYNAMIC_DISPATCH(draw_run)(frame, run, depths, batch);
+}
+bool draw_short_run(const WideFrame& frame, const Run& run, const ShortEntries& from, const Depths& depths,
+                    Batch* batch) {
+  return HWY_DYNAMIC_DISPATCH(draw_short_run)(frame, run, from, depths, batch);
+}
+void widen(const ShortEntries& from, uint32_t count, uint32_t* entries) {
+  HWY_DYNAMIC_DISPATCH(widen)(from, count, entries);
 }
 void finish(const WideFrame& frame, const Depths& depths, Batch* batch) {
   HWY_DYNAMIC_DISPATCH(finish)(frame, depths, batch);

@@ -142,10 +142,11 @@ class OpenTable {
   static constexpr int32_t kMostPx = 60 - kMargin - 1;
   static constexpr int32_t kNarrowPx = 32 - kMargin - 1;
 
-  OpenTable(const Depths& depths, const Rectangle& where) : depths_(depths), where_(where) {
+  OpenTable(const Depths& depths, const Rectangle& where, int32_t least_rows = 16)
+      : depths_(depths), where_(where) {
     const int32_t columns = where.x1 - where.x0;
     const int32_t rows = where.y1 - where.y0;
-    rows_ = columns > kNarrowPx || rows > kNarrowPx ? 64 : rows + kMargin + 1 > 16 ? 32 : 16;
+    rows_ = columns > kNarrowPx || rows > kNarrowPx ? 64 : rows + kMargin + 1 > 16 ? 32 : least_rows;
     none_ = fill(0, words_, kMargin);
     if (rows_ == 64) {
       none_ = fill(kRightColumn - kMargin, words_ + kRight, 0) && none_;
@@ -153,6 +154,8 @@ class OpenTable {
   }
 
   bool none() const { return none_; }
+  // A word for each of rows() rows, where these are at most 32.
+  const uint32_t* words() const { return words_; }
   // The number of rows: 16, 32 or 64. There are 32 columns or, with 64 rows, 64.
   int rows() const { return rows_; }
   // Says in the lowest bit whether column `x` of row `y` modulo kRows is open, and in the next bit whether column x + 1
