@@ -265,7 +265,7 @@ void Renderer::State::start(std::size_t number, const Parameters& told, bool pai
                             std::size_t out_bytes) {
   Slot& slot = slots[number];
   VkPipeline kernel = pipeline(told[kernel::kMode] == kernel::kModeLit, pairs);
-  std::memcpy(slot.parameters.words(), told.data(), sizeof told);
+  std::memcpy(slot.parameters.words(), told.words, sizeof told);
   slot.reads_back = out_bytes != 0;
   const auto query = static_cast<std::uint32_t>(2 * number);
   begin_once(slot.commands);

@@ -66,7 +66,7 @@ KernelRun run_kernel(const gpu::SceneWords& scene, const gpu::Parameters& parame
                      std::vector<std::uint32_t> output) {
   KernelRun run;
   run.output = std::move(output);
-  const Buffers buffers{parameters, scene.words, run.output};
+  const Buffers buffers{parameters.words, scene.words, run.output};
   pairs ? run_all<OctreePairsKernel>(buffers) : run_all<OctreeKernel>(buffers);
   run.outside = buffers.outside;
   return run;

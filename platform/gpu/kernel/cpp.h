@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <span>
 
-namespace thimble::gpu::kernel {
+#include "gpu/kernel/parameters.h"
 
-using uint = std::uint32_t;
+namespace thimble::gpu::kernel {
 
 struct ivec3 {
   int x = 0;
@@ -40,8 +40,6 @@ inline int bitCount(uint v) {
 using std::abs;
 using std::max;
 using std::min;
-
-#include "parameters.inc"
 
 /// What a kernel reads and writes.
 struct Buffers {
