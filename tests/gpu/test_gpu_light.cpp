@@ -1,6 +1,7 @@
 // Lit pictures by the GPU's kernels, as C++ and on whatever device there is: every byte is the core's.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <random>
@@ -8,6 +9,7 @@
 #include "gpu/kernel/cpp.h"
 #include "gpu/renderer.h"
 #include "scene/backdrop.h"
+#include "scene/tone_table.h"
 #include "support/gpu_kernels.h"
 #include "support/hard_frames.h"
 #include "support/lit_cases.h"
@@ -112,6 +114,62 @@ TEST_CASE("gpu light: any scene, camera and light, as C++ -> every byte and coun
                      });
   }
   CHECK(outside == 0);
+}
+
+TEST_CASE(
+    "gpu light: samples in their tone, before what is behind them -> the mean, as the command shows it") {
+  std::mt19937_64 random(39300);
+  for (int trial = 0; trial < 200; ++trial) {
+    CAPTURE(trial);
+    const std::int32_t across = pick_int(random, 1, 2);
+    const std::int32_t step = across == 1 ? pick_int(random, 1, 5) : 1;
+    const std::int32_t width = pick_int(random, 1, 40);
+    const std::int32_t height = pick_int(random, 1, 30);
+    const std::int32_t columns = (width + step - 1) / step * across;
+    const std::int32_t rows = (height + step - 1) / step;
+    const tools::ToneTable tone = tools::tone_table(static_cast<std::uint32_t>(pick(random, 208, 416)));
+    const tools::Background background{static_cast<tools::BackgroundKind>(pick(random, 1, 3)), {9, 200, 77}};
+    const auto word = [](Rgb8 color) {
+      return color.r | std::uint32_t{color.g} << 8 | std::uint32_t{color.b} << 16;
+    };
+    std::vector<std::uint32_t> parameters;
+    for (const std::int32_t value : {width, height, across, step, columns, std::max(rows - 1, 1)}) {
+      parameters.push_back(static_cast<std::uint32_t>(value));
+    }
+    parameters.push_back(word(tools::backdrop_color(background, 0, 2)));
+    parameters.push_back(word(tools::backdrop_color(background, 1, 2)));
+    for (std::size_t i = 0; i < 256; i += 4) {
+      parameters.push_back(word({tone[i], tone[i + 1], tone[i + 2]}) | std::uint32_t{tone[i + 3]} << 24);
+    }
+    std::vector<std::uint32_t> samples(static_cast<std::size_t>(columns * rows * across));
+    for (std::uint32_t& sample : samples) {
+      const auto share = static_cast<std::uint32_t>(pick(random, 0, 1) == 0 ? 255 : pick(random, 0, 254));
+      sample = static_cast<std::uint32_t>(pick(random, 0, 0xFFFFFF)) | share << 24;
+    }
+    const KernelRun run = finish_by_kernel(parameters, samples);
+    CHECK(run.outside == 0);
+    for (std::int32_t i = 0; i < width * height; ++i) {
+      const std::int32_t x = i % width / step;
+      const std::int32_t y = i / width / step;
+      std::uint32_t sums[3] = {};
+      for (std::int32_t j = 0; j < across * across; ++j) {
+        const std::uint32_t sample =
+            samples[static_cast<std::size_t>((y * across + j / across) * columns + x * across + j % across)];
+        const Rgb8 color = {static_cast<std::uint8_t>(sample), static_cast<std::uint8_t>(sample >> 8),
+                            static_cast<std::uint8_t>(sample >> 16)};
+        const auto share = static_cast<std::uint8_t>(sample >> 24);
+        const Rgb8 shown = share == tools::kNothingBehind
+                               ? tone(color)
+                               : tools::shaded(tools::backdrop_color(background, y, rows), share);
+        sums[0] += shown.r;
+        sums[1] += shown.g;
+        sums[2] += shown.b;
+      }
+      const auto count = static_cast<std::uint32_t>(across * across);
+      const auto mean = [&](int c) { return static_cast<std::uint8_t>((sums[c] + count / 2) / count); };
+      REQUIRE(run.output[static_cast<std::size_t>(i)] == word({mean(0), mean(1), mean(2)}));
+    }
+  }
 }
 
 TEST_CASE("gpu light: damaged trees, as C++ -> every read stays inside, and every pixel ends") {

@@ -44,6 +44,11 @@ struct OctreePairsKernel {
 #include "gpu/kernel/slope.inc"
 #include "gpu/kernel/light.inc"
 };
+struct FinishKernel {
+  explicit FinishKernel(const Buffers& to) : buffers(to) {}
+  const Buffers& buffers;
+#include "gpu/kernel/finish.inc"
+};
 // clang-format on
 
 template <class Kernel>
@@ -68,6 +73,21 @@ KernelRun run_kernel(const gpu::SceneWords& scene, const gpu::Parameters& parame
   run.output = std::move(output);
   const Buffers buffers{parameters.words, scene.words, run.output};
   pairs ? run_all<OctreePairsKernel>(buffers) : run_all<OctreeKernel>(buffers);
+  run.outside = buffers.outside;
+  return run;
+}
+
+KernelRun finish_by_kernel(const std::vector<std::uint32_t>& parameters,
+                           const std::vector<std::uint32_t>& samples) {
+  KernelRun run;
+  run.output.resize(std::size_t{parameters[0]} * parameters[1]);
+  const Buffers buffers{parameters, samples, run.output};
+  FinishKernel kernel(buffers);
+  for (uint y = 0; y < parameters[1]; ++y) {
+    for (uint x = 0; x < parameters[0]; ++x) {
+      kernel.finish_invocation(x, y);
+    }
+  }
   run.outside = buffers.outside;
   return run;
 }

@@ -24,6 +24,10 @@ struct KernelRun {
 KernelRun run_kernel(const gpu::SceneWords& scene, const gpu::Parameters& parameters, bool pairs,
                      std::vector<std::uint32_t> output);
 
+/// A page's picture, of the width and height that are the first parameters of finish.inc, from samples.
+KernelRun finish_by_kernel(const std::vector<std::uint32_t>& parameters,
+                           const std::vector<std::uint32_t>& samples);
+
 /// `band` as `render_band` draws it; rows may share bytes in no format. `outside` (may be null) is added to.
 std::vector<std::uint8_t> draw_by_kernel(const gpu::SceneWords& scene, const Camera& camera,
                                          const Shading& shading, const Band& band, Pairs pairs,
