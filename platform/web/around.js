@@ -18,9 +18,10 @@ async function openViewer(own, made, board) {
   if (own !== generation) return;
   if (seen === null) throw new Error('there is no such view of it');
   look.take(seen.block);
-  viewer = {look, board, picture, baker: made.baker, step: look.x.has_map() && board.width * board.height <= 2 ** 20 ? 1 : 4, phase: 'moved', row: 0, crew: null,
+  viewer = {look, board, picture, baker: made.baker, step: look.x.has_map() && board.width * board.height <= 2 ** 20 ? 1 : 4, phase: 'moved', row: 0, crew: null, gpu: null,
     flown: 0, camera, view: {camera, ...seen}, exposure: FIRST_EXPOSURE, asks: false, saves: false,
     frames: made.frames, next: null, nextAt: 0, plays: made.frames > 1 && state.frame === null && !calm};
+  hireGpu(viewer);
   hireCrew(viewer, {module: code, scene: made.baked, width: board.width, height: board.height});
   pointed = null;
   prepareCanvas(board);
@@ -93,7 +94,8 @@ function lookOn(now) {
     if (!look.see(camera)) return;
     viewer.camera = camera;
     if (asks) askLook(viewer);
-    drawFast(now);
+    if (viewer.gpu === null) drawFast(now);
+    else drawMoving(viewer, now);
   } else if (hasPlayed) {
     drawFast(now);
   } else if (viewer.phase === 'waits' && viewer.view.camera !== viewer.camera) {
@@ -195,9 +197,10 @@ function stopFilm(error) {
 // What is said while that is drawn.
 const PHASES = {expose: 'measures its light', coarse: 'coarse', lit: 'lit', fine: 'all samples'};
 function nextPicture(own) {
-  own.phase = phaseAfter(own.phase, own.view.isStars);
+  own.phase = phaseAfter(own.phase, own.view.isStars, own.gpu !== null);
   own.row = 0;
   if (own.phase === 'stars') askStars(own);
+  else if (own.phase === 'whole') drawWhole(own);
   else if (own.phase in PHASES) own.crew?.draw({...own.view, exposure: own.exposure}, own.phase);
   else if (own.saves) savePicture();
 }

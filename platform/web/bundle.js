@@ -6,6 +6,7 @@ const path = require('path');
 const zlib = require('zlib');
 const {Baker} = require('./baker.js');
 const {Look} = require('./look.js');
+const {KERNELS, wgsl} = require('../gpu/kernel/wgsl.js');
 const {Machine, Table, crc32} = require('./machine.js');
 const {SHELF} = require('./shelf.js');
 
@@ -13,7 +14,7 @@ const [, , modules, root, out] = process.argv;
 const MOST_BYTES = 1200000;
 const own = (name) => fs.readFileSync(path.join(__dirname, name), 'utf8');
 // The page's sources are scripts one after the other; each is a module of its own under Node.
-const script = ['machine.js', 'lzma.js', 'baker.js', 'look.js', 'crew.js', 'orbit.js', 'shelf.js', 'around.js', 'shop.js', 'page.js'].map((name) => own(name)
+const script = ['machine.js', 'lzma.js', 'baker.js', 'look.js', 'crew.js', 'orbit.js', 'shelf.js', 'gpu.js', 'around.js', 'shop.js', 'page.js'].map((name) => own(name)
   .replace(/^'use strict';\n/m, '')
   .replace(/\nif \(typeof module !== 'undefined'\) \{[^]*?\n\}\n/, '\n')
   .replace(/^\s*\/\/.*\n/gm, '')).join('\n');
@@ -37,6 +38,7 @@ function pack(id, files, coding) {
 }
 const load = (name) => [name, fs.readFileSync(path.join(modules, name))];
 const scenes = ['castle.vox', 'room.scene', 'waves.scene'].map((name) => [name, fs.readFileSync(path.join(root, 'tools/gallery/scenes', name))]);
+const kernels = Object.keys(KERNELS).map((name) => [`${name}.wgsl`, Buffer.from(wgsl(name))]);
 const images = path.join(root, 'build/images');
 const programs = (fs.existsSync(images) ? fs.readdirSync(images) : []).filter((name) => Object.entries(SHELF).some(([board, {glass}]) => name.startsWith(`${board}-demo-`) || (glass && name.startsWith(`${board}-water-`))))
   .map((name) => [name.replace('.elf.gz', ''), zlib.gunzipSync(fs.readFileSync(path.join(images, name)))]);
@@ -86,7 +88,7 @@ const strip = Object.entries(pictures).map(([name, scene]) => `${name}: 'data:im
 
 const page = own('page.html')
   .replace('/*STYLE*/', () => own('page.css'))
-  .replace('<!--MODULES-->', () => [pack('modules', [...['bake.wasm', 'plane.wasm', 'scene.wasm'].map(load), ...scenes], 'lc=3,lp=0,pb=0'),
+  .replace('<!--MODULES-->', () => [pack('modules', [...['bake.wasm', 'plane.wasm', 'scene.wasm'].map(load), ...scenes, ...kernels], 'lc=3,lp=0,pb=0'),
     pack('programs', programs, 'lc=2,lp=1,pb=1')].join('\n'))
   .replace('/*SCRIPT*/', () => `'use strict';\nconst PICTURES = {${strip.join()}};\n${script}`);
 fs.writeFileSync(out, page);

@@ -7,8 +7,8 @@ const FRAME_MS = 1000 / 30;
 const FILM_MS = 100;
 const REST_MS = 120;  // without a hand before the picture at rest begins
 // What is drawn at rest, one after the other: coarse to fine.
-const phaseAfter = (phase, isStars) => ({waits: isStars ? 'stars' : 'expose', stars: 'finished', expose: 'coarse', coarse: 'lit',
-  lit: 'fine', fine: 'finished'})[phase];
+const phaseAfter = (phase, isStars, byGpu = false) => ({waits: isStars ? 'stars' : 'expose', stars: 'finished',
+  expose: byGpu ? 'whole' : 'coarse', coarse: 'lit', lit: 'fine', fine: 'finished', whole: 'finished'})[phase];
 // Every which pixel a frame that moves draws, by the time that the last one took.
 const stepAfter = (step, ms) => (ms > 40 ? Math.min(8, step * (ms > 160 ? 4 : 2)) : ms < 10 && step > 1 ? step / 2 : step);
 

@@ -245,6 +245,7 @@ async function openMachine(own, made, board) {
 
 function closeAll() {
   viewer?.crew?.end();
+  viewer?.gpu?.end();
   farBaker?.end();
   flying.clear();
   machine = viewer = farBaker = null;

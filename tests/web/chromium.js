@@ -7,11 +7,14 @@ const path = require('path');
 
 const codeOf = (key) => (key === ' ' ? 'Space' : key.length > 1 ? key : /\d/.test(key) ? `Digit${key}` : `Key${key.toUpperCase()}`);
 
+// Without a GPU, or with WebGPU by a software adapter.
+const GPU_WORDS = [['--disable-gpu'], ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader']];
+
 // The browser, which runs until quit().
 let program = null;
 function start() {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'thimble-web-'));
-  const child = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe',
+  const child = spawn('chromium', ['--headless=new', '--no-sandbox', ...GPU_WORDS[Number(Chromium.hasGpu)], '--remote-debugging-pipe',
     `--user-data-dir=${folder}`, '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
     '--hide-scrollbars', 'about:blank'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
   const own = {folder, process: child, pages: new Map(), waiting: new Map(), next: 0};
@@ -40,7 +43,8 @@ function send(method, params = {}, sessionId = undefined) {
 
 // A page of it, which shares nothing with others, and has the focus as if it were alone.
 class Chromium {
-  static async open(url, {width = 1280, height = 900, mobile = false, media = [], scripts = true} = {}) {
+  static hasGpu = false;
+  static async open(url, {width = 1280, height = 900, mobile = false, media = [], scripts = true, first = ''} = {}) {
     program ??= start();
     const browser = new Chromium();
     browser.events = [];
@@ -55,6 +59,7 @@ class Chromium {
     if (mobile) await browser.send('Emulation.setTouchEmulationEnabled', {enabled: true, maxTouchPoints: 5});
     await browser.send('Emulation.setEmulatedMedia', {features: media});
     if (!scripts) await browser.send('Emulation.setScriptExecutionDisabled', {value: true});
+    await browser.send('Page.addScriptToEvaluateOnNewDocument', {source: first});
     await browser.send('Page.navigate', {url});
     return browser;
   }

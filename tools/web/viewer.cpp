@@ -3,8 +3,10 @@
 //
 // While the camera moves frames are fast: voxels by the brick map, or of every few pixels where there is none. At
 // rest the page asks for rows of the picture that `thimble render` draws of the scene (scene/look_picture.h), with
-// one sample a pixel, then with all. bake.wasm says how the scene looks from a camera (look_block.h).
+// one sample a pixel, then with all. bake.wasm says how the scene looks from a camera (look_block.h). Where the page has
+// a GPU, the GPU draws that picture.
 #include "apps/shown_scene.h"
+#include "gpu/frame_words.h"
 #include "scene/backdrop.h"
 #include "scene/magnify.h"
 #include "scene/moving_pool.h"
@@ -25,6 +27,23 @@ constexpr int32_t kMostAcross = 2;  // samples of a pixel, each way
 constexpr size_t kPixelBytes = 3;
 constexpr Rgb8 kBehind{1, 0, 2};  // no surface's colour but by chance
 
+// What a GPU is to draw, which the page reads: samples, and what makes the picture of them (platform/gpu/kernel/finish.inc).
+struct GpuFrame {
+  gpu::Parameters parameters;
+  struct {
+    int32_t width_px;
+    int32_t height_px;
+    int32_t across;
+    int32_t step;
+    int32_t samples_width;
+    int32_t last_row;
+    uint8_t top[4];
+    uint8_t bottom[4];
+    ToneTable tone;
+  } finish;
+  uint32_t takes_pairs;
+};
+
 struct Viewer {
   apps::ShownScene shown;
   BakedLighting baked;  // of the scene; names what is picked
@@ -35,6 +54,7 @@ struct Viewer {
   Bytes lighting_bytes;
   BakedLighting lighting;  // of the look
   ToneTable tone;
+  bool has_one_sample;  // a pixel at rest, by its exposure
   MovingPool pool;
   Bytes pool_bytes;  // of the pool
   bool rains;
@@ -47,6 +67,7 @@ struct Viewer {
   Bytes small;     // of every few pixels
   Bytes samples;   // of a row of the picture
   Bytes shares;    // of light behind them
+  GpuFrame gpu;
 };
 // Constant: what has a constructor is constructed anew by each call of an export.
 constinit Viewer viewer{};
@@ -156,14 +177,20 @@ bool draw_thin(const Camera& thin, int32_t step) {
   return true;
 }
 
+// At rest.
+Shading rest_shading(const Camera& camera) {
+  Shading shading = shading_of(camera, {viewer.look.palette, viewer.look.colors});
+  for (uint16_t& light : shading.face_light) {
+    light = static_cast<uint16_t>(2U * light / 3);
+  }
+  return shading;
+}
+
 // Light and what is behind it for `rows` rows of a camera's rays, into `samples` and `shares`. `counts` may be null.
 Status trace_samples(const Camera& camera, int32_t first, int32_t rows, LitCounts* counts) {
   const LookBlock& look = viewer.look;
   const CompactTree& tree = viewer.shown.scene.tree();
-  Shading shading = shading_of(camera, {look.palette, look.colors});
-  for (uint16_t& light : shading.face_light) {
-    light = static_cast<uint16_t>(2U * light / 3);
-  }
+  const Shading shading = rest_shading(camera);
   const size_t count = static_cast<size_t>(camera.width_px()) * static_cast<size_t>(rows);
   const Band band{viewer.samples.subspan(0, kPixelBytes * count), PixelFormat::kRgb888, 0, first, rows};
   const Status status =
@@ -200,9 +227,9 @@ Rgb8 finished(const Camera& camera, int32_t x, int32_t across, Rgb8 behind) {
   return {mean(sums[0]), mean(sums[1]), mean(sums[2])};
 }
 
-int32_t samples_across() {
+int32_t samples_across(bool has_one_sample) {
   const bool has_fine = viewer.fine.width_px() == kMostAcross * viewer.width_px;
-  return viewer.look.across == kMostAcross && has_fine ? kMostAcross : 1;
+  return viewer.look.across == kMostAcross && has_fine && !has_one_sample ? kMostAcross : 1;
 }
 
 // Row `y` of the picture that `camera` has, of `across` samples each way, to where it belongs.
@@ -416,7 +443,7 @@ extern "C" {
   using namespace thimble::tools;
   static GrayCounts counts;
   static LitCounts traced;
-  const Camera& all = samples_across() == 1 ? viewer.camera : viewer.fine;
+  const Camera& all = samples_across(false) == 1 ? viewer.camera : viewer.fine;
   const int32_t longest = all.width_px() > all.height_px() ? all.width_px() : all.height_px();
   const Camera coarse = all.thinned((longest + kExposurePx - 1) / kExposurePx);
   if (first == 0) {
@@ -452,7 +479,7 @@ extern "C" {
 [[clang::export_name("set_exposure")]] void thimble_set_exposure(uint32_t exposure_q8) {
   using namespace thimble::tools;
   viewer.tone = tone_table(exposure_q8 & ~kOneSample);
-  viewer.look.across = (exposure_q8 & kOneSample) != 0 ? 1 : viewer.look.across;
+  viewer.has_one_sample = (exposure_q8 & kOneSample) != 0;
 }
 
 // Draws rows of every `step`-th pixel of every `step`-th row, stretched; `first` is a multiple of `step`. `lit`: as
@@ -487,7 +514,53 @@ extern "C" {
 [[clang::export_name("draw_fine")]] bool thimble_draw_fine(int32_t y) {
   using namespace thimble;
   using namespace thimble::tools;
-  const int32_t across = samples_across();
+  const int32_t across = samples_across(viewer.has_one_sample);
   return draw_lit(across == 1 ? viewer.camera : viewer.fine, y, across, row_of_picture(y)) == Status::kOk;
 }
+
+#ifdef THIMBLE_WEB_GPU
+// What a GPU's kernels (platform/gpu) draw: the tree,
+[[clang::export_name("tree")]] const uint8_t* thimble_tree() {
+  return thimble::tools::viewer.shown.scene.tree().bytes();
+}
+[[clang::export_name("tree_bytes")]] size_t thimble_tree_bytes() {
+  return thimble::tools::viewer.shown.scene.tree().size_bytes();
+}
+// and the picture at rest with all samples, or, `step` above 0, of every `step`-th pixel with one, stretched: a GpuFrame.
+// Null where they do not draw it.
+[[clang::export_name("gpu_frame")]] const thimble::tools::GpuFrame* thimble_gpu_frame(int32_t step) {
+  using namespace thimble;
+  using namespace thimble::tools;
+  const LookBlock& look = viewer.look;
+  if (look.is_stars || (look.effects & ~gpu::kEffectsInKernels) != 0) {
+    return nullptr;
+  }
+  GpuFrame& frame = viewer.gpu;
+  const int32_t across = step == 0 ? samples_across(viewer.has_one_sample) : 1;
+  const int32_t pixels = step == 0 ? 1 : step;
+  const Camera camera = across == 1 ? viewer.camera.thinned(pixels) : viewer.fine;
+  const Shading shading = rest_shading(camera);
+  const Ground& ground = look.ground;
+  const gpu::Backdrop behind{ground.is_there, ground.z, ground.reach, ground.toward_sun, kAround};
+  const gpu::LitFrame lit{look.effects, camera, shading, viewer.lighting.scene,
+                          look.has_backdrop ? &behind : nullptr};
+  frame.parameters = {};
+  gpu::set_tree(viewer.shown.scene.tree(), &frame.parameters);
+  gpu::set_frame(camera, shading, &frame.parameters);
+  gpu::set_light(lit, &frame.parameters);
+  frame.takes_pairs = gpu::needs_pairs(camera.level(), gpu::largest_direction(lit)) ? 1 : 0;
+  const int32_t rows = camera.height_px() / across;
+  auto& finish = frame.finish;
+  finish.width_px = viewer.width_px;
+  finish.height_px = viewer.height_px;
+  finish.across = across;
+  finish.step = pixels;
+  finish.samples_width = camera.width_px();
+  finish.last_row = rows > 1 ? rows - 1 : 1;
+  put(backdrop_color(look.background, 0, 2), finish.top);
+  put(backdrop_color(look.background, 1, 2), finish.bottom);
+  finish.tone = viewer.tone;
+  return &frame;
+}
+#endif
 }
