@@ -165,7 +165,7 @@ async function judgeBoards(url, thimble, work) {
       is('the picture', [...shown.values()].join(), [...uart.matchAll(counters)].map(([, , crc]) => crc).join());
     });
     await test('a board whose RAM holds no such water has no file, and says so', async () => {
-      await browser.click('#shelf-microbit');
+      await browser.eval(`restart({board: 'microbit'})`);
       await browser.until(`document.getElementById('said').textContent.startsWith('water: ')`, 30);
       holds('nothing is offered', await browser.eval(`document.getElementById('get').hidden && document.getElementById('none').hidden`));
       is('in words of who buys', /\barena\b/.test(await browser.text('said')), false);
