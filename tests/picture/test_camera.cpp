@@ -10,12 +10,16 @@
 
 #include "../../src/base/wide_arithmetic.h"
 #include "../../src/picture/cotangent.h"
+#include "portable/scene.h"
 #include "support/counts.h"
 #include "thimble/picture/camera.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {
+
+using portable::simple_orthographic;
+using portable::simple_perspective;
 
 using Real = long double;
 using Real3 = std::array<Real, 3>;
@@ -109,26 +113,6 @@ OrthographicView random_orthographic(Random& random, int level) {
   view.width_px = random.log_whole(1, most_px);
   view.height_px = random.log_whole(1, most_px);
   view.span = Q14::from_raw(random.log_whole(1 << 12, (1 << level) * 16384));
-  return view;
-}
-
-OrthographicView simple_orthographic() {
-  OrthographicView view;
-  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
-  view.forward = {1, 0, 0};
-  view.span = Q14::saturate(4);
-  view.width_px = 4;
-  view.height_px = 2;
-  return view;
-}
-
-PerspectiveView simple_perspective() {
-  PerspectiveView view;
-  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
-  view.forward = {1, 0, 0};
-  view.fov_degrees = Q16::saturate(90);
-  view.width_px = 2;
-  view.height_px = 2;
   return view;
 }
 

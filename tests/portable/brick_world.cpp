@@ -5,11 +5,7 @@
 namespace thimble::portable::brick_world {
 namespace {
 
-struct Box {
-  VoxelBox box;
-  uint8_t material;
-};
-constexpr Box kBoxes[] = {
+constexpr SolidBox kBoxes[] = {
     {{{0, 0, 0}, {16, 16, 4}}, 1},  {{{4, 4, 4}, {8, 8, 12}}, 2},   {{{10, 8, 4}, {12, 12, 6}}, 3},
     {{{12, 2, 4}, {13, 3, 11}}, 4}, {{{2, 12, 4}, {4, 14, 16}}, 5},
 };
@@ -36,21 +32,7 @@ static_assert(kLookCount == sizeof kCourses / sizeof kCourses[0]);
 }  // namespace
 
 bool make_world(Check& check, const Site& site) {
-  if (!make_pool(check, kPoolNodes, site.level)) {
-    return false;
-  }
-  for (const Box& one : kBoxes) {
-    VoxelBox box = one.box;
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] += site.corner[axis];
-      box.high[axis] += site.corner[axis];
-    }
-    if (!check.equal(check.world.pool.insert_box(box, one.material), Status::kOk,
-                     THIMBLE_WHAT("insert_box"))) {
-      return false;
-    }
-  }
-  return make_compact(check);
+  return make_pool(check, kPoolNodes, site.level, kBoxes, site.corner) && make_compact(check);
 }
 
 bool look(Check& check, int number, const Site& site) {

@@ -41,6 +41,8 @@ struct What {
 };
 #define THIMBLE_WHAT(expression) (::thimble::portable::What{expression ", line " THIMBLE_TEXT_OF(__LINE__)})
 #endif
+/// Of a function that compares several things for a case: which of its calls.
+#define THIMBLE_HERE THIMBLE_WHAT("that ray, status or row")
 
 /// The first comparison of a case that failed.
 struct Failure {

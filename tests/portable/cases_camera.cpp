@@ -5,25 +5,6 @@
 namespace thimble::portable {
 namespace {
 
-constexpr PerspectiveView simple_perspective() {
-  PerspectiveView view;
-  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
-  view.forward = {1, 0, 0};
-  view.fov_degrees = Q16::saturate(90);
-  view.width_px = 2;
-  view.height_px = 2;
-  return view;
-}
-constexpr OrthographicView simple_orthographic() {
-  OrthographicView view;
-  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
-  view.forward = {1, 0, 0};
-  view.span = Q14::saturate(4);
-  view.width_px = 4;
-  view.height_px = 2;
-  return view;
-}
-
 // Views that slant, to be turned, mirrored and moved.
 PerspectiveView slanting_perspective(int number) {
   PerspectiveView view = simple_perspective();
@@ -64,7 +45,7 @@ void eye_beyond(Check& check, int axis) {
   constexpr int32_t kBeyonds[] = {5 * 64 * 256 + 1, -4 * 64 * 256 - 1, INT32_MIN, INT32_MAX};
   for (const int32_t beyond : kBeyonds) {
     view.eye[axis] = Q8::from_raw(beyond);
-    refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+    refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
   }
   view.eye[axis] = Q8::from_raw(5 * 64 * 256);
   THIMBLE_EQUAL(check.camera.set(view, 6), Status::kOk);
@@ -87,8 +68,7 @@ void moved(Check& check, int number) {
     Ray wanted = before[i];
     wanted.origin.x = wanted.origin.x + Q8::from_raw(777);
     wanted.origin.z = wanted.origin.z - Q8::from_raw(1234);
-    expect_ray(check, check.camera.ray(i % 2 * 30, i / 2 * 22), wanted,
-               THIMBLE_WHAT("that ray, status or row"));
+    expect_ray(check, check.camera.ray(i % 2 * 30, i / 2 * 22), wanted, THIMBLE_HERE);
   }
 }
 
@@ -108,8 +88,7 @@ void mirrored(Check& check, int axis) {
     Ray wanted = before[i];
     wanted.origin[axis] = Q8::from_raw((256 << 8) - wanted.origin[axis].raw);
     wanted.direction[axis] = -wanted.direction[axis];
-    expect_ray(check, check.camera.ray(30 - (3 + i * 7), 2 + i * 5), wanted,
-               THIMBLE_WHAT("that ray, status or row"));
+    expect_ray(check, check.camera.ray(30 - (3 + i * 7), 2 + i * 5), wanted, THIMBLE_HERE);
   }
 }
 
@@ -131,8 +110,7 @@ void turned(Check& check, int number) {
   THIMBLE_REQUIRE_OK(check.camera.set(view, 8));
   for (int i = 0; i < 4; ++i) {
     const Ray wanted{turned_vector(before[i].origin), turned_vector(before[i].direction)};
-    expect_ray(check, check.camera.ray(3 + i * 7, 2 + i * 5), wanted,
-               THIMBLE_WHAT("that ray, status or row"));
+    expect_ray(check, check.camera.ray(3 + i * 7, 2 + i * 5), wanted, THIMBLE_HERE);
   }
 }
 
@@ -152,7 +130,7 @@ void walked(Check& check, int number) {
     RowRays rays(check.camera, 2, py);
     for (int32_t px = 2; px < 31; ++px, rays.next()) {
       const Ray ray = check.camera.ray(px, py);
-      expect_ray(check, rays.ray(), ray, THIMBLE_WHAT("that ray, status or row"));
+      expect_ray(check, rays.ray(), ray, THIMBLE_HERE);
       THIMBLE_EQUAL(check_ray(ray, 8), Status::kOk);
     }
   }
@@ -205,14 +183,10 @@ constexpr Case kCases[] = {
        // The plane at distance 1 shows -1 .. 1; pixel centres are at +-1/2: directions (1, -+1/2, +-1/2).
        THIMBLE_REQUIRE_OK(check.camera.set(simple_perspective(), 6));
        const Vec3Q8 eye = simple_perspective().eye;
-       expect_ray(check, check.camera.ray(0, 0), {eye, {255, 127, 127}},
-                  THIMBLE_WHAT("that ray, status or row"));
-       expect_ray(check, check.camera.ray(1, 0), {eye, {255, -127, 127}},
-                  THIMBLE_WHAT("that ray, status or row"));
-       expect_ray(check, check.camera.ray(0, 1), {eye, {255, 127, -127}},
-                  THIMBLE_WHAT("that ray, status or row"));
-       expect_ray(check, check.camera.ray(1, 1), {eye, {255, -127, -127}},
-                  THIMBLE_WHAT("that ray, status or row"));
+       expect_ray(check, check.camera.ray(0, 0), {eye, {255, 127, 127}}, THIMBLE_HERE);
+       expect_ray(check, check.camera.ray(1, 0), {eye, {255, -127, 127}}, THIMBLE_HERE);
+       expect_ray(check, check.camera.ray(0, 1), {eye, {255, 127, -127}}, THIMBLE_HERE);
+       expect_ray(check, check.camera.ray(1, 1), {eye, {255, -127, -127}}, THIMBLE_HERE);
        THIMBLE_EQUAL(check.camera.direction_bits(), 8);
        THIMBLE_CHECK(check.camera.is_perspective());
      }},
@@ -221,9 +195,9 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE_OK(check.camera.set(simple_orthographic(), 6));
        // Right is -y. Row 0 lies half a voxel above the eye, column 0 one and a half to the left.
        expect_ray(check, check.camera.ray(0, 0), ray_q8({8192, 33 * 256 + 128, 32 * 256 + 128}, {255, 0, 0}),
-                  THIMBLE_WHAT("that ray, status or row"));
+                  THIMBLE_HERE);
        expect_ray(check, check.camera.ray(3, 1), ray_q8({8192, 30 * 256 + 128, 31 * 256 + 128}, {255, 0, 0}),
-                  THIMBLE_WHAT("that ray, status or row"));
+                  THIMBLE_HERE);
        THIMBLE_EQUAL(check.camera.depth_per_t_q8(), 255 * 256);
        THIMBLE_CHECK(!check.camera.is_perspective());
      }},
@@ -233,7 +207,7 @@ constexpr Case kCases[] = {
        view.forward = {0, 0, -5};
        THIMBLE_REQUIRE_OK(check.camera.set(view, 6));
        expect_ray(check, check.camera.ray(0, 0), ray_q8({30 * 256 + 128, 32 * 256 + 128, 8192}, {0, 0, -255}),
-                  THIMBLE_WHAT("that ray, status or row"));
+                  THIMBLE_HERE);
      }},
     {"forward along a diagonal -> equal components in the middle", 0,
      [](Check& check, int) {
@@ -329,33 +303,33 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.width_px = 0;
-       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_HERE);
        view.width_px = 3;
        view.height_px = -1;
-       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_HERE);
      }},
     {"more pixels than the limit -> out of range", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.width_px = kMaxPicturePx + 1;
-       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
        view.width_px = 2;
        view.height_px = INT32_MAX;
-       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
      }},
     {"levels 0 and 13 -> out of range", 0,
      [](Check& check, int) {
-       refuse(check, simple_perspective(), 0, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
-       refuse(check, simple_perspective(), 13, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
-       refuse(check, simple_orthographic(), 13, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, simple_perspective(), 0, Status::kOutOfRange, THIMBLE_HERE);
+       refuse(check, simple_perspective(), 13, Status::kOutOfRange, THIMBLE_HERE);
+       refuse(check, simple_orthographic(), 13, Status::kOutOfRange, THIMBLE_HERE);
      }},
     {"field of view beyond 1 .. 120 degrees -> out of range", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.fov_degrees = Q16::from_raw(kMinFov.raw - 1);
-       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
        view.fov_degrees = Q16::from_raw(kMaxFov.raw + 1);
-       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
      }},
     {"direction bits beyond 8 .. 20 -> out of range", 0,
      [](Check& check, int) {
@@ -363,21 +337,21 @@ constexpr Case kCases[] = {
        constexpr int kBits[] = {-1, 1, 7, 21};
        for (const int bits : kBits) {
          view.direction_bits = bits;
-         refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+         refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
        }
      }},
     {"no forward -> bad argument", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.forward = {};
-       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_HERE);
      }},
     {"up parallel to forward -> bad argument", 0,
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.forward = {1000, 2000, -3000};
        view.up = {-1, -2, 3};
-       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_HERE);
      }},
     {"up a hair off forward -> a picture", 0,
      [](Check& check, int) {
@@ -391,10 +365,10 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        PerspectiveView view = simple_perspective();
        view.forward.y = INT32_MIN;
-       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
        view = simple_perspective();
        view.up.z = kMaxViewComponent + 1;
-       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
      }},
     {"eye beyond -4 .. 5 worlds -> out of range, at the limits a camera", 0, eye_beyond, 0, "x"},
     {"eye beyond -4 .. 5 worlds -> out of range, at the limits a camera", 0, eye_beyond, 1, "y"},
@@ -403,9 +377,9 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        OrthographicView view = simple_orthographic();
        view.span = {};
-       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_HERE);
        view.span = Q14::from_raw(-1);
-       refuse(check, view, 6, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kBadArgument, THIMBLE_HERE);
      }},
     {"parallel origins to the limits -> a camera; one unit beyond -> out of range", 0,
      [](Check& check, int) {
@@ -418,7 +392,7 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(check.camera.ray(0, 0).origin.x, Q8::saturate(-256));
        THIMBLE_EQUAL(check.camera.ray(9, 0).origin.x, Q8::saturate(320));
        view.eye.x = Q8::from_raw(view.eye.x.raw + 1);
-       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kOutOfRange, THIMBLE_HERE);
      }},
     {"a picture too fine for 20 bits -> too fine; with bits as given -> a camera that says how coarse", 0,
      [](Check& check, int) {
@@ -427,7 +401,7 @@ constexpr Case kCases[] = {
        view.fov_degrees = Q16::saturate(1);
        view.width_px = 1;
        view.height_px = 8000;
-       refuse(check, view, 8, Status::kTooFine, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 8, Status::kTooFine, THIMBLE_HERE);
        view.direction_bits = 20;
        THIMBLE_REQUIRE_OK(check.camera.set(view, 8));
        THIMBLE_CHECK(check.camera.error_bound_px_q16() > 8192);
@@ -440,7 +414,7 @@ constexpr Case kCases[] = {
        view.width_px = 20;
        view.height_px = 1;
        view.span = Q14::from_raw(20 * 6 * 64);
-       refuse(check, view, 6, Status::kTooFine, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, view, 6, Status::kTooFine, THIMBLE_HERE);
        view.span = least_orthographic_span(20, 6);
        THIMBLE_EQUAL(check.camera.set(view, 6), Status::kOk);
        THIMBLE_CHECK(check.camera.error_bound_px_q16() <= 8192);

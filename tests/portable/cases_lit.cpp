@@ -47,13 +47,7 @@ constexpr Light kLights[] = {
     {true, PackedVec3i{12 * 256 + 128, 10 * 256 + 128, 9 * 256 + 128}, {400, 330, 180}, 6},
 };
 
-struct Box {
-  VoxelBox box;
-  uint8_t material;
-};
-// A basin before a shore, a wall, steel that stands in the water, a bottle, a cloud and a lamp. Laid out on
-// even numbers, so that a small pool holds it.
-constexpr Box kBoxes[] = {
+constexpr SolidBox kBoxes[] = {
     {{{0, 0, 0}, {16, 8, 2}}, kFloor},    {{{0, 8, 0}, {16, 16, 4}}, kFloor},
     {{{0, 12, 4}, {16, 16, 12}}, kWall},  {{{4, 4, 2}, {8, 6, 10}}, kSteel},
     {{{8, 4, 4}, {12, 8, 8}}, kBottle},   {{{0, 8, 4}, {4, 12, 8}}, kCloud},
@@ -70,14 +64,8 @@ struct State {
 static_assert(sizeof(State) <= kStateBytes);
 
 bool make_scene(Check& check, State** state) {
-  if (!make_pool(check, kPoolNodes, 4)) {
+  if (!make_pool(check, kPoolNodes, 4, kBoxes)) {
     return false;
-  }
-  for (const Box& one : kBoxes) {
-    if (!check.equal(check.world.pool.insert_box(one.box, one.material), Status::kOk,
-                     THIMBLE_WHAT("insert_box"))) {
-      return false;
-    }
   }
   const Vec3Q8 eye = point_q8(3200, -3300, 3000);
   const Vec3i forward = look_at(eye, point_q8(1900, 2000, 900));

@@ -103,10 +103,10 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        const Rgb8 one[] = {kWhite};
        const uint8_t first[] = {0x80};
-       expect_row(check, PixelFormat::kMono1, one, first, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kMono1, one, first, THIMBLE_HERE);
        const Rgb8 five[] = {kBlack, kWhite, kBlack, kBlack, kWhite};
        const uint8_t second[] = {0x48};
-       expect_row(check, PixelFormat::kMono1, five, second, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kMono1, five, second, THIMBLE_HERE);
      }},
     {"mono1: eleven pixels -> two bytes, unused bits 0", 0,
      [](Check& check, int) {
@@ -115,16 +115,16 @@ constexpr Case kCases[] = {
          color = kWhite;
        }
        const uint8_t all[] = {0xFF, 0xE0};
-       expect_row(check, PixelFormat::kMono1, eleven, all, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kMono1, eleven, all, THIMBLE_HERE);
        eleven[8] = kBlack;
        const uint8_t gap[] = {0xFF, 0x60};
-       expect_row(check, PixelFormat::kMono1, eleven, gap, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kMono1, eleven, gap, THIMBLE_HERE);
      }},
     {"gray4: left pixel -> high nibble, unused nibble 0", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {gray(17), gray(34), gray(170)};
        const uint8_t wanted[] = {0x12, 0xA0};
-       expect_row(check, PixelFormat::kGray4, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kGray4, colors, wanted, THIMBLE_HERE);
      }},
     {"gray4: every grey -> the nearest of 16", 0,
      [](Check& check, int) {
@@ -141,25 +141,25 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        const Rgb8 colors[] = {gray(1), {255, 0, 0}, gray(254)};
        const uint8_t wanted[] = {1, 76, 254};
-       expect_row(check, PixelFormat::kGray8, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kGray8, colors, wanted, THIMBLE_HERE);
      }},
     {"rgb888: channels in order", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {{1, 2, 3}, {250, 251, 252}};
        const uint8_t wanted[] = {1, 2, 3, 250, 251, 252};
-       expect_row(check, PixelFormat::kRgb888, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kRgb888, colors, wanted, THIMBLE_HERE);
      }},
     {"rgb565: 5 red, 6 green, 5 blue bits -> little-endian, red highest", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}};
        const uint8_t wanted[] = {0x00, 0xF8, 0xE0, 0x07, 0x1F, 0x00};
-       expect_row(check, PixelFormat::kRgb565, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kRgb565, colors, wanted, THIMBLE_HERE);
      }},
     {"rgb565: the lower bits -> cut off", 0,
      [](Check& check, int) {
        const Rgb8 colors[] = {{7, 3, 7}, {8, 4, 8}};
        const uint8_t wanted[] = {0x00, 0x00, 0x21, 0x08};
-       expect_row(check, PixelFormat::kRgb565, colors, wanted, THIMBLE_WHAT("that ray, status or row"));
+       expect_row(check, PixelFormat::kRgb565, colors, wanted, THIMBLE_HERE);
      }},
     {"white rows of any width -> all their bits and no other", 0, white_rows, 0, "mono1"},
     {"white rows of any width -> all their bits and no other", 0, white_rows, 1, "gray4"},

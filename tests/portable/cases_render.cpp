@@ -235,7 +235,7 @@ constexpr Case kCases[] = {
                                        {INT32_MAX, 1}, {INT32_MIN, 1}, {1, INT32_MAX},   {kHeight - 1, 2}};
        for (const int32_t(&range)[2] : kRows) {
          set_band(check, pixels, PixelFormat::kGray8, range[0], range[1]);
-         refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+         refuse(check, Status::kBadArgument, THIMBLE_HERE);
        }
      }},
     {"a stride below a row -> bad argument, nothing drawn", kDrawBytes,
@@ -243,23 +243,23 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE(make_scene(check));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 2);
        check.band.stride_bytes = kWidth - 1;
-       refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, Status::kBadArgument, THIMBLE_HERE);
      }},
     {"bytes too few by one -> out of memory, nothing drawn", kDrawBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_scene(check));
        const Bytes pixels = check.arena.take(kPictureBytes);
        set_band(check, pixels.subspan(0, kWidth * 4 - 1), PixelFormat::kGray8, 2, 4);
-       refuse(check, Status::kOutOfMemory, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, Status::kOutOfMemory, THIMBLE_HERE);
        set_band(check, {}, PixelFormat::kGray8, 2, 1);
-       refuse(check, Status::kOutOfMemory, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, Status::kOutOfMemory, THIMBLE_HERE);
      }},
     {"a stride whose product wraps -> out of memory", kDrawBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_scene(check));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 3);
        check.band.stride_bytes = SIZE_MAX / 2 + 1;
-       refuse(check, Status::kOutOfMemory, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, Status::kOutOfMemory, THIMBLE_HERE);
      }},
     {"no rows -> ok, nothing counted", kDrawBytes,
      [](Check& check, int) {
@@ -272,14 +272,14 @@ constexpr Case kCases[] = {
      [](Check& check, int) {
        THIMBLE_REQUIRE(build(check, kScene));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 1);
-       refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, Status::kBadArgument, THIMBLE_HERE);
      }},
     {"a camera for another level -> bad argument, nothing drawn", kDrawBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(build(check, kScene));
        THIMBLE_REQUIRE(set_up(check, true, 5));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 1);
-       refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, Status::kBadArgument, THIMBLE_HERE);
      }},
     {"rays too long for 32 bits -> refused with k32, drawn with kAuto", kDrawBytes,
      [](Check& check, int) {
@@ -287,7 +287,7 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE(set_up(check, true, 4, 20));
        set_band(check, check.arena.take(kPictureBytes), PixelFormat::kGray8, 0, 1);
        check.options.width = Width::k32;
-       refuse(check, Status::kBadArgument, THIMBLE_WHAT("that ray, status or row"));
+       refuse(check, Status::kBadArgument, THIMBLE_HERE);
        check.options.width = Width::kAuto;
        THIMBLE_EQUAL(draw(check, 2), Status::kOk);
        check.note_bytes(check.band.pixels.subspan(0, kWidth));

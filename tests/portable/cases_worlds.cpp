@@ -18,26 +18,13 @@ constexpr uint32_t kPoolNodes = 165;
 constexpr uint32_t kTreeBytes = 480;
 constexpr uint32_t kPoolBytes = (static_cast<uint32_t>(Octree::octree_bytes(kPoolNodes)) + 7) & ~7U;
 
-struct Box {
-  VoxelBox box;
-  uint8_t material;
-};
-constexpr Box kBoxes[] = {
+constexpr SolidBox kBoxes[] = {
     {{{0, 0, 0}, {16, 16, 4}}, 1}, {{{4, 4, 4}, {8, 8, 8}}, 2},   {{{8, 8, 4}, {12, 10, 7}}, 3},
     {{{5, 5, 8}, {6, 6, 13}}, 4},  {{{12, 0, 4}, {16, 3, 6}}, 2}, {{{0, 12, 4}, {2, 16, 9}}, 5},
 };
 
 bool make_world(Check& check) {
-  if (!make_pool(check, kPoolNodes, kLevel)) {
-    return false;
-  }
-  for (const Box& one : kBoxes) {
-    if (!check.equal(check.world.pool.insert_box(one.box, one.material), Status::kOk,
-                     THIMBLE_WHAT("insert_box"))) {
-      return false;
-    }
-  }
-  return make_compact(check);
+  return make_pool(check, kPoolNodes, kLevel, kBoxes) && make_compact(check);
 }
 Vec3i nth_voxel(int32_t n) {
   return {n & 15, n >> 4 & 15, n >> 8};

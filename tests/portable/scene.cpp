@@ -8,6 +8,24 @@ bool make_pool(Check& check, uint32_t nodes, int level) {
          check.equal(check.world.pool.capacity(), nodes, THIMBLE_WHAT("nodes of the pool"));
 }
 
+bool make_pool(Check& check, uint32_t nodes, int level, Span<const SolidBox> boxes, const Vec3i& corner) {
+  if (!make_pool(check, nodes, level)) {
+    return false;
+  }
+  for (const SolidBox& one : boxes) {
+    VoxelBox box = one.box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] += corner[axis];
+      box.high[axis] += corner[axis];
+    }
+    if (!check.equal(check.world.pool.insert_box(box, one.material), Status::kOk,
+                     THIMBLE_WHAT("insert_box"))) {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool make_compact(Check& check, int rank_shift) {
   const size_t size = compact_bytes(compact_shape(check.world.pool, rank_shift));
   const Bytes bytes = check.arena.take(size);

@@ -21,6 +21,12 @@ constexpr uint32_t scene_bytes(int level, uint32_t pool_nodes) {
 
 /// An empty octree of `nodes` in `check.world.pool`, in bytes of the case's arena.
 bool make_pool(Check& check, uint32_t nodes, int level);
+/// The same with boxes in it.
+struct SolidBox {
+  VoxelBox box;
+  uint8_t material;
+};
+bool make_pool(Check& check, uint32_t nodes, int level, Span<const SolidBox> boxes, const Vec3i& corner = {});
 /// `check.world.compact` from `check.world.pool`.
 bool make_compact(Check& check, int rank_shift = kDefaultRankShift);
 /// An empty dense grid in `check.world.grid`.
@@ -36,6 +42,26 @@ Status any(Check& check, int structure, const Ray& ray, HitKind* kind, uint32_t*
            const TraceOptions& options);
 /// Whether two hits are the same in all but the number of visits.
 bool same_hit(const Hit& one, const Hit& other);
+
+/// Two cameras along x in a world of level 6: of 2 x 2 pixels at 90 degrees, and of 4 x 2 pixels of a voxel each.
+constexpr PerspectiveView simple_perspective() {
+  PerspectiveView view;
+  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
+  view.forward = {1, 0, 0};
+  view.fov_degrees = Q16::saturate(90);
+  view.width_px = 2;
+  view.height_px = 2;
+  return view;
+}
+constexpr OrthographicView simple_orthographic() {
+  OrthographicView view;
+  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
+  view.forward = {1, 0, 0};
+  view.span = Q14::saturate(4);
+  view.width_px = 4;
+  view.height_px = 2;
+  return view;
+}
 
 /// A ray whose origin is in 1/256 voxel.
 constexpr Ray ray_q8(const Vec3i& origin_q8, const Vec3i& direction) {
