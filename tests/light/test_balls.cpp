@@ -38,29 +38,17 @@ void put_ball(LitWorld* world, const Vec3i& at, int half, int material) {
 
 std::vector<Rgb8> draw_with(const LitWorld& world, EffectSet effects, const std::vector<Ball>& balls,
                             std::uint32_t* passed = nullptr, LitCounts* counts = nullptr) {
-  const Camera& camera = world.camera;
-  std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kRgb888, camera.width_px(), camera.height_px()));
-  const Band band{{bytes.data(), bytes.size()}, PixelFormat::kRgb888, 0, 0, camera.height_px()};
-  REQUIRE(render_lit_band(effects, world.tree, {{balls.data(), balls.size()}, passed}, camera, world.shading,
-                          world.scene, band, counts) == Status::kOk);
-  std::vector<Rgb8> picture;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    picture.push_back({bytes[i], bytes[i + 1], bytes[i + 2]});
-  }
-  return picture;
+  return world.picture_of([&](const Band& band) {
+    return render_lit_band(effects, world.tree, {{balls.data(), balls.size()}, passed}, world.camera,
+                           world.shading, world.scene, band, counts);
+  });
 }
 
 /// A basin of water, a mirror, glass, a lamp, a cloud, rough metal; with balls in the tree or beside it.
 class BallWorld : public LitWorld {
  public:
   explicit BallWorld(bool in_tree) {
-    surfaces[1] = surface(SurfaceKind::kMetal, {220, 210, 190});
-    surfaces[2] = surface(SurfaceKind::kGlass, {220, 240, 230});
-    surfaces[3] = surface(SurfaceKind::kEmit, {255, 200, 90});
-    surfaces[4] = surface(SurfaceKind::kMedia, {240, 240, 250});
-    surfaces[5] = surface(SurfaceKind::kMetal, {200, 160, 90});
-    surfaces[5].roughness = 80;
-    surfaces[5].mirror = 200;
+    call_for_everything();
     surfaces[kRed] = surface(SurfaceKind::kDiffuse, {250, 92, 64});
     surfaces[7] = surface(SurfaceKind::kMetal, {250, 240, 230});
     surfaces[8] = surface(SurfaceKind::kEmit, {120, 220, 255});
@@ -80,18 +68,10 @@ class BallWorld : public LitWorld {
       }
     }
     lights = {sun({-6, -9, 12}), lamp({20 * 256 + 31, 7 * 256 + 90, 20 * 256 + 7}, 300, 12)};
-    scene.has_shadows = true;
-    scene.has_sky = true;
-    scene.has_depth_cue = true;
-    scene.fog.density_q16 = 300;
-    scene.occlusion.rays = 8;
-    scene.has_water = true;
     scene.water = still_water({2, 2, 3}, 28, 27, 2 * 256 + 77);
     finish();
     look({-9 * 256 + 13, -21 * 256 + 57, 26 * 256 + 101}, {16 * 256, 15 * 256, 7 * 256}, 44, 96, 72);
-    const DepthRange range = depth_range(camera, tree.bounds());
-    shading.near_q8 = range.near_q8;
-    shading.far_q8 = range.far_q8;
+    set_depth_range();
   }
 
   std::vector<Ball> balls;

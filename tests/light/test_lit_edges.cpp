@@ -132,9 +132,7 @@ TEST_CASE(
         world.scene.water.heights_q16 = heights.data();
         world.scene.water.has_blocked = true;
       }
-      world.scene.water_material = surface(SurfaceKind::kGlass, {255, 255, 255});
-      world.scene.water_material.index_q12 = kWaterIndexQ12;
-      world.scene.water_material.density_q8 = 0;
+      world.scene.water_material = medium(SurfaceKind::kGlass, {255, 255, 255}, 0, kWaterIndexQ12);
       world.shading.background = kGround;
       world.scene.bounces = 4;
       world.finish();
@@ -177,9 +175,7 @@ TEST_CASE("lit edges: a floor under dark water -> each lamp is dimmed by its own
     world.scene.has_shadows = true;
     world.scene.has_water = water;
     world.scene.water = still_water({0, 0, 4}, 32, 32, 2 * 256);
-    world.scene.water_material = surface(SurfaceKind::kGlass, {0, 0, 0});
-    world.scene.water_material.index_q12 = kMinIndexQ12;
-    world.scene.water_material.density_q8 = 256;
+    world.scene.water_material = medium(SurfaceKind::kGlass, {0, 0, 0}, 256);
     world.finish();
     world.look_straight_down({16 * 256 + 128, 16 * 256 + 128, 4 * 256 + 64}, 1 << 10, 1, 1);
     return int{
@@ -211,9 +207,7 @@ TEST_CASE(
       }
     }
     world.surfaces[1] = surface(SurfaceKind::kDiffuse, kGround);
-    world.surfaces[2] = surface(SurfaceKind::kGlass, {0, 0, 0});
-    world.surfaces[2].density_q8 = 64;
-    world.surfaces[2].index_q12 = kMinIndexQ12;
+    world.surfaces[2] = medium(SurfaceKind::kGlass, {0, 0, 0}, 64);
     set_ambient(&world.scene, 20);
     world.lights = {sun({1, 2, 5}, 200)};
     world.scene.has_shadows = true;

@@ -83,9 +83,7 @@ TEST_CASE("absorption: through a slab of known thickness as Beer and Lambert hav
     for (const int density : {16, 64, 200}) {
       LitWorld world;
       world.box({0, 10, 0}, {32, 10 + thickness, 32}, 1);
-      world.surfaces[1] = surface(SurfaceKind::kGlass, {0, 100, 255});
-      world.surfaces[1].density_q8 = static_cast<std::uint16_t>(density);
-      world.surfaces[1].index_q12 = kMinIndexQ12;
+      world.surfaces[1] = medium(SurfaceKind::kGlass, {0, 100, 255}, density);
       set_sky(&world, kWhite);
       world.finish();
       world.look({16 * 256 + 128, -20 * 256, 16 * 256 + 128}, {16 * 256 + 128, 0, 16 * 256 + 128}, 4, 9, 9);
@@ -102,8 +100,7 @@ TEST_CASE("absorption: through a slab of known thickness as Beer and Lambert hav
 TEST_CASE("clouds: what they absorb they show of themselves, in the light around") {
   LitWorld world;
   world.box({0, 10, 0}, {32, 14, 32}, 1);
-  world.surfaces[1] = surface(SurfaceKind::kMedia, {200, 100, 40});
-  world.surfaces[1].density_q8 = 64;  // one halving in four voxels
+  world.surfaces[1] = medium(SurfaceKind::kMedia, {200, 100, 40}, 64);  // one halving in four voxels
   set_sky(&world, {80, 80, 80});
   set_ambient(&world.scene, 256);
   world.finish();
@@ -200,9 +197,7 @@ TEST_CASE("a closed box of mirrors: ends at its limit of bounces in the metal's 
 TEST_CASE("inside glass: a camera there looks out, through the colour of the glass") {
   LitWorld world;
   world.box({4, 4, 4}, {28, 28, 28}, 1);
-  world.surfaces[1] = surface(SurfaceKind::kGlass, {128, 255, 255});
-  world.surfaces[1].density_q8 = 32;
-  world.surfaces[1].index_q12 = kMinIndexQ12;
+  world.surfaces[1] = medium(SurfaceKind::kGlass, {128, 255, 255}, 32);
   set_sky(&world, kWhite);
   world.finish();
   // 12 voxels of glass ahead.
@@ -219,9 +214,7 @@ TEST_CASE("an emitter inside glass: shines out, dimmed by the glass before it") 
   LitWorld world;
   world.box({4, 4, 4}, {28, 28, 28}, 1);
   world.box({14, 14, 14}, {18, 18, 18}, 2);
-  world.surfaces[1] = surface(SurfaceKind::kGlass, {0, 255, 255});
-  world.surfaces[1].density_q8 = 25;
-  world.surfaces[1].index_q12 = kMinIndexQ12;
+  world.surfaces[1] = medium(SurfaceKind::kGlass, {0, 255, 255}, 25);
   world.surfaces[2] = surface(SurfaceKind::kEmit, kWhite);
   set_ambient(&world.scene, 0);
   world.finish();
@@ -239,11 +232,8 @@ TEST_CASE("nested media: a cloud in glass in a cloud, each takes what lies withi
   world.box({0, 4, 0}, {32, 28, 32}, 1);
   world.box({0, 8, 0}, {32, 24, 32}, 2);
   world.box({0, 12, 0}, {32, 20, 32}, 3);
-  world.surfaces[1] = surface(SurfaceKind::kMedia, {0, 0, 0});
-  world.surfaces[1].density_q8 = 16;
-  world.surfaces[2] = surface(SurfaceKind::kGlass, {0, 255, 255});
-  world.surfaces[2].density_q8 = 20;
-  world.surfaces[2].index_q12 = kMinIndexQ12;
+  world.surfaces[1] = medium(SurfaceKind::kMedia, {0, 0, 0}, 16);
+  world.surfaces[2] = medium(SurfaceKind::kGlass, {0, 255, 255}, 20);
   world.surfaces[3] = world.surfaces[1];
   world.surfaces[3].density_q8 = 30;
   set_sky(&world, kWhite);

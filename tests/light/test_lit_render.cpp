@@ -17,13 +17,7 @@ using namespace thimble::testing;
 class EveryEffect : public LitWorld {
  public:
   EveryEffect() {
-    surfaces[1] = surface(SurfaceKind::kMetal, {220, 210, 190});
-    surfaces[2] = surface(SurfaceKind::kGlass, {220, 240, 230});
-    surfaces[3] = surface(SurfaceKind::kEmit, {255, 200, 90});
-    surfaces[4] = surface(SurfaceKind::kMedia, {240, 240, 250});
-    surfaces[5] = surface(SurfaceKind::kMetal, {200, 160, 90});
-    surfaces[5].roughness = 80;
-    surfaces[5].mirror = 200;
+    call_for_everything();
     box({0, 0, 0}, {32, 32, 4}, 0);
     box({2, 20, 4}, {10, 28, 14}, 1);
     box({12, 8, 6}, {20, 16, 14}, 2);
@@ -31,18 +25,10 @@ class EveryEffect : public LitWorld {
     box({14, 20, 12}, {26, 28, 20}, 4);
     box({24, 6, 4}, {29, 11, 12}, 5);
     lights = {sun({-6, -9, 12}), lamp({20 * 256, 4 * 256, 20 * 256}, 300, 12)};
-    scene.has_shadows = true;
-    scene.has_sky = true;
-    scene.has_depth_cue = true;
-    scene.fog.density_q16 = 300;
-    scene.occlusion.rays = 8;
-    scene.has_water = true;
     scene.water = still_water({2, 2, 4}, 28, 28, 3 * 256 + 77);
     finish();
     look({-10 * 256, -22 * 256, 26 * 256}, {16 * 256, 15 * 256, 6 * 256}, 44);
-    const DepthRange range = depth_range(camera, tree.bounds());
-    shading.near_q8 = range.near_q8;
-    shading.far_q8 = range.far_q8;
+    set_depth_range();
   }
 };
 

@@ -114,9 +114,7 @@ TEST_CASE("waves in pictures: after any number of steps, silhouette and waterlin
   world.surfaces[1] = surface(SurfaceKind::kEmit, {255, 255, 255});
   set_ambient(&world.scene, 0);
   world.scene.sky = {{255, 255, 255}, {255, 255, 255}, {255, 255, 255}};
-  world.scene.water_material = surface(SurfaceKind::kGlass, {0, 0, 0});
-  world.scene.water_material.index_q12 = kMinIndexQ12;
-  world.scene.water_material.density_q8 = 65535;
+  world.scene.water_material = medium(SurfaceKind::kGlass, {0, 0, 0}, 65535);
   world.finish();
   Waves waves;
   waves.stir();

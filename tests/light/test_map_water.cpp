@@ -33,9 +33,7 @@ struct WaterWorld : MapWorld {
     surfaces[kGlowing] = surface(SurfaceKind::kEmit, {90, 220, 120});
     scene.has_water = true;
     scene.has_sky = true;
-    scene.water_material = surface(SurfaceKind::kGlass, {84, 176, 190});
-    scene.water_material.index_q12 = 5460;
-    scene.water_material.density_q8 = 40;
+    scene.water_material = medium(SurfaceKind::kGlass, {84, 176, 190}, 40, 5460);
   }
   void still(const Vec3i& corner, int width, int depth, int height_q8) {
     scene.water = still_water(corner, width, depth, height_q8);

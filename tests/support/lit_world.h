@@ -59,15 +59,31 @@ class LitWorld {
     return {Q8::from_raw(raw.x), Q8::from_raw(raw.y), Q8::from_raw(raw.z)};
   }
 
-  std::vector<Rgb8> draw(EffectSet effects, LitCounts* counts = nullptr) const {
+  /// What calls for every effect: 1 metal, 2 glass, 3 lamp, 4 cloud, 5 rough metal; water is to be set.
+  void call_for_everything();
+  /// Greys and depth cues between what is solid.
+  void set_depth_range() {
+    const DepthRange range = depth_range(camera, tree.bounds());
+    shading.near_q8 = range.near_q8;
+    shading.far_q8 = range.far_q8;
+  }
+
+  /// The picture that `draw(band)` draws.
+  template <class Draw>
+  std::vector<Rgb8> picture_of(const Draw& draw) const {
     std::vector<std::uint8_t> bytes(band_bytes(PixelFormat::kRgb888, camera.width_px(), camera.height_px()));
-    const Band band{{bytes.data(), bytes.size()}, PixelFormat::kRgb888, 0, 0, camera.height_px()};
-    REQUIRE(render_lit_band(effects, tree, camera, shading, scene, band, counts) == Status::kOk);
+    REQUIRE(draw(Band{{bytes.data(), bytes.size()}, PixelFormat::kRgb888, 0, 0, camera.height_px()}) ==
+            Status::kOk);
     std::vector<Rgb8> picture;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
       picture.push_back({bytes[i], bytes[i + 1], bytes[i + 2]});
     }
     return picture;
+  }
+  std::vector<Rgb8> draw(EffectSet effects, LitCounts* counts = nullptr) const {
+    return picture_of([&](const Band& band) {
+      return render_lit_band(effects, tree, camera, shading, scene, band, counts);
+    });
   }
   Rgb8 middle(EffectSet effects) const {
     const std::vector<Rgb8> picture = draw(effects);
@@ -93,6 +109,28 @@ inline Surface surface(SurfaceKind kind, const Rgb8& albedo) {
   made.kind = kind;
   made.albedo = albedo;
   return made;
+}
+/// What light passes, bent where its index says so.
+inline Surface medium(SurfaceKind kind, const Rgb8& albedo, int density_q8, int index_q12 = kMinIndexQ12) {
+  Surface made = surface(kind, albedo);
+  made.density_q8 = static_cast<std::uint16_t>(density_q8);
+  made.index_q12 = static_cast<std::uint16_t>(index_q12);
+  return made;
+}
+inline void LitWorld::call_for_everything() {
+  surfaces[1] = surface(SurfaceKind::kMetal, {220, 210, 190});
+  surfaces[2] = surface(SurfaceKind::kGlass, {220, 240, 230});
+  surfaces[3] = surface(SurfaceKind::kEmit, {255, 200, 90});
+  surfaces[4] = surface(SurfaceKind::kMedia, {240, 240, 250});
+  surfaces[5] = surface(SurfaceKind::kMetal, {200, 160, 90});
+  surfaces[5].roughness = 80;
+  surfaces[5].mirror = 200;
+  scene.has_shadows = true;
+  scene.has_sky = true;
+  scene.has_depth_cue = true;
+  scene.fog.density_q16 = 300;
+  scene.occlusion.rays = 8;
+  scene.has_water = true;
 }
 inline Light sun(const Vec3i& toward, int brightness = 256) {
   Light light;
