@@ -8,32 +8,22 @@
 #include "apps/demo_view.h"
 #include "boards/board_table.h"
 #include "golden/demo_table.h"
-#include "scene/baking.h"
+#include "support/baked_demo.h"
 #include "support/simulated_run.h"
 
 namespace {
 
 using namespace thimble;
 
-std::vector<std::uint8_t> baked(const std::string& scene) {
-  const auto source = tools::open_scene({.scene = scene, .depth = std::nullopt});
-  tools::BakingOptions options;
-  if (source->camera() != nullptr) {
-    options.camera = [&source](const CompactTree&) { return *source->camera(); };
-  }
-  return tools::bake_scene(*source, options).bytes;
-}
-
 struct BenchRun : tests::SimulatedRun {
   std::map<std::string, std::string> values;  ///< the lines `name,value`
 };
 
 BenchRun run_bench(const char* board, const std::vector<std::uint8_t>& scene) {
-  host::SimulationOptions options;
-  options.board = platform::find_board(board);
-  options.scene = {scene.data(), scene.size()};
-  options.application = apps::bench;
-  BenchRun run{tests::run_simulated(options, UINT32_MAX), {}};
+  BenchRun run{
+      tests::run_simulated({platform::find_board(board), true, {scene.data(), scene.size()}, apps::bench},
+                           UINT32_MAX),
+      {}};
   CHECK(run.fault == "");
   for (std::size_t from = 0; from < run.out.size();) {
     const std::size_t to = std::min(run.out.find('\n', from), run.out.size());
@@ -51,7 +41,7 @@ BenchRun run_bench(const char* board, const std::vector<std::uint8_t>& scene) {
 
 TEST_CASE(
     "bench: the demo scene on boards with and without room for a map -> golden pictures, exact, status 0") {
-  const std::vector<std::uint8_t> scene = baked("demo");
+  const std::vector<std::uint8_t> scene = tests::bake_words("demo").bytes;
   for (const char* board : {"lm3s6965evb", "stm32vldiscovery", "netduinoplus2"}) {
     CAPTURE(std::string(board));
     BenchRun run = run_bench(board, scene);
@@ -85,13 +75,13 @@ TEST_CASE(
 
 TEST_CASE("bench: rays too long for 32 bits, no scene, a damaged one -> said so") {
   // A world of 4096 a side: no map and no 32-bit path.
-  BenchRun run = run_bench("mps2-an500", baked("points:1000,depth=12"));
+  BenchRun run = run_bench("mps2-an500", tests::bake_words("points:1000,depth=12").bytes);
   CHECK(run.status == 0);
   CHECK(run.values["ray32.rays"] == "0");
   CHECK(run.values["ray64.rays"] != "0");
   CHECK(run.values["map_bytes"] == "0");
   CHECK(run_bench("lm3s6965evb", {}).status == 1);
-  std::vector<std::uint8_t> damaged = baked("spheres,depth=4");
+  std::vector<std::uint8_t> damaged = tests::bake_words("spheres,depth=4").bytes;
   damaged[damaged.size() - 9] ^= 1;
   run = run_bench("lm3s6965evb", damaged);
   CHECK(run.status == 1);

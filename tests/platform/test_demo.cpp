@@ -52,13 +52,7 @@ using Run = tests::SimulatedRun;
 Run run_demo(const platform::BoardFacts& board, ConstBytes scene, std::uint32_t frames,
              const std::map<std::uint32_t, std::string>& keys = {}, bool connected = false,
              std::uint32_t hold_fps = 0) {
-  host::SimulationOptions options;
-  options.board = &board;
-  options.connected = connected;
-  options.scene = scene;
-  options.application = apps::demo;
-  options.hold_fps = hold_fps;
-  return tests::run_simulated(options, frames, {keys, {}});
+  return tests::run_simulated({&board, connected, scene, apps::demo, hold_fps}, frames, {keys, {}});
 }
 
 /// The number behind every `word` at the start of a line: `frame N crc X` -> X by N.
@@ -129,12 +123,7 @@ TEST_CASE(
   CHECK(stopped.at(11) != stopped.at(10));
   CHECK(stopped.at(21) == stopped.at(10));  // lit again
   CHECK(stopped.at(22) == crcs.at(11));
-  host::SimulationOptions options;
-  options.board = &board;
-  options.connected = false;
-  options.scene = scene;
-  options.application = apps::demo;
-  const Run steered = tests::run_simulated(options, 6, {{}, {{0, port::kRight}}});
+  const Run steered = tests::run_simulated({&board, false, scene, apps::demo}, 6, {{}, {{0, port::kRight}}});
   CHECK(lit_frames(steered.out) == 6);
   // A rate that is held leaves no time for light until it stands.
   const Run held = run_demo(board, scene, 9, {{6, "t"}}, false, 30);

@@ -26,11 +26,8 @@ using tests::flagship;
 using tests::Hand;
 
 tests::SimulatedRun run_dig(const platform::BoardFacts& board, std::uint32_t frames, const Hand& hand = {}) {
-  host::SimulationOptions options;
-  options.board = &board;
-  options.scene = {demo_scene().bytes.data(), demo_scene().bytes.size()};
-  options.application = apps::dig;
-  return tests::run_simulated(options, frames, hand);
+  const ConstBytes scene(demo_scene().bytes.data(), demo_scene().bytes.size());
+  return tests::run_simulated({&board, true, scene, apps::dig}, frames, hand);
 }
 
 /// Each line's `voxels N`.

@@ -32,13 +32,9 @@ TEST_CASE("panel formats: applications on boards with such displays -> the pictu
       board.ram_bytes = 4 << 20;
       board.width_px = 84;
       board.height_px = 43;
-      host::SimulationOptions options;
-      options.board = &board;
-      options.connected = true;
-      options.application = played.application;
-      options.hold_fps = played.hold_fps;
-      options.scene = {tests::demo_scene().bytes.data(), tests::demo_scene().bytes.size()};
-      const tests::SimulatedRun run = tests::run_simulated(options, 3, {{{1, "b"}}, {}});
+      const ConstBytes scene(tests::demo_scene().bytes.data(), tests::demo_scene().bytes.size());
+      const tests::SimulatedRun run = tests::run_simulated(
+          {&board, true, scene, played.application, played.hold_fps}, 3, {{{1, "b"}}, {}});
       CHECK(run.fault == "");
       CHECK(run.last.bytes.size() == band_bytes(format, 84, 43));
       return host::expand_rgb(run.last);

@@ -23,11 +23,8 @@ using tests::Hand;
 using Run = tests::SimulatedRun;
 
 Run run_app(const char* board, std::uint32_t frames, const Hand& hand = {}) {
-  host::SimulationOptions options;
   const platform::BoardFacts facts = platform::board_for(*platform::find_board(board), "particles");
-  options.board = &facts;
-  options.application = apps::particles;
-  return tests::run_simulated(options, frames, hand);
+  return tests::run_simulated({&facts, true, {}, apps::particles}, frames, hand);
 }
 
 /// Every `steps N crc X` in order.

@@ -63,10 +63,8 @@ void check_same(Ran one, Ran other) {
 }
 
 const std::vector<std::uint8_t>& spheres() {
-  static const std::vector<std::uint8_t> bytes = [] {
-    const auto source = tools::open_scene({.scene = kScene, .depth = std::nullopt});
-    return tools::bake_scene(*source, {}).bytes;
-  }();
+  static const std::vector<std::uint8_t> bytes =
+      tools::bake_scene(*tools::open_scene({.scene = kScene, .depth = std::nullopt}), {}).bytes;
   return bytes;
 }
 
@@ -77,12 +75,9 @@ struct Simulated : tests::SimulatedRun {
 
 Simulated simulate(int (*application)(), host::FramePainter* painter, std::uint32_t frames,
                    const std::string& typed = "") {
-  host::SimulationOptions options;
-  options.board = platform::find_board("lm3s6965evb");
-  options.scene = {spheres().data(), spheres().size()};
-  options.application = application;
-  options.painter = painter;
-  Simulated ran{tests::run_simulated(options, frames, {{{0, typed}}, {}})};
+  const ConstBytes scene(spheres().data(), spheres().size());
+  Simulated ran{
+      tests::run_simulated({&flagship(), true, scene, application, 0, painter}, frames, {{{0, typed}}, {}})};
   for (const host::PackedPicture& picture : ran.pictures) {
     ran.crc = crc32({picture.bytes.data(), picture.bytes.size()}, ran.crc);
   }

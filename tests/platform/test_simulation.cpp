@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <numeric>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "boards/board_table.h"
@@ -27,43 +25,12 @@ using namespace thimble;
 using namespace thimble::host;
 using tests::flagship;
 
-// The application of the test that runs; a simulation takes plain functions only.
-struct SimRan {
-  int status = -1;
-  std::string fault;
-  std::string output;
-  std::uint32_t pictures = 0;
-  PackedPicture picture;
-  MemoryUse use;
-  std::vector<std::uint32_t> asked;
-};
+using SimRan = tests::SimulatedRun;
 
+// A simulation takes plain functions only.
 SimRan run(int (*application)(), std::uint32_t frames = 1, ConstBytes scene = {},
-           const std::string& typed = "", std::uint32_t buttons = 0,
-           const platform::BoardFacts& board = flagship()) {
-  Simulation simulation({&board, true, scene, application});
-  for (const char byte : typed) {
-    REQUIRE(simulation.type(static_cast<std::uint8_t>(byte)));
-  }
-  simulation.set_buttons(buttons);
-  SimRan ran;
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  for (Moment moment = Moment::kNothing; moment != Moment::kEnded;) {
-    REQUIRE(std::chrono::steady_clock::now() < end);
-    moment = simulation.wait(50);
-    ran.output += simulation.take_output();
-    if (moment == Moment::kAsks) {
-      ran.asked.push_back(simulation.frames_asked());
-      simulation.answer(simulation.frames_asked() < frames);
-    }
-  }
-  ran.output += simulation.take_output();
-  ran.status = simulation.status();
-  ran.fault = simulation.fault();
-  ran.pictures = simulation.pictures();
-  ran.picture = simulation.picture();
-  ran.use = simulation.use();
-  return ran;
+           const tests::Hand& hand = {}, const platform::BoardFacts& board = flagship()) {
+  return tests::run_simulated({&board, true, scene, application}, frames, hand);
 }
 
 bool holds(const std::string& text, const std::string& part) {
@@ -117,13 +84,13 @@ TEST_CASE(
   platform::BoardFacts board = flagship();
   CHECK(run(sends_bands<1>, 2).status == 1);
   board.band_buffers = 2;
-  const SimRan turns = run(sends_bands<2>, 2, {}, "", 0, board);
+  const SimRan turns = run(sends_bands<2>, 2, {}, {}, board);
   CHECK(turns.status == 2);
   CHECK(turns.fault.empty());
-  CHECK(turns.pictures == 2);
-  REQUIRE(turns.picture.bytes.size() == kRowBytes * kHeightPx);
-  CHECK(turns.picture.bytes.back() == kHeightPx - 8);
-  const SimRan early = run(sends_bands<1>, 2, {}, "", 0, board);
+  CHECK(turns.pictures.size() == 2);
+  REQUIRE(turns.last.bytes.size() == kRowBytes * kHeightPx);
+  CHECK(turns.last.bytes.back() == kHeightPx - 8);
+  const SimRan early = run(sends_bands<1>, 2, {}, {}, board);
   CHECK(early.status == port::kFaultStatus);
   CHECK(early.fault.find("written while it was being sent") != std::string::npos);
 }
@@ -132,11 +99,10 @@ TEST_CASE("simulation: bands in any order -> the whole picture, asked once a fra
   const SimRan ran = run(draws_bands_backwards, 3);
   CHECK(ran.status == 0);
   CHECK(ran.fault.empty());
-  CHECK(ran.pictures == 3);
-  CHECK(ran.asked == std::vector<std::uint32_t>{0, 1, 2, 3});
-  REQUIRE(ran.picture.bytes.size() == kRowBytes * kHeightPx);
-  for (std::size_t i = 0; i < ran.picture.bytes.size(); ++i) {
-    REQUIRE(ran.picture.bytes[i] == i / kRowBytes);
+  CHECK(ran.pictures.size() == 3);
+  REQUIRE(ran.last.bytes.size() == kRowBytes * kHeightPx);
+  for (std::size_t i = 0; i < ran.last.bytes.size(); ++i) {
+    REQUIRE(ran.last.bytes[i] == i / kRowBytes);
   }
 }
 
@@ -144,8 +110,11 @@ TEST_CASE("simulation: facts and arena -> the board's RAM less its stack, to the
   for (const platform::BoardFacts& board : platform::boards()) {
     static const platform::BoardFacts* expected;
     expected = &board;
-    Simulation simulation(
-        {&board, false, {}, [] {
+    const SimRan ran = tests::run_simulated(
+        {&board,
+         false,
+         {},
+         [] {
            const port::Facts& facts = port::facts();
            const bool same =
                std::string(facts.name) == expected->name && facts.ram_bytes == expected->ram_bytes &&
@@ -159,12 +128,11 @@ TEST_CASE("simulation: facts and arena -> the board's RAM less its stack, to the
            // All of it is there.
            std::fill(arena.begin(), arena.end(), std::uint8_t{1});
            return same && exact && port::scene().empty() && port::instructions() == 0 ? 5 : 6;
-         }});
-    while (simulation.wait(50) != Moment::kEnded) {
-    }
+         }},
+        1);
     CAPTURE(board.name);
-    CHECK(simulation.status() == 5);
-    CHECK(simulation.use().ram_bytes == board.ram_bytes - board.stack_bytes);
+    CHECK(ran.status == 5);
+    CHECK(ran.use.ram_bytes == board.ram_bytes - board.stack_bytes);
   }
 }
 
@@ -330,8 +298,8 @@ TEST_CASE("simulation: status, buttons and UART -> what the application returns,
     }
     return static_cast<int>(port::buttons());
   };
-  const SimRan ran = run(echo, 1, {}, "abc", port::kLeft | port::kSelect);
-  CHECK(ran.output == "a!b!c!");
+  const SimRan ran = run(echo, 1, {}, {{{0, "abc"}}, {{0, port::kLeft | port::kSelect}}});
+  CHECK(ran.out == "a!b!c!");
   CHECK(ran.status == (port::kLeft | port::kSelect));
   CHECK(ran.fault.empty());
 }
@@ -347,7 +315,7 @@ TEST_CASE("simulation: more UART output than is kept between two looks -> none o
   for (int line = 0; line < 30000; ++line) {
     expected += std::to_string(line) + "\n";
   }
-  CHECK(run(talk).output == expected);
+  CHECK(run(talk).out == expected);
 }
 
 TEST_CASE("simulation: an application that is not answered any more -> left behind, and the next one runs") {
@@ -356,7 +324,7 @@ TEST_CASE("simulation: an application that is not answered any more -> left behi
     while (simulation.wait(50) != Moment::kAsks) {
     }
   }
-  CHECK(run(draws_bands_backwards, 2).pictures == 2);
+  CHECK(run(draws_bands_backwards, 2).pictures.size() == 2);
 }
 
 TEST_CASE("simulation: a scene larger than the flash -> an error that says by how much") {

@@ -14,6 +14,7 @@
 #include "port.h"
 #include "scene/baking.h"
 #include "scene/random.h"
+#include "support/baked_demo.h"
 #include "support/lit_world.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
@@ -36,11 +37,7 @@ const std::vector<std::uint8_t>& baked(const char* text) {
   static std::map<std::string, std::vector<std::uint8_t>> scenes;
   std::vector<std::uint8_t>& bytes = scenes[text];
   if (bytes.empty()) {
-    const auto source = tools::open_scene({.scene = text, .depth = std::nullopt});
-    tools::BakingOptions options;
-    options.name = text;
-    options.camera = [&source](const CompactTree&) { return *source->camera(); };
-    bytes = tools::bake_scene(*source, options).bytes;
+    bytes = tests::bake_words(text).bytes;
   }
   return bytes;
 }
@@ -66,11 +63,7 @@ struct Run : tests::SimulatedRun {
 };
 
 Run run_water(const platform::BoardFacts& board, ConstBytes scene, std::uint32_t frames, const Hand& hand) {
-  host::SimulationOptions options;
-  options.board = &board;
-  options.scene = scene;
-  options.application = apps::water;
-  Run run{tests::run_simulated(options, frames, hand), {}};
+  Run run{tests::run_simulated({&board, true, scene, apps::water}, frames, hand), {}};
   for (std::size_t at = run.out.find("\nframes "); at != std::string::npos;
        at = run.out.find("\nframes ", at + 1)) {
     Counters now;

@@ -1,20 +1,28 @@
-/// The demonstration's scene, baked as the boards get it.
+/// Scenes, baked as the boards get them: above all the demonstration's.
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "scene/baking.h"
 
 namespace thimble::tests {
 
+/// Under its own words, with its camera where it has one.
+inline tools::Baked bake_words(const std::string& scene, tools::BakingOptions options = {}) {
+  const auto source = tools::open_scene({.scene = scene, .depth = std::nullopt});
+  options.name = scene;
+  if (source->camera() != nullptr) {
+    options.camera = [&source](const CompactTree&) { return *source->camera(); };
+  }
+  return tools::bake_scene(*source, options);
+}
+
 inline tools::Baked bake_demo(EffectSet effects, bool has_map = false) {
-  const auto source = tools::open_scene({.scene = "demo", .depth = std::nullopt});
   tools::BakingOptions options;
   options.effects = {effects == Effect::kNone, effects};
-  options.name = "demo";
   options.brick_map = has_map;
-  options.camera = [&source](const CompactTree&) { return *source->camera(); };
-  return tools::bake_scene(*source, options);
+  return bake_words("demo", options);
 }
 
 /// Without effects.
