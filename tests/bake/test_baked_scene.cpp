@@ -44,9 +44,8 @@ SceneCamera orthographic() {
 
 // A tree of level 3 with two materials and a solid block.
 HeapBytes small_tree() {
-  std::vector<std::uint8_t> bytes(Octree::octree_bytes(4096));
-  Octree octree;
-  REQUIRE(Octree::make(3, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
+  OwnedPool octree_pool(3, 4096);
+  Octree& octree = octree_pool.octree;
   REQUIRE(octree.insert_block({0, 0, 0}, 1, 1) == Status::kOk);
   std::mt19937 random(5);
   for (int i = 0; i < 40; ++i) {
@@ -321,9 +320,8 @@ constexpr std::size_t kEntries = kBakedHeaderBytes;  // 12 bytes each: kind, off
 constexpr std::size_t kSizeInEntry = 8;
 
 HeapBytes some_tree() {
-  std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
-  Octree octree;
-  REQUIRE(Octree::make(2, {pool.data(), pool.size()}, &octree) == Status::kOk);
+  OwnedPool octree_pool(2, 100);
+  Octree& octree = octree_pool.octree;
   REQUIRE(octree.insert({1, 2, 3}, 4) == Status::kOk);
   return compact_of(octree);
 }

@@ -65,34 +65,14 @@ TEST_CASE("gpu device: hard rays -> every hit is the core's") {
   for (int i = 0; i < many_or_few(8, 2); ++i) {
     std::mt19937_64 random(static_cast<std::uint64_t>(i));
     const WideScene scene = solid_scene(random, 3 + i);
-    const int side = 1 << scene.level;
-    RayCases cases(static_cast<std::uint64_t>(i), {side, side, side});
-    std::vector<Ray> rays;
-    for (int k = 0; k < 2000; ++k) {
-      const reference::Ray from = cases.next().ray;
-      Ray ray;
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto place = static_cast<std::size_t>(axis);
-        ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(from.origin_q8[place]));
-        ray.direction[axis] = static_cast<std::int32_t>(from.direction[place]);
-      }
-      if (check_ray(ray, scene.level) == Status::kOk) {
-        rays.push_back(ray);
-      }
-    }
+    const std::vector<Ray> rays = accepted_rays(static_cast<std::uint64_t>(i), scene.level, 2000);
     gpu::Renderer renderer(scene.tree, {}, {});
     std::vector<Hit> hits(rays.size());
     REQUIRE(renderer.trace({rays.data(), rays.size()}, {hits.data(), hits.size()}) == Status::kOk);
     for (std::size_t k = 0; k < rays.size(); ++k) {
       Hit expected;
       REQUIRE(closest_hit(scene.tree, rays[k], &expected) == Status::kOk);
-      const bool same =
-          hits[k].kind == expected.kind &&
-          (expected.kind != HitKind::kHit ||
-           (hits[k].voxel == expected.voxel && hits[k].axis == expected.axis &&
-            hits[k].material == expected.material && hits[k].t_numerator == expected.t_numerator &&
-            hits[k].t_denominator == expected.t_denominator));
-      wrong += same ? 0 : 1;
+      wrong += same_hit(hits[k], expected) ? 0 : 1;
     }
   }
   CHECK(wrong == 0);

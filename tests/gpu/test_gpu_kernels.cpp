@@ -16,33 +16,6 @@ namespace {
 
 constexpr Pairs kPairs[] = {Pairs::kAsNeeded, Pairs::kAlways};
 
-bool same_hit(const Hit& one, const Hit& other) {
-  return one.kind == other.kind &&
-         (one.kind != HitKind::kHit ||
-          (one.voxel == other.voxel && one.axis == other.axis && one.material == other.material &&
-           one.block_level == other.block_level && one.t_numerator == other.t_numerator &&
-           one.t_denominator == other.t_denominator));
-}
-
-std::vector<Ray> random_rays(std::uint64_t seed, int level, int count) {
-  const int side = 1 << level;
-  RayCases cases(seed, {side, side, side});
-  std::vector<Ray> rays;
-  while (rays.size() < static_cast<std::size_t>(count)) {
-    const reference::Ray from = cases.next().ray;
-    Ray ray;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto place = static_cast<std::size_t>(axis);
-      ray.origin[axis] = Q8::from_raw(static_cast<std::int32_t>(from.origin_q8[place]));
-      ray.direction[axis] = static_cast<std::int32_t>(from.direction[place]);
-    }
-    if (check_ray(ray, level) == Status::kOk) {
-      rays.push_back(ray);
-    }
-  }
-  return rays;
-}
-
 // Both widths; adds the wrong hits and the reads outside.
 void trace_everyhow(const CompactTree& tree, const std::vector<Ray>& rays, int* wrong,
                     std::uint64_t* outside) {
@@ -82,7 +55,7 @@ TEST_CASE("gpu kernels: hard rays, whatever words they need -> every hit is the 
     std::mt19937_64 random(seed);
     CAPTURE(seed);
     const WideScene scene = i % 2 == 0 ? random_scene(random) : solid_scene(random, pick_int(random, 1, 12));
-    trace_everyhow(scene.tree, random_rays(seed, scene.level, 400), &wrong, &outside);
+    trace_everyhow(scene.tree, accepted_rays(seed, scene.level, 400), &wrong, &outside);
   }
   CHECK(wrong == 0);
   CHECK(outside == 0);
@@ -109,7 +82,7 @@ TEST_CASE(
           REQUIRE(octree->insert({0, 0, 0}, 9) == Status::kOk);
         }
       });
-      trace_everyhow(scene.tree, random_rays(static_cast<std::uint64_t>(level), level, 100), &wrong,
+      trace_everyhow(scene.tree, accepted_rays(static_cast<std::uint64_t>(level), level, 100), &wrong,
                      &outside);
     }
   }
@@ -135,7 +108,7 @@ TEST_CASE("gpu kernels: damaged trees -> every ray ends within its bound, the by
     if (CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk) {
       continue;
     }
-    const std::vector<Ray> rays = random_rays(seed, tree.level(), 20);
+    const std::vector<Ray> rays = accepted_rays(seed, tree.level(), 20);
     const gpu::SceneWords scene = gpu::make_scene_words(tree);
     for (const Hit& hit : trace_by_kernel(scene, {rays.data(), rays.size()}, kPairs[i % 2], &outside)) {
       CHECK(hit.kind != HitKind::kStepLimit);

@@ -111,9 +111,8 @@ TEST_CASE("light limits: lights of any channels -> direct light and shadows wher
 // Bricks here and there, in a box that need not be a cube.
 struct SunWorld {
   SunWorld(std::mt19937_64& random, unsigned share) {
-    std::vector<std::uint8_t> pool(Octree::octree_bytes(60000));
-    Octree octree;
-    REQUIRE(Octree::make(5, {pool.data(), pool.size()}, &octree) == Status::kOk);
+    OwnedPool octree_pool(5, 60000);
+    Octree& octree = octree_pool.octree;
     REQUIRE(octree.insert({static_cast<std::int32_t>(random() % 16), 0, 0}, 1) == Status::kOk);
     for (std::int32_t i = 0; i < 512; ++i) {
       if (random() % share == 0) {

@@ -246,9 +246,8 @@ TEST_CASE(
 TEST_CASE(
     "baked scene: with lighting -> comes back; without -> opens as ever; a kind that is not known -> "
     "refused") {
-  std::vector<std::uint8_t> pool(Octree::octree_bytes(64));
-  Octree octree;
-  REQUIRE(Octree::make(kLevel, {pool.data(), pool.size()}, &octree) == Status::kOk);
+  OwnedPool octree_pool(kLevel, 64);
+  Octree& octree = octree_pool.octree;
   REQUIRE(octree.insert({1, 2, 3}, 1) == Status::kOk);
   const HeapBytes tree = compact_of(octree);
   const Whole whole;

@@ -25,7 +25,7 @@ std::uint64_t lit_pixels_to_draw() {
 }
 
 struct LitView {
-  const ChipScene& scene;
+  const MappedTree& scene;
   const Camera& camera;
   const Shading& shading;
   const LitScene& light;
@@ -214,7 +214,7 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
     CAPTURE(seed);
     std::mt19937_64 own(seed);
     const int level = pick_int(own, 3, 6);
-    const ChipScene scene = make_chip_scene(own, kChipWorlds[turn % 6], level);
+    const MappedTree scene = make_chip_scene(own, kChipWorlds[turn % 6], level);
     const std::vector<Surface> surfaces = hard_surfaces(own);
     for (int view = 0; view < 6; ++view) {
       CAPTURE(view);
@@ -296,7 +296,7 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
 
 TEST_CASE("bricks free towards a sun: bad arguments, and bits that another light does not get") {
   std::mt19937_64 random(7);
-  const ChipScene scene = make_chip_scene(random, ChipWorld::kTower, 5);
+  const MappedTree scene = make_chip_scene(random, ChipWorld::kTower, 5);
   std::vector<std::uint8_t> room(SunBricks::bytes(scene.map));
   SunBricks sun;
   CHECK(SunBricks::make(scene.map, {0, 0, 0}, {room.data(), room.size()}, &sun) == Status::kBadArgument);

@@ -9,12 +9,14 @@
 #include "golden/scenes.h"
 #include "scene/random.h"
 #include "support/formats.h"
+#include "support/scene_under_test.h"
 #include "thimble/picture/anytime.h"
 
 namespace {
 
 using namespace thimble;
 using testing::kFormats;
+using tests::OwnedPool;
 using thimble::tools::SplitMix64;
 
 constexpr std::uint8_t kGuard = 0xA5;
@@ -334,9 +336,8 @@ TEST_CASE("anytime: random scenes, cameras, shadings, formats, sizes and slices 
 }
 
 TEST_CASE("anytime: nothing solid, or nothing in view -> done at once") {
-  std::vector<std::uint8_t> bytes(Octree::octree_bytes(100));
-  Octree pool;
-  REQUIRE(Octree::make(5, Bytes(bytes.data(), bytes.size()), &pool) == Status::kOk);
+  OwnedPool owned(5, 100);
+  Octree& pool = owned.octree;
   SplitMix64 random(7);
   const Camera camera = random_camera(random, 21, 10);
   CHECK(Drawing(Case<Octree>(pool, camera, {}, PixelFormat::kGray4)).frame.done());
@@ -348,9 +349,8 @@ TEST_CASE("anytime: nothing solid, or nothing in view -> done at once") {
 }
 
 TEST_CASE("anytime: what can be seen -> the range of greys") {
-  std::vector<std::uint8_t> bytes(Octree::octree_bytes(100));
-  Octree pool;
-  REQUIRE(Octree::make(5, Bytes(bytes.data(), bytes.size()), &pool) == Status::kOk);
+  OwnedPool owned(5, 100);
+  Octree& pool = owned.octree;
   REQUIRE(pool.insert({16, 16, 16}, 0) == Status::kOk);
   Camera along;  // in direction +y only, a little up and down
   const OrthographicView view{{Q8::from_raw(4200), Q8::from_raw(-256), Q8::from_raw(4200)},
@@ -395,9 +395,8 @@ TEST_CASE("anytime: what can be seen -> the range of greys") {
 }
 
 TEST_CASE("anytime: a face that only the rays of one corner can enter -> its grey counts") {
-  std::vector<std::uint8_t> bytes(Octree::octree_bytes(100));
-  Octree pool;
-  REQUIRE(Octree::make(5, Bytes(bytes.data(), bytes.size()), &pool) == Status::kOk);
+  OwnedPool owned(5, 100);
+  Octree& pool = owned.octree;
   REQUIRE(pool.insert({16, 16, 16}, 0) == Status::kOk);
   Shading shading;
   shading.mode = ShadeMode::kColor;
@@ -443,9 +442,8 @@ TEST_CASE("anytime: what cannot be -> an error, and nothing changed") {
         Status::kOutOfMemory);
   CHECK(AnytimeFrame::make(scene.pool, camera, {}, PixelFormat::kRgb565, bytes, &nothing) ==
         Status::kOutOfMemory);
-  std::vector<std::uint8_t> other_bytes(Octree::octree_bytes(10));
-  Octree other;
-  REQUIRE(Octree::make(6, Bytes(other_bytes.data(), other_bytes.size()), &other) == Status::kOk);
+  OwnedPool other_pool(6, 10);
+  Octree& other = other_pool.octree;
   CHECK(AnytimeFrame::make(other, camera, {}, PixelFormat::kGray8, bytes, &nothing) == Status::kBadArgument);
   CHECK(memory == before);
   CHECK(nothing.pixels() == 0);

@@ -161,7 +161,7 @@ TEST_CASE(
   std::mt19937_64 random(20261126);
   for (const int level : {9, 10}) {
     const int side_q8 = 256 << level;
-    const ChipScene scene = make_deep_scene(random, DeepWorld::kBlocks, level);
+    const MappedTree scene = make_deep_scene(random, DeepWorld::kBlocks, level);
     const VoxelBox& box = scene.tree.bounds();
     for (int turn = 0; turn < 12; ++turn) {
       CAPTURE(level);
@@ -205,8 +205,8 @@ TEST_CASE("deep frames: beams through empty pages to each page of a small table 
 
 TEST_CASE("brick frames: arguments that contradict the picture -> a status, and not a byte is written") {
   std::mt19937_64 random(11);
-  const ChipScene scene = make_chip_scene(random, ChipWorld::kBlocks, 5);
-  const ChipScene other = make_chip_scene(random, ChipWorld::kBlocks, 5);
+  const MappedTree scene = make_chip_scene(random, ChipWorld::kBlocks, 5);
+  const MappedTree other = make_chip_scene(random, ChipWorld::kBlocks, 5);
   const CompactTree& tree = scene.tree;
   const BrickMap& map = scene.map;
   Camera camera;
@@ -244,12 +244,12 @@ TEST_CASE(
     "brick map: too few bytes, wrong levels, odd addresses -> a status, and the least that works is known") {
   std::mt19937_64 random(5);
   for (const ChipWorld world : kChipWorlds) {
-    const ChipScene scene = make_chip_scene(random, world, 5);
+    const MappedTree scene = make_chip_scene(random, world, 5);
     const CompactTree& tree = scene.tree;
     BrickMap map = scene.map;
     const std::size_t size = map.size_bytes();
     const HeapBytes map_bytes(size);
-    std::memcpy(map_bytes.span().data, scene.map_words.data(), size);
+    std::memcpy(map_bytes.span().data, scene.map_room.view().data, size);
     CHECK(size == brick_map_bytes(static_cast<std::uint32_t>((map.box().high.x - map.box().low.x) *
                                                              (map.box().high.y - map.box().low.y) *
                                                              (map.box().high.z - map.box().low.z)),

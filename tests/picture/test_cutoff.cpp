@@ -158,13 +158,7 @@ std::vector<Voxel> random_voxels(std::mt19937_64& random, int side) {
     for (int& coordinate : corner) {
       coordinate = pick_int(random, 0, side / size - 1) * size;
     }
-    for (int z = 0; z < size; ++z) {
-      for (int y = 0; y < size; ++y) {
-        for (int x = 0; x < size; ++x) {
-          voxels.push_back({corner[0] + x, corner[1] + y, corner[2] + z});
-        }
-      }
-    }
+    add_box(corner, {corner[0] + size, corner[1] + size, corner[2] + size}, &voxels);
   }
   std::sort(voxels.begin(), voxels.end());
   voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());

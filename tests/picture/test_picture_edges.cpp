@@ -42,29 +42,15 @@ struct Picture {
 
 // ---- by bricks
 
-struct Bricks {
-  explicit Bricks(const CompactTree& from)
-      : room(most_brick_map_bytes(from.level())), status(BrickMap::make(from, room.span(), &map)) {
-    REQUIRE(status == Status::kOk);
-  }
-  HeapBytes room;
-  BrickMap map;
-  Status status;
-};
-
 // A world of 64 from one voxel and from all of it: an eye's distance from the farthest side of the world is below
 // 2^(31 - bits), that from the farthest side of what is solid 32 voxels less or nearer.
 TEST_CASE("picture edges: eyes from farther and farther away -> fast frames up to the last 1/256 voxel") {
   OwnedPool corner(6);
   REQUIRE(corner.octree.insert({0, 0, 0}, 1) == Status::kOk);
-  const HeapBytes corner_bytes = compact_of(corner.octree);
-  const CompactTree corner_tree = open_or_throw(corner_bytes);
-  const Bricks one(corner_tree);
+  const MappedTree one(compact_of(corner.octree));
   REQUIRE(corner.octree.insert({63, 63, 63}, 1) == Status::kOk);
-  const HeapBytes whole_bytes = compact_of(corner.octree);
-  const CompactTree whole_tree = open_or_throw(whole_bytes);
-  const Bricks all(whole_tree);
-  const auto is_fast = [](const Bricks& bricks, int axis, std::int32_t raw, int bits) {
+  const MappedTree all(compact_of(corner.octree));
+  const auto is_fast = [](const MappedTree& bricks, int axis, std::int32_t raw, int bits) {
     PerspectiveView view;
     view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
     view.eye[axis] = Q8::from_raw(raw);
@@ -82,7 +68,7 @@ TEST_CASE("picture edges: eyes from farther and farther away -> fast frames up t
   const std::int32_t reach = 1 << (31 - 15);
   for (int axis = 0; axis < 3; ++axis) {
     CAPTURE(axis);
-    for (const Bricks* bricks : {&all, &one}) {
+    for (const MappedTree* bricks : {&all, &one}) {
       CHECK(is_fast(*bricks, axis, reach - margin, 15));
       CHECK_FALSE(is_fast(*bricks, axis, reach - margin + 1, 15));
     }

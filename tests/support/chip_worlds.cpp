@@ -64,18 +64,11 @@ void fill(std::mt19937_64& random, ChipWorld world, int level, Octree* pool) {
 }
 
 template <class Fill>
-ChipScene filled_scene(int level, const Fill& fill_pool) {
-  std::vector<std::uint8_t> pool_bytes(Octree::octree_bytes(100000));
-  Octree pool;
-  REQUIRE(Octree::make(level, {pool_bytes.data(), pool_bytes.size()}, &pool) == Status::kOk);
+MappedTree filled_scene(int level, const Fill& fill_pool) {
+  OwnedPool owned(level, 100000);
+  Octree& pool = owned.octree;
   fill_pool(&pool);
-  ChipScene scene{compact_of(pool, kMinRankShift), {}, {}, {}};
-  scene.tree = open_or_throw(scene.tree_bytes);
-  scene.map_words.resize(most_brick_map_bytes(scene.tree) / 8 + 1);
-  const Bytes room(static_cast<std::uint8_t*>(static_cast<void*>(scene.map_words.data())),
-                   8 * scene.map_words.size());
-  REQUIRE(BrickMap::make(scene.tree, room, &scene.map) == Status::kOk);
-  return scene;
+  return MappedTree(compact_of(pool, kMinRankShift));
 }
 
 }  // namespace
@@ -101,11 +94,11 @@ void insert_blocks(std::mt19937_64& random, int level, int blocks, int voxels,
   }
 }
 
-ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level) {
+MappedTree make_chip_scene(std::mt19937_64& random, ChipWorld world, int level) {
   return filled_scene(level, [&](Octree* pool) { fill(random, world, level, pool); });
 }
 
-ChipScene make_chip_scene(int level, const std::vector<Vec3i>& voxels) {
+MappedTree make_chip_scene(int level, const std::vector<Vec3i>& voxels) {
   return filled_scene(level, [&](Octree* pool) {
     bool fits = true;  // one check for all: a check a voxel takes longer than what is tested with them
     for (const Vec3i& voxel : voxels) {

@@ -23,22 +23,15 @@ enum class ChipWorld { kHills, kBlocks, kDust, kRoom, kMerged, kTower };
 inline constexpr ChipWorld kChipWorlds[] = {ChipWorld::kHills, ChipWorld::kBlocks, ChipWorld::kDust,
                                             ChipWorld::kRoom,  ChipWorld::kMerged, ChipWorld::kTower};
 
-struct ChipScene {
-  HeapBytes tree_bytes;
-  std::vector<std::uint64_t> map_words;
-  CompactTree tree;
-  BrickMap map;
-};
-
 /// Inserts so many blocks below level - 1 and voxels, where cell() says.
 void insert_blocks(std::mt19937_64& random, int level, int blocks, int voxels,
                    const std::function<Vec3i()>& cell, const std::function<std::uint8_t()>& material,
                    Octree* pool);
 
 /// Materials 0 .. 9.
-ChipScene make_chip_scene(std::mt19937_64& random, ChipWorld world, int level);
+MappedTree make_chip_scene(std::mt19937_64& random, ChipWorld world, int level);
 /// These voxels, all of material 1.
-ChipScene make_chip_scene(int level, const std::vector<Vec3i>& voxels);
+MappedTree make_chip_scene(int level, const std::vector<Vec3i>& voxels);
 
 /// A coordinate of an eye in 1/256 voxel: often the least or the greatest from which frames by bricks take directions of
 /// `bits` bits, whatever the box of what is solid; and beyond.

@@ -90,21 +90,14 @@ int far_deep_coordinate(std::mt19937_64& random, int side_q8) {
 }  // namespace
 
 HeapBytes make_deep_tree(std::mt19937_64& random, DeepWorld world, int level) {
-  std::vector<std::uint8_t> pool(Octree::octree_bytes(150000));
-  Octree octree;
-  REQUIRE(Octree::make(level, {pool.data(), pool.size()}, &octree) == Status::kOk);
+  OwnedPool octree_pool(level, 150000);
+  Octree& octree = octree_pool.octree;
   fill_deep(random, world, level, &octree);
   return compact_of(octree, kMinRankShift);
 }
 
-ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level) {
-  ChipScene scene{make_deep_tree(random, world, level), {}, {}, {}};
-  scene.tree = open_or_throw(scene.tree_bytes);
-  scene.map_words.resize(most_brick_map_bytes(scene.tree) / 8 + 1);
-  const Bytes room(static_cast<std::uint8_t*>(static_cast<void*>(scene.map_words.data())),
-                   most_brick_map_bytes(scene.tree));
-  REQUIRE(BrickMap::make(scene.tree, room, &scene.map) == Status::kOk);
-  return scene;
+MappedTree make_deep_scene(std::mt19937_64& random, DeepWorld world, int level) {
+  return MappedTree(make_deep_tree(random, world, level));
 }
 
 Camera hard_deep_camera(std::mt19937_64& random, const CompactTree& tree) {

@@ -17,7 +17,7 @@ inline constexpr int kMostDeepDistanceQ8 = (1 << 19) - 512;
 /// The bytes of such a tree. Materials 0 .. 9, or any, or one.
 HeapBytes make_deep_tree(std::mt19937_64& random, DeepWorld world, int level);
 /// The same with its map.
-ChipScene make_deep_scene(std::mt19937_64& random, DeepWorld world, int level);
+MappedTree make_deep_scene(std::mt19937_64& random, DeepWorld world, int level);
 
 /// As hard_chip_camera; and eyes within the world, close by what is solid, at its sides and as far away as frames by the
 /// map go, that mostly look at what is solid.

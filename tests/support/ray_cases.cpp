@@ -331,6 +331,16 @@ Ray RayCases::nudged_ray() {
   return within(limits_, nudged) ? nudged : ray;
 }
 
+void add_box(const Voxel& low, const Voxel& high, std::vector<Voxel>* voxels) {
+  for (int z = low[2]; z < high[2]; ++z) {
+    for (int y = low[1]; y < high[1]; ++y) {
+      for (int x = low[0]; x < high[0]; ++x) {
+        voxels->push_back({x, y, z});
+      }
+    }
+  }
+}
+
 World make_world(WorldKind kind, const Voxel& size, std::mt19937_64& random) {
   static const std::array<std::string, kWorldKinds> names = {
       "empty", "full", "single", "sparse", "random", "dense", "shell", "checkerboard", "corners"};

@@ -107,6 +107,10 @@ struct World {
   std::vector<reference::Voxel> voxels;  ///< each once
 };
 
+/// The voxels of low .. high, the last not included, behind those that are there.
+void add_box(const reference::Voxel& low, const reference::Voxel& high,
+             std::vector<reference::Voxel>* voxels);
+
 /// A random world. Any size will do for kEmpty, kSingle, kSparse (at most 4096 voxels) and kCorners; the
 /// others look at every voxel and throw `std::invalid_argument` above 2^24.
 World make_world(WorldKind kind, const reference::Voxel& size, std::mt19937_64& random);

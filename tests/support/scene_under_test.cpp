@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "support/ray_cases.h"
 #include "thimble/tree/compact_tree.h"
 
 namespace thimble::tests {
@@ -28,10 +29,6 @@ int level_for(const reference::Voxel& size) {
 std::uint64_t code_of(const reference::Voxel& voxel) {
   return morton_code(static_cast<std::uint32_t>(voxel[0]), static_cast<std::uint32_t>(voxel[1]),
                      static_cast<std::uint32_t>(voxel[2]));
-}
-
-bool equal(const HeapBytes& a, const HeapBytes& b) {
-  return std::equal(a.view().begin(), a.view().end(), b.view().begin(), b.view().end());
 }
 
 Octree fill_pool(std::vector<std::uint8_t>& bytes, int level, const std::vector<reference::Voxel>& voxels,
@@ -109,6 +106,19 @@ Ray to_core(const reference::Ray& ray) {
   return result;
 }
 
+std::vector<Ray> accepted_rays(std::uint64_t seed, int level, int count) {
+  const int side = 1 << level;
+  RayCases cases(seed, {side, side, side});
+  std::vector<Ray> rays;
+  while (rays.size() < static_cast<std::size_t>(count)) {
+    const Ray ray = to_core(cases.next().ray);
+    if (check_ray(ray, level) == Status::kOk) {
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
 HeapBytes compact_of(const Octree& octree, int rank_shift, std::size_t offset) {
   HeapBytes bytes(compact_bytes(compact_shape(octree, rank_shift)), offset);
   std::size_t written = 0;
@@ -139,12 +149,31 @@ HeapBytes compact_of_keys_64(const std::vector<reference::Voxel>& voxels, int le
   return from_sorted(std::move(keys), 3 * level + 8, level, 0, rank_shift);
 }
 
+HeapBytes packed(const EditedWorld& world) {
+  std::size_t size = 0;
+  if (world.pack({}, &size) != Status::kOutOfMemory) {
+    throw std::logic_error("scene under test: no bytes hold a tree");
+  }
+  HeapBytes bytes(size);
+  if (world.pack(bytes.span()) != Status::kOk) {
+    throw std::logic_error("scene under test: an edited world is not packed into its bytes");
+  }
+  return bytes;
+}
+
 CompactTree open_or_throw(const HeapBytes& bytes) {
   CompactTree tree;
   if (CompactTree::open(bytes.view(), &tree) != Status::kOk) {
     throw std::logic_error("scene under test: a fresh compact tree does not open");
   }
   return tree;
+}
+
+MappedTree::MappedTree(HeapBytes bytes)
+    : tree_bytes(std::move(bytes)), tree(open_or_throw(tree_bytes)), map_room(most_brick_map_bytes(tree)) {
+  if (BrickMap::make(tree, map_room.span(), &map) != Status::kOk) {
+    throw std::logic_error("the tree has no brick map");
+  }
 }
 
 bool same_answer(const Hit& hit, const reference::Hit& expected) {
@@ -157,6 +186,14 @@ bool same_answer(const Hit& hit, const reference::Hit& expected) {
   const reference::Hit converted{
       true, {hit.voxel.x, hit.voxel.y, hit.voxel.z}, hit.t_numerator, hit.t_denominator, hit.axis};
   return hit.t_denominator > 0 && reference::same_answer(converted, expected);
+}
+
+bool same_hit(const Hit& one, const Hit& other) {
+  return one.kind == other.kind &&
+         (one.kind != HitKind::kHit ||
+          (one.voxel == other.voxel && one.axis == other.axis && one.material == other.material &&
+           one.block_level == other.block_level && one.t_numerator == other.t_numerator &&
+           one.t_denominator == other.t_denominator));
 }
 
 std::string describe(const Hit& hit) {
@@ -181,9 +218,9 @@ SceneUnderTest::SceneUnderTest(const reference::Voxel& size, const std::vector<r
       keys_bytes_(compact_of_keys_64(voxels, level_, materials, salt, rank_shift)),
       compact_(open_or_throw(compact_bytes_)),
       from_keys_(open_or_throw(keys_bytes_)) {
-  same_bytes_ = equal(compact_bytes_, keys_bytes_);
+  same_bytes_ = compact_bytes_ == keys_bytes_;
   if (materials == 1 && level_ <= 10) {
-    same_bytes_ = same_bytes_ && equal(compact_bytes_, compact_of_keys_32(voxels, level_, 0, rank_shift));
+    same_bytes_ = same_bytes_ && compact_bytes_ == compact_of_keys_32(voxels, level_, 0, rank_shift);
   }
   const Vec3i grid_size = to_core(size);
   const std::size_t dense_size = dense_grid_bytes(grid_size);

@@ -2,6 +2,7 @@
 /// of an engine's answer with the reference's.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
+#include "thimble/tree/edited_world.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tests {
@@ -22,6 +24,9 @@ class HeapBytes {
       : storage_(new std::uint8_t[size + offset]), offset_(offset), size_(size) {}
   Bytes span() const { return {storage_.get() + offset_, size_}; }
   ConstBytes view() const { return {storage_.get() + offset_, size_}; }
+  bool operator==(const HeapBytes& other) const {
+    return std::equal(view().begin(), view().end(), other.view().begin(), other.view().end());
+  }
 
  private:
   std::unique_ptr<std::uint8_t[]> storage_;
@@ -43,6 +48,8 @@ std::uint8_t material_at(const reference::Voxel& voxel, unsigned materials, std:
 
 reference::Ray to_reference(const Ray& ray);
 Ray to_core(const reference::Ray& ray);
+/// The first `count` hard rays (ray_cases.h) in a world of 2^level voxels that `check_ray` takes.
+std::vector<Ray> accepted_rays(std::uint64_t seed, int level, int count);
 
 /// The compact tree's bytes of an octree; exactly as many as `compact_bytes` says.
 HeapBytes compact_of(const Octree& octree, int rank_shift = kDefaultRankShift, std::size_t offset = 0);
@@ -51,6 +58,9 @@ HeapBytes compact_of_keys_32(const std::vector<reference::Voxel>& voxels, int le
                              int rank_shift = kDefaultRankShift);
 HeapBytes compact_of_keys_64(const std::vector<reference::Voxel>& voxels, int level, unsigned materials,
                              std::uint64_t salt, int rank_shift = kDefaultRankShift);
+
+/// The bytes of an edited world's tree.
+HeapBytes packed(const EditedWorld& world);
 
 /// Opens bytes that must be a compact tree; throws `std::logic_error` when they are none.
 CompactTree open_or_throw(const HeapBytes& bytes);
@@ -67,8 +77,20 @@ struct OwnedMap {
   Status status;
 };
 
+/// A tree and its brick map; throws `std::logic_error` where the bytes give none.
+struct MappedTree {
+  explicit MappedTree(HeapBytes bytes);
+
+  HeapBytes tree_bytes;
+  CompactTree tree;
+  HeapBytes map_room;
+  BrickMap map;
+};
+
 /// Whether an engine's hit is the reference's: kind, voxel, t as a fraction, axis.
 bool same_answer(const Hit& hit, const reference::Hit& expected);
+/// The same answer of two engines of the core's: all but the visits.
+bool same_hit(const Hit& one, const Hit& other);
 
 /// "miss", "step limit" or "voxel (i, j, k) t n/d axis a block b material m".
 std::string describe(const Hit& hit);

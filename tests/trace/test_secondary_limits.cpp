@@ -16,9 +16,8 @@ using namespace thimble::tests;
 
 // 8 voxels a side, solid in x = 4 .. 5.
 HeapBytes slab() {
-  std::vector<std::uint8_t> bytes(Octree::octree_bytes(600));
-  Octree octree;
-  REQUIRE(Octree::make(3, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
+  OwnedPool octree_pool(3, 600);
+  Octree& octree = octree_pool.octree;
   REQUIRE(octree.insert_box({{4, 0, 0}, {6, 8, 8}}, 7) == Status::kOk);
   return compact_of(octree);
 }
@@ -116,9 +115,8 @@ TEST_CASE(
 }
 
 TEST_CASE("from a point in an empty world -> nothing, whatever lies behind the tree's bytes") {
-  std::vector<std::uint8_t> pool(Octree::octree_bytes(8));
-  Octree octree;
-  REQUIRE(Octree::make(3, {pool.data(), pool.size()}, &octree) == Status::kOk);
+  OwnedPool octree_pool(3, 8);
+  Octree& octree = octree_pool.octree;
   const HeapBytes exact = compact_of(octree);
   for (const int behind : {0x00, 0x01, 0x80, 0xFF}) {
     HeapBytes bytes(exact.view().size + 64);

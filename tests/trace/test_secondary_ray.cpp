@@ -495,9 +495,8 @@ TEST_CASE("leave_medium: merged blocks -> crossed whole as media, entered as blo
   int merged = 0;
   for (int world = 0; world < 40; ++world) {
     const int level = 4;
-    std::vector<std::uint8_t> bytes(Octree::octree_bytes(6000));
-    Octree pool;
-    REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &pool) == Status::kOk);
+    OwnedPool owned(level, 6000);
+    Octree& pool = owned.octree;
     for (int i = 0; i < 700; ++i) {
       const auto at = [&] { return pick_int(random, 0, 15); };
       const std::int32_t x = at();

@@ -31,13 +31,7 @@ std::vector<reference::Voxel> block_world(int level, std::mt19937_64& random) {
     for (int& component : corner) {
       component = side * pick_int(random, 0, (1 << (level - block_level)) - 1);
     }
-    for (int z = 0; z < side; ++z) {
-      for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
-          voxels.push_back({corner[0] + x, corner[1] + y, corner[2] + z});
-        }
-      }
-    }
+    add_box(corner, {corner[0] + side, corner[1] + side, corner[2] + side}, &voxels);
   }
   std::sort(voxels.begin(), voxels.end());
   voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());

@@ -47,13 +47,7 @@ class Cube {
 
 Voxels all_voxels(int side) {
   Voxels voxels;
-  for (int z = 0; z < side; ++z) {
-    for (int y = 0; y < side; ++y) {
-      for (int x = 0; x < side; ++x) {
-        voxels.push_back({x, y, z});
-      }
-    }
-  }
+  add_box({0, 0, 0}, {side, side, side}, &voxels);
   return voxels;
 }
 
@@ -79,13 +73,7 @@ TEST_CASE("trace: the rays worked out by hand -> so say the judges, and every st
     Voxels voxels;
     for (int i = 0; i < row.scene->box_count; ++i) {
       const portable::RayScene::Box& box = row.scene->boxes[i];
-      for (int z = box.low[2]; z < box.high[2]; ++z) {
-        for (int y = box.low[1]; y < box.high[1]; ++y) {
-          for (int x = box.low[0]; x < box.high[0]; ++x) {
-            voxels.push_back({x, y, z});
-          }
-        }
-      }
+      add_box({box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}, &voxels);
     }
     const Cube cube(row.scene->level, voxels);
     if (row.axis == portable::kMiss) {
@@ -172,9 +160,8 @@ TEST_CASE("trace: merged blocks of a coarsened tree -> lowest corner, exact t, t
     const int level = pick_int(random, 2, 5);
     const int side = 1 << level;
     const unsigned materials = world % 2 == 0 ? 1 : 3;
-    std::vector<std::uint8_t> bytes(Octree::octree_bytes(40000));
-    Octree pool;
-    REQUIRE(Octree::make(level, {bytes.data(), bytes.size()}, &pool) == Status::kOk);
+    OwnedPool owned(level, 40000);
+    Octree& pool = owned.octree;
     for (const reference::Voxel& voxel :
          random_voxels(random, level, pick_int(random, 4, side * side * side / 4))) {
       REQUIRE(pool.insert({voxel[0], voxel[1], voxel[2]}, material_at(voxel, materials, 61)) == Status::kOk);

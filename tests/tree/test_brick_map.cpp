@@ -74,22 +74,18 @@ TEST_CASE(
       {corner, 188, 3, 0, 1604114209},
   };
   for (const MapWorld& world : worlds) {
-    std::vector<std::uint8_t> pool(Octree::octree_bytes(40000));
-    Octree octree;
-    REQUIRE(Octree::make(5, {pool.data(), pool.size()}, &octree) == Status::kOk);
+    OwnedPool octree_pool(5, 40000);
+    Octree& octree = octree_pool.octree;
     for (std::int32_t i = 0; i < kMapSide * kMapSide * kMapSide; ++i) {
       const Vec3i at{i % kMapSide, i / kMapSide % kMapSide, i / kMapSide / kMapSide};
       if (world.material(at) != kNothing) {
         REQUIRE(octree.insert(at, static_cast<std::uint8_t>(world.material(at))) == Status::kOk);
       }
     }
-    const HeapBytes tree_bytes = compact_of(octree);
-    const CompactTree tree = open_or_throw(tree_bytes);
-    const HeapBytes room(most_brick_map_bytes(5));
-    BrickMap map;
-    std::size_t size = 0;
-    REQUIRE(BrickMap::make(tree, room.span(), &map, &size) == Status::kOk);
-    CHECK(BrickMap::validate({room.view().data, size}) == nullptr);
+    const MappedTree scene(compact_of(octree));
+    const BrickMap& map = scene.map;
+    const ConstBytes map_bytes(scene.map_room.view().data, map.size_bytes());
+    CHECK(BrickMap::validate(map_bytes) == nullptr);
     const Vec3i sides{map.box().high.x - map.box().low.x, map.box().high.y - map.box().low.y,
                       map.box().high.z - map.box().low.z};
     std::int64_t wrong = 0;
@@ -113,15 +109,14 @@ TEST_CASE(
           next[face / 2] += face % 2 != 0 ? 1 : -1;
           seen = seen || next[face / 2] < 0 || next[face / 2] >= kMapSide || world.material(next) == kNothing;
         }
-        wrong += seen && map.material(tree, number, bit) != material ? 1 : 0;
+        wrong += seen && map.material(scene.tree, number, bit) != material ? 1 : 0;
       }
     }
     CHECK(wrong == 0);
-    const std::uint32_t crc = crc32({room.view().data, size});
     CAPTURE(&world - worlds);
-    CHECK(size == world.size_bytes);
+    CHECK(map_bytes.size == world.size_bytes);
     CHECK(map.brick_count() == world.bricks);
     CHECK(map.mixed_count() == world.mixed);
-    CHECK(crc == world.crc32);
+    CHECK(crc32(map_bytes) == world.crc32);
   }
 }

@@ -71,7 +71,7 @@ TEST_CASE(
   for (int turn = 0; turn < 2 * kDeepWorldKinds; ++turn) {
     CAPTURE(turn);
     const int level = 9 + turn / kDeepWorldKinds;
-    const ChipScene scene = make_deep_scene(random, static_cast<DeepWorld>(turn % kDeepWorldKinds), level);
+    const MappedTree scene = make_deep_scene(random, static_cast<DeepWorld>(turn % kDeepWorldKinds), level);
     const BrickMap& map = scene.map;
     REQUIRE(map.level() == level);
     REQUIRE(map.belongs_to(scene.tree));
@@ -116,9 +116,8 @@ TEST_CASE(
 
 TEST_CASE(
     "deep map: solid pages of three materials, and the world's last voxel -> each brick of its material") {
-  std::vector<std::uint8_t> pool(Octree::octree_bytes(300));
-  Octree octree;
-  REQUIRE(Octree::make(9, {pool.data(), pool.size()}, &octree) == Status::kOk);
+  OwnedPool octree_pool(9, 300);
+  Octree& octree = octree_pool.octree;
   const struct {
     Vec3i corner;
     int level;
@@ -128,13 +127,9 @@ TEST_CASE(
     REQUIRE(octree.insert_block(block.corner, block.level, block.material) == Status::kOk);
   }
   REQUIRE(octree.insert({511, 511, 511}, 9) == Status::kOk);
-  const HeapBytes bytes = compact_of(octree);
-  const CompactTree tree = open_or_throw(bytes);
-  const HeapBytes room(most_brick_map_bytes(tree));
-  BrickMap map;
-  std::size_t size = 0;
-  REQUIRE(BrickMap::make(tree, room.span(), &map, &size) == Status::kOk);
-  CHECK(BrickMap::validate({room.view().data, size}) == nullptr);
+  const MappedTree scene(compact_of(octree));
+  const BrickMap& map = scene.map;
+  CHECK(BrickMap::validate({scene.map_room.view().data, map.size_bytes()}) == nullptr);
   CHECK(map.brick_count() == 5);  // empty, one a material, the last voxel's
   for (const auto& block : blocks) {
     const int last = (1 << block.level) - 1;
@@ -142,12 +137,12 @@ TEST_CASE(
          {block.corner, Vec3i{block.corner.x + last, block.corner.y + last, block.corner.z + last}}) {
       const Cell cell = cell_of(map, at);
       REQUIRE(cell.solid);
-      CHECK(map.material(tree, cell.number, cell.bit) == block.material);
+      CHECK(map.material(scene.tree, cell.number, cell.bit) == block.material);
     }
   }
   const Cell last = cell_of(map, {511, 511, 511});
   REQUIRE(last.solid);
-  CHECK(map.material(tree, last.number, last.bit) == 9);
+  CHECK(map.material(scene.tree, last.number, last.bit) == 9);
 }
 
 TEST_CASE("deep map: an empty world, a full one, one voxel -> the bytes that the format's page says") {
@@ -158,34 +153,29 @@ TEST_CASE("deep map: an empty world, a full one, one voxel -> the bytes that the
   } worlds[] = {{-1, 48 + 72 + 8 + 8 + 4, 1}, {0, 48 + 8 + 136 + 16 + 8 + 4, 2}, {9, 0, 2}};
   for (const auto& world : worlds) {
     CAPTURE(world.block);
-    std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
-    Octree octree;
-    REQUIRE(Octree::make(9, {pool.data(), pool.size()}, &octree) == Status::kOk);
+    OwnedPool octree_pool(9, 100);
+    Octree& octree = octree_pool.octree;
     if (world.block >= 0) {
       REQUIRE(octree.insert_block({0, 0, 0}, world.block, 5) == Status::kOk);
     }
-    const HeapBytes bytes = compact_of(octree);
-    const CompactTree tree = open_or_throw(bytes);
-    const HeapBytes room(most_brick_map_bytes(tree));
-    BrickMap map;
-    std::size_t size = 0;
-    REQUIRE(BrickMap::make(tree, room.span(), &map, &size) == Status::kOk);
-    CHECK(BrickMap::validate({room.view().data, size}) == nullptr);
+    const MappedTree scene(compact_of(octree));
+    const BrickMap& map = scene.map;
+    CHECK(BrickMap::validate({scene.map_room.view().data, map.size_bytes()}) == nullptr);
     CHECK(map.brick_count() == world.bricks);
     CHECK(map.empty() == (world.block < 0));
     if (world.bytes != 0) {
-      CHECK(size == world.bytes);
+      CHECK(map.size_bytes() == world.bytes);
     }
   }
 }
 
 TEST_CASE("deep map: each count of origins and each entry of the table moved -> damaged") {
   std::mt19937_64 random(913);
-  const ChipScene scene = make_deep_scene(random, DeepWorld::kBlocks, 9);
+  const MappedTree scene = make_deep_scene(random, DeepWorld::kBlocks, 9);
   const std::size_t size = scene.map.size_bytes();
   const HeapBytes bytes(size);
   std::uint8_t* const base = bytes.span().data;
-  std::memcpy(base, scene.map_words.data(), size);
+  std::memcpy(base, scene.map_room.view().data, size);
   const std::size_t bricks = word_at(base + 36);
   const std::size_t ranks = (bricks + 31) / 32;
   const std::size_t first = size - 12 * std::size_t{word_at(base + 40)} - (bricks + 3) / 4 * 4 - 8 * ranks;

@@ -23,18 +23,6 @@ namespace {
 
 const int kDeepEdits = many_or_few(6000, 800);
 
-HeapBytes packed(const EditedWorld& world) {
-  std::size_t size = 0;
-  REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
-  HeapBytes bytes(size);
-  REQUIRE(world.pack(bytes.span()) == Status::kOk);
-  return bytes;
-}
-
-bool same_bytes(const HeapBytes& a, const HeapBytes& b) {
-  return a.view().size == b.view().size && std::equal(a.view().begin(), a.view().end(), b.view().begin());
-}
-
 /// A pool and a world of the same voxels.
 struct DeepPair {
   explicit DeepPair(int level, const EditRoom& more)
@@ -51,7 +39,7 @@ struct DeepPair {
     room = {room.nodes + more.nodes, 0, room.bricks + more.bricks, room.pages + more.pages};
     bytes = HeapBytes(edited_world_bytes(level, room));
     REQUIRE(EditedWorld::make(open_or_throw(tree), room, bytes.span(), &world) == Status::kOk);
-    REQUIRE(same_bytes(packed(world), tree));
+    REQUIRE(packed(world) == tree);
     journal = EditJournal(journal_bytes.span());
   }
   void insert(const VoxelBox& box, int material) {
@@ -158,8 +146,8 @@ TEST_CASE(
           }
         }
       }
-      REQUIRE(same_bytes(packed(pair.world), compact_of(pair.pool.octree)));
-      REQUIRE((status == Status::kOk || same_bytes(packed(pair.world), before)));
+      REQUIRE(packed(pair.world) == compact_of(pair.pool.octree));
+      REQUIRE((status == Status::kOk || packed(pair.world) == before));
       if (edit % 64 == 0) {
         compare_pictures(random, pair.world);
       }
@@ -180,7 +168,7 @@ TEST_CASE(
     const HeapBytes before = packed(pair.world);
     CHECK(pair.world.set({150, 400, 30}, 3) == Status::kOutOfMemory);
     CHECK(pair.world.clear({300, 300, 300}) == Status::kOutOfMemory);
-    CHECK(same_bytes(packed(pair.world), before));
+    CHECK(packed(pair.world) == before);
     CHECK(pair.world.set({282, 200, 100}, 7) == Status::kOk);  // where all there is suffices
     CHECK(EditedWorld::make(open_or_throw(before), {8, 0, 1, 1}, pair.bytes.span(), &pair.world) ==
           Status::kOutOfMemory);
@@ -197,7 +185,7 @@ TEST_CASE(
   CHECK(pair.world.free_room().nodes == free.nodes);
   CHECK(pair.world.free_room().bricks == free.bricks);
   CHECK(pair.world.free_room().pages == free.pages);
-  CHECK(same_bytes(packed(pair.world), compact_of(pair.pool.octree)));
+  CHECK(packed(pair.world) == compact_of(pair.pool.octree));
 }
 
 TEST_CASE("edited deep worlds: emptied and begun again; room that bytes hold") {
@@ -219,7 +207,7 @@ TEST_CASE("edited deep worlds: emptied and begun again; room that bytes hold") {
     CHECK(world.material({500, 3, 77}) == EditedWorld::kEmpty);
     REQUIRE(world.set({500, 3, 77}, 5) == Status::kOk);
   }
-  CHECK(same_bytes(packed(world), tree));
+  CHECK(packed(world) == tree);
   CHECK(world.free_room().nodes == free.nodes);
   CHECK(world.free_room().bricks == free.bricks);
 }

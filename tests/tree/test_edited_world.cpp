@@ -46,19 +46,13 @@ class VoxelModel {
 
   /// The compact tree of these voxels, by way of a pool.
   HeapBytes built() {
-    std::vector<std::uint8_t> bytes(Octree::octree_bytes(60000));
-    Octree pool;
-    REQUIRE(Octree::make(level_, {bytes.data(), bytes.size()}, &pool) == Status::kOk);
+    OwnedPool pool(level_, 60000);
     for_each([&pool](const Vec3i& voxel, int material) {
       if (material >= 0) {
-        REQUIRE(pool.insert(voxel, static_cast<std::uint8_t>(material)) == Status::kOk);
+        REQUIRE(pool.octree.insert(voxel, static_cast<std::uint8_t>(material)) == Status::kOk);
       }
     });
-    std::size_t size = 0;
-    REQUIRE(CompactTree::make(pool, Bytes{}, nullptr, &size) == Status::kOutOfMemory);
-    HeapBytes out(size);
-    REQUIRE(CompactTree::make(pool, out.span(), nullptr, &size) == Status::kOk);
-    return out;
+    return compact_of(pool.octree);
   }
 
  private:
@@ -66,18 +60,6 @@ class VoxelModel {
   int side_;
   std::vector<std::int16_t> voxels_;
 };
-
-HeapBytes packed(const EditedWorld& world) {
-  std::size_t size = 0;
-  REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
-  HeapBytes bytes(size);
-  REQUIRE(world.pack(bytes.span()) == Status::kOk);
-  return bytes;
-}
-
-bool same_bytes(const HeapBytes& a, const HeapBytes& b) {
-  return std::equal(a.view().begin(), a.view().end(), b.view().begin(), b.view().end());
-}
 
 /// Every voxel by the map: solid or not, and of which material.
 bool map_is_right(const EditedWorld& world, VoxelModel& model) {
@@ -193,7 +175,7 @@ TEST_CASE("edited world: random edits of random worlds -> bytes, map and picture
       continue;  // more kinds of solid bricks than there may be
     }
     REQUIRE(made == Status::kOk);
-    REQUIRE(same_bytes(packed(world), first));
+    REQUIRE(packed(world) == first);
     REQUIRE(map_is_right(world, model));
     const int last = model.side() - 1;
     Vec3i at{};
@@ -213,7 +195,7 @@ TEST_CASE("edited world: random edits of random worlds -> bytes, map and picture
         model.at(at) = static_cast<std::int16_t>(wish);
       } else {
         REQUIRE(status == Status::kOutOfMemory);
-        REQUIRE(same_bytes(packed(world), before));
+        REQUIRE(packed(world) == before);
         ++refused;
       }
       const EditRoom left = world.free_room();
@@ -221,12 +203,12 @@ TEST_CASE("edited world: random edits of random worlds -> bytes, map and picture
       REQUIRE(left.leaves <= room.leaves);
       REQUIRE(left.bricks <= room.bricks);
       if (edit % 8 == 0 || status != Status::kOk) {
-        REQUIRE(same_bytes(packed(world), model.built()));
+        REQUIRE(packed(world) == model.built());
         REQUIRE(map_is_right(world, model));
       }
     }
     const HeapBytes fresh = model.built();
-    REQUIRE(same_bytes(packed(world), fresh));
+    REQUIRE(packed(world) == fresh);
     REQUIRE(CompactTree::validate(packed(world).view()) == nullptr);
     for (int view = 0; view < 4; ++view) {
       REQUIRE(same_picture(world, open_or_throw(fresh), random_view(random, model.side())));
@@ -287,14 +269,14 @@ TEST_CASE(
         REQUIRE(status == Status::kOutOfMemory);
         ++refused;
       }
-      REQUIRE(same_bytes(packed(world), model.built()));
+      REQUIRE(packed(world) == model.built());
       REQUIRE(map_is_right(world, model));
     }
     model.for_each([&](const Vec3i& at, int voxel) { REQUIRE(world.material(at) == voxel); });
     for (; states.size() > 1; ++undone) {
       states.pop_back();
       REQUIRE(world.undo(&journal) == Status::kOk);
-      REQUIRE(same_bytes(packed(world), states.back().built()));
+      REQUIRE(packed(world) == states.back().built());
       REQUIRE(map_is_right(world, states.back()));
     }
     REQUIRE(world.undo(&journal) == Status::kBadArgument);
@@ -359,7 +341,7 @@ TEST_CASE("edited world: emptied and filled voxel by voxel -> no node, then one 
   CHECK(world.free_room().nodes == room.nodes);
   CHECK(world.free_room().leaves == room.leaves);
   CHECK(world.free_room().bricks == room.bricks);
-  CHECK(same_bytes(packed(world), none));
+  CHECK(packed(world) == none);
 }
 
 TEST_CASE("edited world: what cannot be -> a status, and nothing done") {

@@ -192,9 +192,8 @@ TEST_CASE("shared tree: small worlds of one material -> as many nodes and bytes 
 
 TEST_CASE("shared tree: every second voxel of a large world -> one node a level") {
   constexpr int kLevel = 9;
-  std::vector<std::uint8_t> bytes(Octree::octree_bytes(1 << 20));
-  Octree octree;
-  REQUIRE(Octree::make(kLevel, {bytes.data(), bytes.size()}, &octree) == Status::kOk);
+  OwnedPool octree_pool(kLevel, 1 << 20);
+  Octree& octree = octree_pool.octree;
   // The corner of each 8 x 8 x 8 block.
   for (int z = 0; z < 512; z += 8) {
     for (int y = 0; y < 512; y += 8) {

@@ -149,18 +149,11 @@ RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_
   return batch;
 }
 
-bool same(const Hit& a, const Hit& b) {
-  return a.kind == b.kind &&
-         (a.kind != HitKind::kHit ||
-          (a.voxel == b.voxel && a.axis == b.axis && a.t_numerator == b.t_numerator &&
-           a.t_denominator == b.t_denominator && a.material == b.material && a.block_level == b.block_level));
-}
-
 bool same(const MediumExit& a, const MediumExit& b) {
   if (a.left_world && b.left_world && b.hit.axis < 0) {
     return a.hit.axis == b.hit.axis;
   }
-  return a.into_solid == b.into_solid && a.left_world == b.left_world && same(a.hit, b.hit);
+  return a.into_solid == b.into_solid && a.left_world == b.left_world && same_hit(a.hit, b.hit);
 }
 
 template <class Same>
@@ -196,13 +189,13 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
   CHECK(wide::any_hit_before(map, rays, before, to_any) == Status::kOk);
   check_each("any_hit_before", batch, [&](std::size_t i) { return any[i] == hit_before(i); });
   CHECK(wide::first_hit(map, rays, to_hits) == Status::kOk);
-  check_each("first_hit", batch, [&](std::size_t i) { return same(hits[i], batch.first[i]); });
+  check_each("first_hit", batch, [&](std::size_t i) { return same_hit(hits[i], batch.first[i]); });
   CHECK(wide::first_unnamed_hit(map, rays, to_hits) == Status::kOk);
   check_each("first_unnamed_hit", batch, [&](std::size_t i) {
     if (hits[i].kind == HitKind::kHit) {
       hits[i].material = wide::unnamed_material(map, hits[i]);
     }
-    return same(hits[i], batch.first[i]);
+    return same_hit(hits[i], batch.first[i]);
   });
   // One bound for all rays; of a merged block the t counts, not how it is written.
   const RayPoint reach = batch.before.front();
@@ -231,12 +224,12 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
              [&](std::size_t i) { return any[i] == (hit_before(i) ? class_of(i) : 0); });
   CHECK(wide::first_hit_before(map, rays, before, to_hits) == Status::kOk);
   check_each("first_hit_before", batch,
-             [&](std::size_t i) { return same(hits[i], hit_before(i) ? batch.first[i] : Hit{}); });
+             [&](std::size_t i) { return same_hit(hits[i], hit_before(i) ? batch.first[i] : Hit{}); });
   std::vector<MediumExit> exits(count);
   const std::vector<std::uint16_t> air(count, wide::kInAir);
   CHECK(wide::first_change(map, rays, from, {air.data(), count}, {exits.data(), count}) == Status::kOk);
   check_each("first_change in air", batch,
-             [&](std::size_t i) { return same(exits[i].hit, batch.first_from[i]); });
+             [&](std::size_t i) { return same_hit(exits[i].hit, batch.first_from[i]); });
   CHECK(wide::first_change(map, rays, from, {batch.in.data(), count}, {exits.data(), count}) == Status::kOk);
   check_each("first_change", batch, [&](std::size_t i) { return same(exits[i], batch.change[i]); });
 }
