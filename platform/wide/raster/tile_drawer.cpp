@@ -13,12 +13,11 @@ namespace {
 // Blocks of more boxes than this are cut up (in flat order and in blocks), so that boxes out of sight are not
 // projected.
 constexpr uint32_t kFlatBoxes = 4096;
+static_assert(kFlatBoxes <= kMostShortEntries);
 constexpr uint32_t kBlockBoxes = 320;
 // Blocks of at most so many pixels a side are drawn whole: too little of them is hidden for a cut to pay.
 constexpr int32_t kTinyPx = 16;
 constexpr uint32_t kTinyBoxes = 1024;
-// Blocks of short entries are cut into the cubes within which these count, unless they hold no more than this.
-constexpr uint32_t kSparseBoxes = 256;
 // The limits of blocks that are drawn by tables.
 constexpr uint32_t kTableBoxes = 1900;
 constexpr int32_t kTablePx = 56;
@@ -230,9 +229,6 @@ bool TileDrawer::is_leaf(const Block& block, const BlockNode& node, unsigned mas
   }
   if (widest <= kTinyPx) {
     most = std::max(most, kTinyBoxes);
-  }
-  if (!lists_.short_entries().empty() && block.level > kShortLevel) {
-    most = kSparseBoxes;
   }
   return node.entries <= most && block.level <= kCubeLevel;
 }
