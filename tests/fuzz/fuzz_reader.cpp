@@ -36,7 +36,7 @@ int check_reader(FormatReader* read, std::span<const std::uint8_t> bytes) {
     const auto& corners = mesh->texcoord_corners;
     require(mesh->surface_of.size() == (mesh->surfaces.empty() ? 0 : mesh->triangles.size()));
     require(corners.empty() || corners.size() == mesh->triangles.size());
-    require(mesh->surfaces.empty() || !corners.empty() || mesh->texcoords.size() == mesh->positions.size());
+    require(!corners.empty() || mesh->texcoords.empty() || mesh->texcoords.size() == mesh->positions.size());
     for (const std::uint32_t surface : mesh->surface_of) {
       require(surface < mesh->surfaces.size());
     }

@@ -42,12 +42,6 @@ Source array_of(ArrayAs as, const std::string& text) {
   return read_npy(SharedBytes::own(text), {"", {}, as}, {});
 }
 
-bool notes_hold(const Source& source, const std::string& part) {
-  const Notes notes = notes_of(source);
-  return std::any_of(notes.begin(), notes.end(),
-                     [&](const std::string& note) { return contains(note, part); });
-}
-
 Colors colors_of(const Source& source) {
   Colors colors;
   const auto& cloud = *std::get<std::unique_ptr<PointCloud>>(source);

@@ -137,12 +137,6 @@ std::map<Place, Rgb> voxels_of(const Source& source, int level = 4) {
   return voxels;
 }
 
-bool notes_hold(const Source& source, const std::string& part) {
-  const Notes notes = notes_of(source);
-  return std::any_of(notes.begin(), notes.end(),
-                     [&](const std::string& note) { return contains(note, part); });
-}
-
 /// Of the columns from the left, the first letters of their colours; '.' is none, '?' another or several.
 std::string columns_of(const Source& source, int level = 4) {
   std::string columns(std::size_t{1} << level, ' ');

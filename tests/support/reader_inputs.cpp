@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -158,6 +159,12 @@ std::vector<std::size_t> accepted_lengths(Reader reader, const std::string& whol
     }
   }
   return accepted;
+}
+
+bool notes_hold(const Source& source, std::string_view part) {
+  const Notes notes = notes_of(source);
+  return std::any_of(notes.begin(), notes.end(),
+                     [&](const std::string& note) { return contains(note, part); });
 }
 
 }  // namespace thimble::tools::test

@@ -47,6 +47,9 @@ long long outcome_of(Reader reader, std::string bytes);
 /// Reads every truncated length of `whole`; returns the lengths that were not refused.
 std::vector<std::size_t> accepted_lengths(Reader reader, const std::string& whole);
 
+/// One note of the source contains `part`.
+bool notes_hold(const Source& source, std::string_view part);
+
 inline bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }

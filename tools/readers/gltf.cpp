@@ -32,7 +32,6 @@
 #include <vector>
 
 #include "output/units.h"
-#include "readers/gltf_draco.h"
 #include "readers/gltf_file.h"
 #include "readers/mesh.h"
 #include "readers/text.h"

@@ -1,4 +1,4 @@
-#include "readers/gltf_draco.h"
+#include "readers/gltf_file.h"
 
 #include <draco/compression/decode.h>
 #include <draco/core/varint_decoding.h>

@@ -105,4 +105,10 @@ class GltfFile {
   std::uint64_t bytes_read_ = 0, bytes_made_ = 0;
 };
 
+/// Fills the accessors of `primitive` with what its `extension` (KHR_draco_mesh_compression) holds; then it is one of
+/// triangles.
+/// @throws InputError  damaged data, more triangles than its bytes are believed to hold, an accessor of another length
+void unpack_draco(GltfFile& file, const nlohmann::json& primitive, const nlohmann::json& extension,
+                  const std::string& place);
+
 }  // namespace thimble::tools

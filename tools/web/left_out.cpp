@@ -1,7 +1,7 @@
 // What the page does without: Debian has compiled the decoders of Draco and WebP for the host alone.
 #include <webp/decode.h>
 
-#include "readers/gltf_draco.h"
+#include "readers/gltf_file.h"
 
 namespace thimble::tools {
 
