@@ -32,17 +32,27 @@ installed() {
   logged dpkg --root="$(cd "$WORK/root" && pwd)" --force-depends --force-script-chrootless --log=/dev/null --install "$@"
   dpkg --root="$(cd "$WORK/root" && pwd)" --verify >"$WORK/verify" 2>&1 && [ ! -s "$WORK/verify" ] || fail "dpkg --verify: $(cat "$WORK/verify")"
 }
+for need in libc6 libx11-6 libhwy1 libtbb; do
+  dpkg-deb -f "$command" Depends | grep -q "$need" || fail "it does not depend on $need"
+done
 installed "$command"
 [ -z "$(find "$WORK/root/usr/lib" "$WORK/root/usr/include" -type f 2>/dev/null)" ] || fail "the command's package holds a library"
 env -i PATH="$WORK/root/usr/bin" thimble render castle --size 64x48 --quiet -o "$WORK/castle.png" || fail "the command does not draw"
+said=$(env -i PATH="$WORK/root/usr/bin" thimble render nothing -o "$WORK/nothing.png" 2>&1 || true)
+case $said in
+  *castle*house*lagoon*ship*) ;;
+  *) fail "an unknown name lists: $said" ;;
+esac
 installed $others
 for file in bin/thimble include/thimble/thimble.h include/thimble/drivers/panel.h include/thimble/files.h \
   include/thimble/wide/threads.h lib/libthimble.a lib/libthimble_files.so lib/libthimble_wide.a \
   lib/cmake/thimble/thimbleConfig.cmake share/doc/thimble/copyright share/doc/libthimble-dev/README.md.gz \
-  share/man/man1/thimble.1.gz share/applications/thimble.desktop share/mime/packages/thimble.xml \
+  share/bash-completion/completions/thimble share/fish/vendor_completions.d/thimble.fish \
+  share/zsh/vendor-completions/_thimble share/man/man1/thimble.1.gz share/applications/thimble.desktop share/mime/packages/thimble.xml \
   share/thumbnailers/thimble.thumbnailer share/icons/hicolor/scalable/apps/thimble.svg; do
   [ -s "$WORK/root/usr/$file" ] || fail "it lacks usr/$file"
 done
+! grep -rlsF "$PWD" "$WORK/root/usr" >&2 || fail "these name the folder that they were built in"
 # Templates come along, and programs for boards where `make images` has built them.
 env -i PATH="$WORK/root/usr/bin" thimble new "$WORK/project" --board pico --panel ssd1306 castle --quiet && [ -s "$WORK/project/main.cpp" ] ||
   fail "the command writes no project"
