@@ -67,6 +67,8 @@ struct Renderer::State {
   void start(std::size_t number, const Parameters& parameters, bool pairs, std::size_t in_bytes,
              std::size_t out_bytes);
   double finish(std::size_t number);
+  // Starts a frame of a word a pixel.
+  void begin(int frame, const Camera& camera, const Parameters& told, bool pairs, bool read_back);
   // A picture of `part` at once, so many words a pixel.
   const std::uint32_t* draw(const Camera& part, const Parameters& told, bool pairs, std::size_t words);
   void release();
@@ -359,12 +361,14 @@ std::int32_t Renderer::most_rows(std::int32_t width_px) {
 void Renderer::begin(int frame, const Camera& camera, const Shading& shading, bool read_back) {
   Parameters parameters = state_->parameters;
   set_frame(camera, shading, &parameters);
-  const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(camera.width_px()) *
-                            static_cast<std::size_t>(camera.height_px());
-  const auto number = static_cast<std::size_t>(frame);
-  state_->fit(&state_->slots[number], bytes);
-  state_->start(number, parameters, needs_pairs(state_->level, largest_direction(camera)), 0,
-                read_back ? bytes : 0);
+  state_->begin(frame, camera, parameters, needs_pairs(state_->level, largest_direction(camera)), read_back);
+}
+
+void Renderer::begin(int frame, const LitFrame& lit, bool read_back) {
+  Parameters parameters = state_->parameters;
+  set_frame(lit.camera, lit.shading, &parameters);
+  set_light(lit, &parameters);
+  state_->begin(frame, lit.camera, parameters, needs_pairs(state_->level, largest_direction(lit)), read_back);
 }
 
 Frame Renderer::end(int frame) {
@@ -412,6 +416,15 @@ Rgb8 color_of(std::uint32_t word) {
 }
 
 }  // namespace
+
+void Renderer::State::begin(int frame, const Camera& camera, const Parameters& told, bool pairs,
+                            bool read_back) {
+  const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(camera.width_px()) *
+                            static_cast<std::size_t>(camera.height_px());
+  const auto number = static_cast<std::size_t>(frame);
+  fit(&slots[number], bytes);
+  start(number, told, pairs, 0, read_back ? bytes : 0);
+}
 
 const std::uint32_t* Renderer::State::draw(const Camera& part, const Parameters& told, bool pairs,
                                            std::size_t words) {

@@ -74,6 +74,8 @@ class Renderer {
   /// `end` waits for it. What `end` returns is valid until that number begins again. Pictures up to most_rows(width)
   /// rows. Throw DeviceError.
   void begin(int frame, const Camera& camera, const Shading& shading, bool read_back);
+  /// The same for lit pictures that `draw_lit` takes, with the backdrop's share on top of each word.
+  void begin(int frame, const LitFrame& lit, bool read_back);
   Frame end(int frame);
 
  private:

@@ -21,6 +21,7 @@
 
 #include "gpu/renderer.h"
 #include "thimble/bake/baked_scene.h"
+#include "thimble/light/render.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::bench {
@@ -39,14 +40,16 @@ struct Size {
 constexpr Size kSizes[] = {{800, 600}, {1920, 1080}, {3840, 2160}};
 constexpr int kCameras = 240;  // of a path, a degree each
 constexpr int kInFlight = 3;
-const char* const kShades[] = {"depth", "normal", "color", "mono"};
+// What a pixel shows: a ShadeMode, or its light.
+const char* const kPictures[] = {"depth", "normal", "color", "mono", "lit"};
+constexpr int kLit = 4;
 
 struct Scene {
   std::string name;
   std::vector<std::uint8_t> bytes;
   CompactTree tree;
   std::vector<Rgb8> palette;
-  ShadeMode shade = ShadeMode::kDepth;  // of the frames that are timed
+  int shade = static_cast<int>(ShadeMode::kDepth);  // of the frames that are timed, beside lit ones
 };
 
 [[noreturn]] void fail(const std::string& sentence) {
@@ -96,7 +99,7 @@ Scene load(const std::string& name) {
   scene.name = name.substr(name.find_last_of('/') + 1);
   scene.tree = baked.tree();
   scene.palette.assign(baked.palette().data, baked.palette().data + baked.palette().size);
-  scene.shade = scene.tree.many_materials() ? ShadeMode::kColor : ShadeMode::kNormal;
+  scene.shade = static_cast<int>(scene.tree.many_materials() ? ShadeMode::kColor : ShadeMode::kNormal);
   return scene;
 }
 
@@ -156,9 +159,9 @@ Camera camera_of(const Scene& scene, Size size, int degree, bool parallel) {
   return camera;
 }
 
-Shading shading_of(const Scene& scene, ShadeMode mode, const Camera& camera) {
+Shading shading_of(const Scene& scene, int picture, const Camera& camera) {
   Shading shading;
-  shading.mode = mode;
+  shading.mode = picture == kLit ? ShadeMode::kColor : static_cast<ShadeMode>(picture);
   shading.palette = {scene.palette.data(), scene.palette.size()};
   const DepthRange range = depth_range(camera, scene.tree.bounds());
   shading.near_q8 = range.near_q8;
@@ -166,9 +169,25 @@ Shading shading_of(const Scene& scene, ShadeMode mode, const Camera& camera) {
   return shading;
 }
 
+// Of lit pictures: a sun with its shadows, the sky, and four rays of occlusion a pixel.
+constexpr EffectSet kLight =
+    Effect::kDirectLight | Effect::kShadows | Effect::kSky | Effect::kAmbientOcclusion;
+const LitScene& light() {
+  static const Light sun;
+  static const LitScene scene = [] {
+    LitScene made;
+    made.lights = {&sun, 1};
+    made.has_shadows = true;
+    made.has_sky = true;
+    made.occlusion.rays = 4;
+    return made;
+  }();
+  return scene;
+}
+
 // A picture whose CRC is checked.
 struct Check {
-  ShadeMode shade;
+  int picture;
   Size size;
   int degree;
   bool parallel;
@@ -178,17 +197,18 @@ std::vector<Check> checks_of(const Scene& scene) {
   std::vector<Check> checks;
   for (const Size size : kSizes) {
     checks.push_back({scene.shade, size, 0, false});
+    checks.push_back({kLit, size, 0, false});
   }
-  for (int mode = 0; mode < 4; ++mode) {
-    checks.push_back({static_cast<ShadeMode>(mode), kSizes[0], 77, false});
-    checks.push_back({static_cast<ShadeMode>(mode), kSizes[0], 161, true});
+  for (int picture = 0; picture <= kLit; ++picture) {
+    checks.push_back({picture, kSizes[0], 77, false});
+    checks.push_back({picture, kSizes[0], 161, true});
   }
   return checks;
 }
 
 std::string name_of(const Scene& scene, const Check& check) {
-  return scene.name + " " + kShades[static_cast<int>(check.shade)] + " " + std::to_string(check.size.width) +
-         "x" + std::to_string(check.size.height) + " " + std::to_string(check.degree) +
+  return scene.name + " " + kPictures[check.picture] + " " + std::to_string(check.size.width) + "x" +
+         std::to_string(check.size.height) + " " + std::to_string(check.degree) +
          (check.parallel ? " parallel" : " perspective");
 }
 
@@ -201,7 +221,7 @@ std::string hex(std::uint32_t crc) {
 // By the core, rows in as many parts as there are cores.
 std::uint32_t crc_by_core(const Scene& scene, const Check& check) {
   const Camera camera = camera_of(scene, check.size, check.degree, check.parallel);
-  const Shading shading = shading_of(scene, check.shade, camera);
+  const Shading shading = shading_of(scene, check.picture, camera);
   const std::size_t row = row_bytes(PixelFormat::kRgb888, check.size.width);
   std::vector<std::uint8_t> pixels(row * static_cast<std::size_t>(check.size.height));
   std::vector<std::thread> threads;
@@ -213,7 +233,10 @@ std::uint32_t crc_by_core(const Scene& scene, const Check& check) {
         band.pixels = {pixels.data() + row * static_cast<std::size_t>(y), row};
         band.first_row = y;
         band.rows = 1;
-        if (render_band(scene.tree, camera, shading, band) != Status::kOk) {
+        const Status status = check.picture == kLit
+                                  ? render_lit_band(kLight, scene.tree, camera, shading, light(), band)
+                                  : render_band(scene.tree, camera, shading, band);
+        if (status != Status::kOk) {
           fail(scene.name + ": the core refuses the picture");
         }
       }
@@ -252,6 +275,15 @@ Expected read_expected(const char* path) {
   return expected;
 }
 
+void begin(gpu::Renderer* renderer, int number, int picture, const Camera& camera, const Shading& shading,
+           bool read_back) {
+  if (picture == kLit) {
+    renderer->begin(number, gpu::LitFrame{kLight, camera, shading, light()}, read_back);
+  } else {
+    renderer->begin(number, camera, shading, read_back);
+  }
+}
+
 // Returns how many pictures were wrong.
 int check_pictures(const Scene& scene, gpu::Renderer* renderer, const Expected& expected, int* checked) {
   int wrong = 0;
@@ -261,7 +293,7 @@ int check_pictures(const Scene& scene, gpu::Renderer* renderer, const Expected& 
       fail("no CRC for " + name_of(scene, check));
     }
     const Camera camera = camera_of(scene, check.size, check.degree, check.parallel);
-    renderer->begin(0, camera, shading_of(scene, check.shade, camera), true);
+    begin(renderer, 0, check.picture, camera, shading_of(scene, check.picture, camera), true);
     const gpu::Frame frame = renderer->end(0);
     const auto pixels =
         static_cast<std::size_t>(check.size.width) * static_cast<std::size_t>(check.size.height);
@@ -283,23 +315,23 @@ struct Times {
   int frames = 0;
 };
 
-double wall_of(const Scene& scene, Size size, gpu::Renderer* renderer, int frames, bool read_back,
+double wall_of(int picture, gpu::Renderer* renderer, int frames, bool read_back,
                const std::vector<Camera>& cameras, const Shading& shading) {
-  (void)scene;
-  (void)size;
   const auto start = Clock::now();
   for (int i = 0; i < frames + kInFlight; ++i) {
     if (i >= kInFlight) {
       (void)renderer->end(i % kInFlight);
     }
     if (i < frames) {
-      renderer->begin(i % kInFlight, cameras[static_cast<std::size_t>(i % kCameras)], shading, read_back);
+      begin(renderer, i % kInFlight, picture, cameras[static_cast<std::size_t>(i % kCameras)], shading,
+            read_back);
     }
   }
   return seconds_since(start) / frames;
 }
 
-Times time_frames(const Scene& scene, Size size, gpu::Renderer* renderer, double seconds, int most_frames) {
+Times time_frames(const Scene& scene, int picture, Size size, gpu::Renderer* renderer, double seconds,
+                  int most_frames) {
   std::vector<Camera> cameras;
   for (int degree = 0; degree < std::min(kCameras, std::max(most_frames, 1)); ++degree) {
     cameras.push_back(camera_of(scene, size, degree, false));
@@ -307,32 +339,31 @@ Times time_frames(const Scene& scene, Size size, gpu::Renderer* renderer, double
   while (cameras.size() < kCameras) {
     cameras.push_back(cameras[cameras.size() % static_cast<std::size_t>(most_frames)]);
   }
-  const Shading shading = shading_of(scene, scene.shade, cameras[0]);
+  const Shading shading = shading_of(scene, picture, cameras[0]);
   std::vector<double> device;
   Times times;
   const auto start = Clock::now();
   for (int i = 0; i < most_frames && (i < 8 || seconds_since(start) < seconds); ++i) {
     const auto before = Clock::now();
-    renderer->begin(0, cameras[static_cast<std::size_t>(i % kCameras)], shading, false);
+    begin(renderer, 0, picture, cameras[static_cast<std::size_t>(i % kCameras)], shading, false);
     const double kernel = renderer->end(0).seconds;
     device.push_back(kernel > 0 ? kernel : seconds_since(before));
   }
   std::sort(device.begin(), device.end());
   times.device_median = device[device.size() / 2];
   times.frames = std::min(most_frames, std::max(kInFlight, static_cast<int>(seconds / times.device_median)));
-  times.wall = wall_of(scene, size, renderer, times.frames, true, cameras, shading);
-  times.wall_kept = wall_of(scene, size, renderer, times.frames, false, cameras, shading);
+  times.wall = wall_of(picture, renderer, times.frames, true, cameras, shading);
+  times.wall_kept = wall_of(picture, renderer, times.frames, false, cameras, shading);
   return times;
 }
 
-void print_row(const Scene& scene, const gpu::Renderer& renderer, Size size, const Times& times,
+void print_row(const Scene& scene, int picture, const gpu::Renderer& renderer, Size size, const Times& times,
                const char* remark) {
   const double rays = 1e-6 * static_cast<double>(size.width) * static_cast<double>(size.height);
   std::printf("| %s %s | %dx%d | %.2f | %.4f | %.0f | %.0f | %.0f | %.0f | %s |\n", scene.name.c_str(),
-              kShades[static_cast<int>(scene.shade)], size.width, size.height,
-              1e-6 * static_cast<double>(renderer.scene_bytes()), 1000 * times.device_median,
-              1 / times.device_median, rays / times.device_median, 1 / times.wall_kept, 1 / times.wall,
-              remark);
+              kPictures[picture], size.width, size.height, 1e-6 * static_cast<double>(renderer.scene_bytes()),
+              1000 * times.device_median, 1 / times.device_median, rays / times.device_median,
+              1 / times.wall_kept, 1 / times.wall, remark);
   std::fflush(stdout);
 }
 
@@ -359,8 +390,11 @@ int check_scenes(const char* expected_path, const std::vector<std::string>& name
     wrong += wrong_here;
     char remark[40];
     std::snprintf(remark, sizeof remark, "%d of %d", checked - wrong_here, checked);
-    for (const Size size : kSizes) {
-      print_row(scene, renderer, size, time_frames(scene, size, &renderer, seconds, most_frames), remark);
+    for (const int picture : {scene.shade, kLit}) {
+      for (const Size size : kSizes) {
+        print_row(scene, picture, renderer, size,
+                  time_frames(scene, picture, size, &renderer, seconds, most_frames), remark);
+      }
     }
     std::fprintf(stderr, "%s: %.1f s\n", name.c_str(), seconds_since(start));
   }
