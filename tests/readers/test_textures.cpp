@@ -322,8 +322,8 @@ TEST_CASE("gltf: unlit materials alone -> their base colour without light; besid
   quad.material = R"({"emissiveFactor":[1,1,1],"extensions":{"KHR_materials_unlit":{}}})";
   CHECK(std::get<TriangleMesh>(quad.source()).surfaces.empty());
 
-  // A dark red, from the side and from below, is its own bytes: 0.2 of light is 124.
-  quad.material = R"({"pbrMetallicRoughness":{"baseColorFactor":[0.2,0,0,1]},)"
+  // A bright orange, from the side and from below, is its own bytes: 0.2 of light is 124.
+  quad.material = R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0.2,0,1]},)"
                   R"("extensions":{"KHR_materials_unlit":{}}})";
   const TemporaryFolder folder;
   const std::string scene = folder.write("quad.glb", quad.glb());
@@ -334,8 +334,9 @@ TEST_CASE("gltf: unlit materials alone -> their base colour without light; besid
               .status == 0);
     const auto picture = thimble::tests::read_png(thimble::tests::read_text(file));
     const auto at = static_cast<std::size_t>(picture.channels) * (16 * 33 + 16);
-    CHECK(std::abs(static_cast<std::uint8_t>(picture.frames[0][at]) - 124) < 4);
-    CHECK(static_cast<std::uint8_t>(picture.frames[0][at + 1]) == 0);
+    CHECK(static_cast<std::uint8_t>(picture.frames[0][at]) > 251);
+    CHECK(std::abs(static_cast<std::uint8_t>(picture.frames[0][at + 1]) - 124) < 4);
+    CHECK(static_cast<std::uint8_t>(picture.frames[0][at + 2]) == 0);
   }
   quad.attributes =
       R"(},"indices":3},{"attributes":{"POSITION":0)";  // a primitive without material before it

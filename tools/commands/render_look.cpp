@@ -175,8 +175,9 @@ void print_look(const RenderCommand& command, const SceneSource& source, const L
               grouped(studio.measured().rays) + " rays for four, which are taken up to " +
               grouped(kMostLookRays) + ")";
     }
+    const std::uint32_t exposure = studio.measured().exposure_q8;
     std::fprintf(stderr, "look: %s; exposure %s\n", text.c_str(),
-                 fixed(studio.measured().exposure_q8 / 256.0, 2).c_str());
+                 exposure == kOwnColorsQ8 ? "none" : fixed(exposure / 256.0, 2).c_str());
     if (source.color_error() > 0) {
       std::fprintf(stderr, "colors: 255 at most; a channel differs by %s of 255 (root of the mean square)\n",
                    fixed(source.color_error(), 2).c_str());

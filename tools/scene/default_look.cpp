@@ -372,7 +372,8 @@ void quick_light(const LitScene& scene, std::uint16_t (&face_light)[6]) {
 }
 
 ToneTable quick_tone(const Look& look, std::uint32_t exposure_q8) {
-  return tone_table(exposure_q8 * (look.has_backdrop ? 7U : 8U) / 8);
+  return tone_table(exposure_q8 == kOwnColorsQ8 ? exposure_q8
+                                                : exposure_q8 * (look.has_backdrop ? 7U : 8U) / 8);
 }
 
 QuickLook quick_look(const Look& look, const ToneTable& tone) {

@@ -271,7 +271,7 @@ LookMeasure measure_look(const LookCanvas& canvas) {
   const auto pixels = [](const Camera& camera) {
     return static_cast<std::uint64_t>(camera.width_px()) * static_cast<std::uint64_t>(camera.height_px());
   };
-  return {is_dark_but_for_glow(canvas.look->lit_scene()) ? 256 : exposure_q8(counts),
+  return {is_dark_but_for_glow(canvas.look->lit_scene()) ? kOwnColorsQ8 : exposure_q8(counts),
           totals_of(traced).rays * 4 * pixels(whole) / pixels(coarse)};
 }
 

@@ -26,13 +26,15 @@ uint32_t exposure_q8(const GrayCounts& counts) {
 }
 
 ToneTable tone_table(uint32_t exposure_q8) {
-  constexpr uint32_t kKnee = 200;
-  constexpr uint32_t kRest = 255 - kKnee;
+  const bool is_exposed = exposure_q8 != kOwnColorsQ8;
+  const uint32_t brightness_q8 = is_exposed ? exposure_q8 : 256;
+  const uint32_t knee = is_exposed ? 200 : 255;
+  const uint32_t rest = 255 - knee;
   ToneTable table;
   for (uint32_t value = 0; value < 256; ++value) {
-    const uint32_t bright = (value * exposure_q8 * 3 + 256) / 512;
-    const uint32_t over = bright > kKnee ? bright - kKnee : 0;
-    table.of[value] = static_cast<uint8_t>(bright - over + kRest * over / (over + kRest));
+    const uint32_t bright = (value * brightness_q8 * 3 + 256) / 512;
+    const uint32_t over = bright > knee ? bright - knee : 0;
+    table.of[value] = static_cast<uint8_t>(over == 0 ? bright : knee + rest * over / (over + rest));
   }
   return table;
 }

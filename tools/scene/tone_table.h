@@ -27,7 +27,9 @@ inline constexpr uint64_t kMostLookRays = 100'000'000;
 /// How much to brighten a picture of these greys, drawn at two thirds: 256 is not at all. A picture of nothing is
 /// not.
 uint32_t exposure_q8(const GrayCounts& counts);
-/// Nothing but what glows gives light: that has the colours that it is to be seen in, and so exposure 256.
+/// The exposure of a picture whose colours are those that are to be seen: none, and no shoulder.
+inline constexpr uint32_t kOwnColorsQ8 = 512;
+/// Nothing but what glows gives light: its colours are its own.
 inline bool is_dark_but_for_glow(const LitScene& scene) {
   return scene.lights.empty() && scene.ambient_q8[0] + scene.ambient_q8[1] + scene.ambient_q8[2] == 0;
 }

@@ -472,7 +472,7 @@ extern "C" {
     return static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(camera.height_px());
   };
   const bool allows_four = rays * 4 * pixels(viewer.camera) / pixels(coarse) <= kMostLookRays;
-  const uint32_t exposure = is_dark_but_for_glow(viewer.lighting.scene) ? 256 : exposure_q8(counts);
+  const uint32_t exposure = is_dark_but_for_glow(viewer.lighting.scene) ? kOwnColorsQ8 : exposure_q8(counts);
   return exposure | (allows_four ? 0 : kOneSample);
 }
 // What is drawn at rest is drawn with it from then on.
