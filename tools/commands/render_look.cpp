@@ -171,9 +171,9 @@ void print_look(const RenderCommand& command, const SceneSource& source, const L
     if (look.kind == LookKind::kLit && look.at_edges) {
       text += ", samples where edges are";
     } else if (look.kind == LookKind::kLit) {
-      text += ", " + counted(static_cast<std::uint64_t>(look.across * look.across), "sample") + " a pixel (" +
-              grouped(studio.measured().rays) + " rays for four, which are taken up to " +
-              grouped(kMostLookRays) + ")";
+      const auto across = static_cast<std::uint64_t>(look.across);
+      text += ", " + counted(across * across, "sample") + " a pixel (" + grouped(studio.measured().rays) +
+              " rays for four, which are taken up to " + grouped(kMostLookRays) + ")";
     }
     const std::uint32_t exposure = studio.measured().exposure_q8;
     std::fprintf(stderr, "look: %s; exposure %s\n", text.c_str(),
