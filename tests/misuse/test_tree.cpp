@@ -3,10 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "misuse/odd_worlds.h"
 #include "thimble/base/memory.h"
+#include "thimble/light/map_render.h"
 #include "thimble/tree/brick_map.h"
 #include "thimble/tree/compact_tree.h"
 #include "thimble/tree/dense_grid.h"
@@ -332,6 +334,10 @@ void edit_at_random(OddValues& odd, const CompactTree& tree) {
     CHECK(world.empty());
     return;
   }
+  const Vec3i towards{odd.between_32(-9, 9), odd.between_32(-9, 9), odd.between_32(1, 9)};
+  ExactBytes bits(SunBricks::bytes(world.map()));
+  SunBricks sun;
+  (void)SunBricks::make(world.map(), towards, bits.bytes(), &sun);
   ExactBytes entries(odd.bits() % 3000);
   EditJournal journal(entries.bytes());
   const auto number = [&] {
@@ -351,6 +357,22 @@ void edit_at_random(OddValues& odd, const CompactTree& tree) {
     if (odd.one_in(3)) {
       (void)world.undo(&journal);
     }
+    if (odd.one_in(3)) {
+      (void)sun.follow(world, odd.one_in(9) ? odd.any<std::uint32_t>()
+                                            : static_cast<std::uint32_t>(odd.between_32(0, 600)));
+    }
+    if (odd.one_in(4)) {  // at the wrong time, too
+      world.forget_changes();
+    }
+  }
+  while (sun.follow(world, 5000)) {
+  }
+  if (sun.belongs_to(world.map(), towards)) {
+    ExactBytes fresh_bits(bits.bytes().size);
+    SunBricks fresh;
+    REQUIRE(SunBricks::make(world.map(), towards, fresh_bits.bytes(), &fresh) == Status::kOk);
+    (void)fresh.prove();
+    CHECK(std::memcmp(bits.bytes().data, fresh_bits.bytes().data, bits.bytes().size) == 0);
   }
   std::size_t size = 0;
   REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
@@ -391,6 +413,8 @@ TEST_CASE(
     if (odd.one_in(3)) {
       edit_at_random(odd, world.compact);
     }
+    const OddWorld small(odd, odd.between_32(kMinBrickMapLevel, 5));
+    edit_at_random(odd, small.compact);
     if (CompactTree::open(bad_tree.bytes(), &opened_tree) == Status::kOk) {
       edit_at_random(odd, opened_tree);
       const std::size_t most = most_brick_map_bytes(opened_tree);
