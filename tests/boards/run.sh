@@ -51,6 +51,7 @@ if [ "${1:-}" = --job ]; then
     esac
     # One board of each kind of core and start-up, and a display of one bit.
     case $2 in lm3s6965evb | sifive_e | raspi0 | pico | pico-oled | gba) sh "$here/new.sh" "$2" || status=1 ;; esac
+    [ $status = 0 ] || echo "$2: FAILED, by what stands above"
   } >"$log" 2>&1
   cat "$log"
   exit $status
@@ -73,6 +74,7 @@ boards=${*:-$all}
 for board in $boards; do
   rm -rf "${work:?}/$board.results" "${work:?}/$board.measured"
 done
+rm -f "$work"/*.said
 failed=0
 # Those with the largest pictures take longest, so they begin; then those with jobs of their own behind them.
 {
@@ -125,6 +127,13 @@ fi
 if [ $failed = 0 ]; then
   echo "test-boards: all passed"
 else
+  # A log may keep its end alone.
+  for log in "$work"/*.said; do
+    if grep -q FAILED "$log"; then
+      grep FAILED "$log"
+      tail -n 8 "$log"
+    fi
+  done >&2
   echo "test-boards: something failed, see above" >&2
 fi
 exit $failed
