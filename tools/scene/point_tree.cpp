@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <vector>
@@ -15,10 +16,23 @@
 namespace thimble::tools {
 namespace {
 
-constexpr int kPartBits = 3 * kPartLevel;
-constexpr std::size_t kPartVoxels = std::size_t{1} << kPartBits;
-// Of a list. Many are open at a time, and half of each is empty.
+constexpr std::size_t kPartVoxels = std::size_t{1} << (3 * kPartLevel);
+// Of a list. Many are open at a time, and half of each is empty. Behind an address it holds whole lines, of 63 or of 60
+// bytes.
 constexpr std::size_t kChunkBytes = std::size_t{32} << 10;
+
+// The bits of a byte, each in front of two others.
+constexpr std::array<std::uint32_t, 256> kSpread = [] {
+  std::array<std::uint32_t, 256> spread{};
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    spread[byte] = static_cast<std::uint32_t>(morton_code(byte, 0, 0));
+  }
+  return spread;
+}();
+
+std::uint32_t morton_of_bytes(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  return kSpread[x & 255U] | kSpread[y & 255U] << 1 | kSpread[z & 255U] << 2;
+}
 
 // Gives whole pages back to the system: they are zero when they are next read.
 void release_pages(Bytes pages) {
@@ -49,48 +63,41 @@ struct PartGrid {
   }
 };
 
-/// Lists of the points of each part, in chunks; each begins with the address of the one before it.
+/// Lists of the points of each part, in chunks; each begins with the address of the one before it. The last points of a
+/// part are gathered in a line, so that chunks, which lie far apart, are written to in larger pieces.
 class PartLists {
  public:
-  struct Part {
-    std::uint8_t* chunk = nullptr;
-    std::size_t used = kChunkBytes;  // of that chunk
-    std::size_t chunks = 0;
-    PartGrid grid;  // of points that came before; without words where there is none
-  };
-  PartLists(Bytes room, std::size_t parts, bool many) : room_(room), parts_(parts), many_(many) {}
+  PartLists(Bytes room, std::size_t parts, bool many)
+      : room_(room), parts_(parts), lines_(parts), many_(many) {}
 
   /// False where there is no room.
-  bool add(std::size_t number, std::uint32_t voxel, std::uint8_t material) {
-    Part& part = parts_[number];
-    if (part.used + width() > kChunkBytes && !add_chunk(&part)) {
-      return false;
-    }
-    std::uint8_t* const to = part.chunk + part.used;
-    to[0] = static_cast<std::uint8_t>(voxel);
-    to[1] = static_cast<std::uint8_t>(voxel >> 8);
-    to[2] = static_cast<std::uint8_t>(voxel >> 16);
-    if (many_) {
-      to[3] = material;
-    }
-    part.used += width();
-    return true;
+  bool add(std::size_t number, std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint8_t material) {
+    Line& line = lines_[number];
+    const std::uint32_t point =
+        (x & 255U) | (y & 255U) << 8 | (z & 255U) << 16 | std::uint32_t{material} << 24;
+    const unsigned used = line.used;
+    std::memcpy(line.bytes + used, &point, sizeof point);  // of three bytes the fourth is written over
+    line.used = static_cast<std::uint8_t>(used + width());
+    return line.used < line_bytes() || write_line(number);
   }
   /// Whether a part's points have a grid already; all others are zero.
   const PartGrid& grid_of(std::size_t number) const { return parts_[number].grid; }
   /// Adds the points of a part's list to `grid`.
   void draw(std::size_t number, const PartGrid& grid) const {
+    const auto add = [&](const std::uint8_t* at, std::size_t bytes) {
+      for (const std::uint8_t* const end = at + bytes; at != end; at += width()) {
+        grid.add(morton_of_bytes(at[0], at[1], at[2]), many_ ? at[3] : std::uint8_t{0});
+      }
+    };
     const Part& part = parts_[number];
+    add(lines_[number].bytes, lines_[number].used);
     std::size_t end = part.used;
     for (const std::uint8_t* chunk = part.chunk; chunk != nullptr; chunk = before(chunk)) {
-      for (std::size_t at = sizeof chunk; at + width() <= end; at += width()) {
-        grid.add(chunk[at] | std::uint32_t{chunk[at + 1]} << 8 | std::uint32_t{chunk[at + 2]} << 16,
-                 many_ ? chunk[at + 3] : std::uint8_t{0});
-      }
+      add(chunk + sizeof chunk, end - sizeof chunk);
       end = kChunkBytes;
     }
   }
-  bool is_empty(std::size_t number) const { return bytes_of(number) == 0; }
+  bool is_empty(std::size_t number) const { return bytes_of(number) + lines_[number].used == 0; }
   std::uint64_t bytes_of(std::size_t number) const {
     const Part& part = parts_[number];
     return part.chunks * kChunkBytes + (part.grid.words != nullptr ? PartGrid::bytes(many_) : 0);
@@ -99,6 +106,7 @@ class PartLists {
   /// Empties a part and gives its memory back to the system.
   void drop(std::size_t number) {
     Part& part = parts_[number];
+    lines_[number].used = 0;
     drop_list(&part, true);
     if (part.grid.words != nullptr) {
       const Bytes memory(reinterpret_cast<std::uint8_t*>(part.grid.words), PartGrid::bytes(many_));
@@ -110,7 +118,29 @@ class PartLists {
   }
 
  private:
+  struct Part {
+    std::uint8_t* chunk = nullptr;
+    std::size_t used = kChunkBytes;  // of that chunk
+    std::size_t chunks = 0;
+    PartGrid grid;  // of points that came before; without words where there is none
+  };
+  struct alignas(64) Line {
+    std::uint8_t bytes[63];
+    std::uint8_t used = 0;
+  };
+
   std::size_t width() const { return many_ ? 4 : 3; }
+  unsigned line_bytes() const { return many_ ? 60 : 63; }
+  bool write_line(std::size_t number) {
+    Part& part = parts_[number];
+    if (part.used == kChunkBytes && !add_chunk(&part)) {
+      return false;
+    }
+    std::memcpy(part.chunk + part.used, lines_[number].bytes, line_bytes());
+    part.used += line_bytes();
+    lines_[number].used = 0;
+    return true;
+  }
   static std::uint8_t* before(const std::uint8_t* chunk) {
     std::uint8_t* address = nullptr;
     std::memcpy(&address, chunk, sizeof address);
@@ -168,11 +198,25 @@ class PartLists {
 
   Bytes room_;
   std::vector<Part> parts_;
+  std::vector<Line> lines_;
   bool many_;
   std::vector<Bytes> free_chunks_;
   std::vector<Bytes> free_grids_;
   std::uint64_t bytes_ = 0;
 };
+
+// The bits of at most 8 words, by lanes: there may be no instruction that counts them.
+unsigned count_bits(Span<const std::uint64_t> words) {
+  constexpr std::uint64_t kOnes = 0x0101010101010101;
+  std::uint64_t bytes = 0;
+  for (const std::uint64_t word : words) {
+    const std::uint64_t pairs = word - (word >> 1 & 0x55 * kOnes);
+    const std::uint64_t fours = (pairs & 0x33 * kOnes) + (pairs >> 2 & 0x33 * kOnes);
+    bytes += (fours + (fours >> 4)) & 0x0F * kOnes;
+  }
+  constexpr std::uint64_t kEven = 0x00FF00FF00FF00FF;
+  return static_cast<unsigned>(((bytes & kEven) + (bytes >> 8 & kEven)) * 0x0001000100010001 >> 48);
+}
 
 // One bit for each byte of `word` that is not zero.
 unsigned full_bytes(std::uint64_t word) {
@@ -226,55 +270,72 @@ class MaskPyramid {
   bool is_root_solid() const { return (solid_[top_][0] & 1U) != 0; }
 
   /// Finds the masks of all levels from those of the base.
-  /// @return the bits of these
-  std::uint64_t raise() {
-    std::uint64_t bits = 0;
-    for (int level = base_ + 1; level <= top_; ++level) {
-      std::fill(own_[level].begin(), own_[level].end(), 0);
-    }
+  void raise() {
     for (int level = base_; level <= top_; ++level) {
-      const Span<std::uint64_t> words = words_[level];
-      for (std::size_t i = 0; i < words.size; ++i) {
-        const std::uint64_t word = words[i];
-        bits += level == base_ && word != 0 ? static_cast<unsigned>(std::popcount(word)) : 0;
-        if (level == 1 || level > base_) {
-          solid_[level][i] = word == 0 ? std::uint8_t{0} : solid_of(level, i, word);
+      const Span<const std::uint64_t> words(words_[level].data, words_[level].size);
+      std::uint8_t* const solid = level == 1 || level > base_ ? solid_[level].data() : nullptr;
+      for (std::size_t i = 0; i < words.size; i += 8) {
+        std::uint64_t above = 0;
+        for (std::size_t k = i; k < std::min(words.size, i + 8); ++k) {
+          const std::uint64_t word = words[k];
+          above |= std::uint64_t{full_bytes(word)} << (8 * (k & 7U));
+          if (solid != nullptr) {
+            solid[k] = solid_of(level, k, word);
+          }
         }
-        if (word != 0 && level < top_) {
-          words_[level + 1][i >> 3] |= std::uint64_t{full_bytes(word)} << (8 * (i & 7U));
+        if (level < top_) {
+          words_[level + 1][i >> 3] = above;
         }
       }
     }
-    return bits;
   }
 
   /// Writes the nodes of levels up to `highest`, in place of what `nodes` had.
   void emit(int highest, CubeNodes* nodes) const {
     nodes->voxel_materials.clear();
     for (int level = base_; level <= highest; ++level) {
-      const Span<std::uint64_t> words = words_[level];
       LevelNodes& to = nodes->levels[level];
       to.count = to.solid_blocks = 0;
       to.block_materials.clear();
-      for (std::size_t i = 0; i < words.size; ++i) {
-        if (words[i] == 0 || (level < top_ && (solid_[level + 1][i >> 3] >> (i & 7U) & 1) != 0)) {
-          continue;
-        }
-        const unsigned solid = solid_[level][i];
-        for (unsigned node = 0; node < 8; ++node) {
-          const auto mask = static_cast<std::uint8_t>(words[i] >> (8 * node));
-          to.masks[to.count] = (solid >> node & 1U) != 0 ? std::uint8_t{0} : mask;
-          to.count += mask != 0 ? 1 : 0;
-        }
-        to.solid_blocks += static_cast<unsigned>(std::popcount(solid));
-        if (materials_ != nullptr) {
-          emit_materials(level, i, &to.block_materials, &nodes->voxel_materials);
-        }
+      for (std::size_t first = 0; first < words_[level].size; first += kRun) {
+        emit_run(level, first, &to, &nodes->voxel_materials);
       }
     }
   }
 
  private:
+  static constexpr std::size_t kRun = 512;
+
+  // The nodes of a run of words. Words with nodes are listed first, since to guess which those are takes longer.
+  void emit_run(int level, std::size_t first, LevelNodes* to, std::vector<std::uint8_t>* voxels) const {
+    const std::uint64_t* const words = words_[level].data;
+    const std::uint8_t* const solid_above = level < top_ ? solid_[level + 1].data() : nullptr;
+    std::array<std::size_t, kRun> listed;
+    std::size_t count = 0;
+    for (std::size_t i = first; i < std::min(words_[level].size, first + kRun); ++i) {
+      listed[count] = i;
+      const bool in_block = solid_above != nullptr && (solid_above[i >> 3] >> (i & 7U) & 1) != 0;
+      count += words[i] != 0 && !in_block ? 1 : 0;
+    }
+    std::uint8_t* next = to->masks.data() + to->count;
+    for (const std::size_t i : Span<const std::size_t>(listed.data(), count)) {
+      std::uint8_t* const begin = next;
+      const std::uint64_t word = words[i];
+      for (unsigned node = 0; node < 8; ++node) {
+        const auto mask = static_cast<std::uint8_t>(word >> (8 * node));
+        *next = mask;
+        next += mask != 0 ? 1 : 0;
+      }
+      for (unsigned left = solid_[level][i]; left != 0; left &= left - 1) {
+        begin[std::popcount(full_bytes(word) & ((left & -left) - 1))] = 0;
+        ++to->solid_blocks;
+      }
+      if (materials_ != nullptr) {
+        emit_materials(level, i, &to->block_materials, voxels);
+      }
+    }
+    to->count = static_cast<std::size_t>(next - to->masks.data());
+  }
   // Below the node: the first of the materials of a solid block stands for all.
   std::uint8_t material(int level, std::size_t node) const {
     return materials_[node << (3 * (level - (base_ == 1 ? 0 : base_)))];
@@ -315,9 +376,10 @@ class MaskPyramid {
 };
 
 /// Writes what a compact tree has beside masks and materials, which stand in their places: header and directory
-/// (src/FORMAT.md).
-void complete_tree(const CompactShape& shape, const VoxelBox& bounds, std::uint64_t voxels,
-                   std::uint8_t material, Bytes tree) {
+/// (src/FORMAT.md). Counts the voxels, `in_blocks` of them in solid blocks.
+/// @return how many there are; 0 where they are too many for a tree
+std::uint64_t complete_tree(const CompactShape& shape, const VoxelBox& bounds, std::uint64_t in_blocks,
+                            std::uint8_t material, Bytes tree) {
   const auto store = [&](std::size_t at, std::uint64_t value, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i) {
       tree[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
@@ -334,14 +396,17 @@ void complete_tree(const CompactShape& shape, const VoxelBox& bounds, std::uint6
     if (shape.many_materials && shape.solid_blocks != 0) {
       store(ranks + 4 * (blocks + block), solid_blocks, 4);
     }
-    // The last words reach into what is zero, and are counted no more.
-    for (std::size_t i = 64 * block; i < std::min<std::size_t>(64 * block + 64, shape.nodes); i += 8) {
-      std::uint64_t word = 0;
-      const std::size_t size = std::min<std::size_t>(8, shape.nodes - i);
-      std::memcpy(&word, masks + i, size);
-      children += static_cast<unsigned>(std::popcount(word));
-      solid_blocks += size - static_cast<unsigned>(std::popcount(full_bytes(word)));
+    std::array<std::uint64_t, 8> words{};
+    const std::size_t size = std::min<std::size_t>(64, shape.nodes - 64 * block);
+    std::memcpy(words.data(), masks + 64 * block, size);
+    children += count_bits({words.data(), words.size()});
+    for (std::size_t i = 0; shape.many_materials && i < size; ++i) {
+      solid_blocks += masks[64 * block + i] == 0 ? 1 : 0;
     }
+  }
+  const std::uint64_t voxel_bits = children + 1 - shape.nodes;
+  if (voxel_bits > UINT32_MAX) {
+    return 0;
   }
   if (shape.many_materials) {
     const std::uint64_t end = std::uint64_t{shape.solid_blocks} + shape.voxel_bits;
@@ -357,13 +422,14 @@ void complete_tree(const CompactShape& shape, const VoxelBox& bounds, std::uint6
   store(8, tree.size, 4);
   store(16, shape.nodes, 4);
   store(20, shape.solid_blocks, 4);
-  store(24, shape.voxel_bits, 4);
+  store(24, voxel_bits, 4);
   for (int axis = 0; axis < 3; ++axis) {
     store(28 + 2 * static_cast<std::size_t>(axis), static_cast<std::uint64_t>(bounds.low[axis]), 2);
     store(34 + 2 * static_cast<std::size_t>(axis), static_cast<std::uint64_t>(bounds.high[axis]), 2);
   }
-  store(40, voxels, 8);
+  store(40, voxel_bits + in_blocks, 8);
   store(12, crc32({tree.data + 16, tree.size - 16}, crc32({tree.data, 12})), 4);
+  return voxel_bits + in_blocks;
 }
 
 /// What a thread draws parts in.
@@ -382,7 +448,6 @@ struct BuiltPart {
   unsigned root_mask = 0;
   bool is_solid = false;
   std::uint8_t material = 0;  // of a solid one
-  std::uint64_t voxels = 0;
 
   void build(const PartLists& lists, PartWorker* worker) {
     const PartGrid& kept = lists.grid_of(number);
@@ -390,7 +455,7 @@ struct BuiltPart {
     lists.draw(number, grid);
     MaskPyramid& pyramid = worker->pyramid;
     pyramid.set_base(grid.words, grid.materials);
-    voxels = pyramid.raise();
+    pyramid.raise();
     pyramid.emit(kPartLevel - 1, &nodes);
     root_mask = pyramid.root_mask();
     is_solid = pyramid.is_root_solid();
@@ -441,21 +506,22 @@ class GrowingTree {
     if (many_) {
       materials_[part.number] = part.material;
     }
-    voxels_ += part.voxels;
   }
-  std::uint64_t voxels() const { return voxels_; }
 
-  /// @return the tree's bytes, at the front of the room; empty where a tree cannot hold them
-  Bytes finish(const VoxelBox& bounds) {
+  /// The tree's bytes, at the front of the room, and its voxels; empty where a tree cannot hold them.
+  void finish(const VoxelBox& bounds, PointTree* result) {
     roots_.set_base(root_words_.data(), many_ ? materials_.data() : nullptr);
     roots_.raise();
     CubeNodes top(kPartLevel, level_, level_);
     roots_.emit(level_, &top);
+    if (top.levels[level_].count == 0) {
+      return;
+    }
     CompactShape shape;
     shape.level = level_;
     std::uint64_t nodes = 0;
     std::uint64_t blocks = 0;
-    std::uint64_t left = voxels_;  // that are in no block
+    std::uint64_t in_blocks = 0;  // voxels
     std::vector<std::uint8_t> block_materials;
     for (int level = level_; level >= 1; --level) {
       const LevelNodes& own = top.levels[level];
@@ -463,17 +529,17 @@ class GrowingTree {
       nodes += is_top ? own.count : stretches_[level].size;
       const std::uint64_t solid = is_top ? own.solid_blocks : solid_blocks_[level];
       blocks += solid;
-      left -= solid << (3 * level);
+      in_blocks += solid << (3 * level);
       const std::vector<std::uint8_t>& shown = is_top ? own.block_materials : block_materials_[level];
       block_materials.insert(block_materials.end(), shown.begin(), shown.end());
     }
     shape.nodes = static_cast<std::uint32_t>(nodes);
     shape.solid_blocks = static_cast<std::uint32_t>(blocks);
-    shape.voxel_bits = static_cast<std::uint32_t>(left);
+    shape.voxel_bits = static_cast<std::uint32_t>(stretches_[0].size);  // where there are several materials
     const std::uint8_t material = material_of_all(block_materials, &shape.many_materials);
     const std::size_t bytes = compact_bytes(shape);
-    if (bytes == 0 || nodes > UINT32_MAX || left > UINT32_MAX) {
-      return {};
+    if (bytes == 0 || nodes > UINT32_MAX || stretches_[0].size > UINT32_MAX) {
+      return;
     }
     std::size_t to = kCompactHeaderBytes;
     for (int level = level_; level >= kPartLevel; --level) {
@@ -485,13 +551,13 @@ class GrowingTree {
       to = move_down(stretches_[level], to);
     }
     if (shape.many_materials) {
-      to = bytes - static_cast<std::size_t>((blocks + left + 3) & ~std::uint64_t{3});
+      to = bytes - static_cast<std::size_t>((blocks + stretches_[0].size + 3) & ~std::uint64_t{3});
       std::memcpy(room_.data + to, block_materials.data(), block_materials.size());
       move_down(stretches_[0], to + block_materials.size());
     }
     release_pages(room_.subspan(up(bytes), end_ - up(bytes)));
-    complete_tree(shape, bounds, voxels_, material, room_.subspan(0, bytes));
-    return room_.subspan(0, bytes);
+    result->voxels = complete_tree(shape, bounds, in_blocks, material, room_.subspan(0, bytes));
+    result->tree = result->voxels == 0 ? Bytes() : room_.subspan(0, bytes);
   }
 
  private:
@@ -548,7 +614,6 @@ class GrowingTree {
   std::vector<std::uint8_t> block_materials_[kPartLevel];
   std::size_t end_ = 0;
   std::uint64_t bytes_ = 0;
-  std::uint64_t voxels_ = 0;
 };
 
 /// Streams the source once into the lists of the parts from `first` on. Where these take too much the last parts are
@@ -568,20 +633,19 @@ std::size_t deal_points(const SceneSource& source, std::size_t first, std::size_
       lists->drop(--end);
     }
   };
-  Vec3i low{INT32_MAX, INT32_MAX, INT32_MAX};
-  Vec3i high{};
+  std::array<std::array<bool, std::size_t{1} << kMaxLevel>, 3> is_taken{};  // places along each axis
   try {
     source.stream(
         [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-          const std::uint64_t code = morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                                 static_cast<std::uint32_t>(z));
-          low = {std::min(low.x, x), std::min(low.y, y), std::min(low.z, z)};
-          high = {std::max(high.x, x), std::max(high.y, y), std::max(high.z, z)};
-          const auto part = static_cast<std::size_t>(code >> kPartBits);
+          const auto ux = static_cast<std::uint32_t>(x);
+          const auto uy = static_cast<std::uint32_t>(y);
+          const auto uz = static_cast<std::uint32_t>(z);
+          is_taken[0][ux] = is_taken[1][uy] = is_taken[2][uz] = true;
+          const std::size_t part = morton_of_bytes(ux >> kPartLevel, uy >> kPartLevel, uz >> kPartLevel);
           if (part < first || part >= end) {
             return;
           }
-          if (!lists->add(part, static_cast<std::uint32_t>(code % kPartVoxels), material)) {
+          if (!lists->add(part, ux, uy, uz, material)) {
             throw NoRoom{};
           }
           if (lists->bytes() > most_bytes && end - first > 1) {
@@ -592,8 +656,13 @@ std::size_t deal_points(const SceneSource& source, std::size_t first, std::size_
   } catch (const NoRoom&) {
     return first;
   }
-  bounds->low = low;
-  bounds->high = {high.x + 1, high.y + 1, high.z + 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& taken = is_taken[static_cast<std::size_t>(axis)];
+    const auto low = std::find(taken.begin(), taken.end(), true);
+    const auto high = std::find(taken.rbegin(), taken.rend(), true);
+    bounds->low[axis] = static_cast<std::int32_t>(low - taken.begin());
+    bounds->high[axis] = static_cast<std::int32_t>(taken.rend() - high);
+  }
   return end;
 }
 
@@ -605,6 +674,9 @@ PointTree build_point_tree(const SceneSource& source, Bytes room, int threads, c
   const std::size_t parts = std::size_t{1} << (3 * (source.level() - kPartLevel));
   PointTree result;
   GrowingTree tree(source, room);
+  if (room.size < tree.end()) {
+    return {};
+  }
   PartLists lists(room.subspan(tree.end()), parts, many);
   std::vector<PartWorker> workers;
   workers.reserve(static_cast<std::size_t>(threads));
@@ -635,8 +707,7 @@ PointTree build_point_tree(const SceneSource& source, Bytes room, int threads, c
       }
     }
   }
-  result.voxels = tree.voxels();
-  result.tree = result.voxels == 0 ? Bytes() : tree.finish(bounds);
+  tree.finish(bounds, &result);
   result.most_bytes = std::max<std::uint64_t>(result.most_bytes, result.tree.size);
   return result;
 }

@@ -3,10 +3,10 @@
 #include "scene/scene_shape.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <iterator>
 
-#include "readers/oct.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
 
@@ -55,10 +55,16 @@ std::vector<Vec3i> thinned_across_z(std::vector<Vec3i> points) {
 // The lowest and highest corner of each column of corners.
 class Columns {
  public:
-  explicit Columns(int level)
-      : shift_(std::max(0, level - kMostLevel)),
-        side_((std::size_t{1} << (level - shift_)) + 1),
-        ends_(side_ * side_) {}
+  explicit Columns(const CompactTree& tree)
+      : tree_(tree),
+        shift_(std::max(0, tree.level() - kMostLevel)),
+        side_((std::size_t{1} << (tree.level() - shift_)) + 1),
+        ends_(side_ * side_) {
+    if (!tree.empty()) {
+      find(false);
+      find(true);
+    }
+  }
 
   void add(const Vec3i& corner, int level) {
     const std::int32_t size = std::int32_t{1} << level;
@@ -71,6 +77,56 @@ class Columns {
     first[to.y].add(added);
     last[from.y].add(added);
     last[to.y].add(added);
+  }
+  // Adds what is lowest in each column, or what is highest: what lies behind that in all its columns is not looked at.
+  void find(bool from_above) {
+    for (int level = shift_; level <= tree_.level(); ++level) {
+      found_[level].assign(std::size_t{1} << (2 * (tree_.level() - level)), false);
+    }
+    visit(0, tree_.level(), {}, from_above);
+  }
+  void visit(std::uint32_t node, int level, const Vec3i& corner, bool from_above) {
+    const std::uint32_t mask = tree_.mask(node);
+    if (mask == 0) {
+      add(corner, level);
+      return;
+    }
+    const int below = level - 1;
+    const std::uint32_t first_child = tree_.first_child(node);
+    for (unsigned place = 0; place < 8; ++place) {
+      const unsigned octant = from_above ? 7 - place : place;
+      const auto along = [&](unsigned axis) {
+        return static_cast<std::int32_t>(octant >> axis & 1U) << below;
+      };
+      const Vec3i at{corner.x + along(0), corner.y + along(1), corner.z + along(2)};
+      if ((mask >> octant & 1U) == 0 || found_[below][column(at, below)]) {
+        continue;
+      }
+      if (below > shift_) {
+        const auto before = static_cast<unsigned>(std::popcount(mask & ((1U << octant) - 1)));
+        visit(first_child + before, below, at, from_above);
+        continue;
+      }
+      add(at, below);
+      set_found(at);
+    }
+  }
+  std::size_t column(const Vec3i& at, int level) const {
+    return static_cast<std::size_t>(at.y >> level) << (tree_.level() - level) |
+           static_cast<std::size_t>(at.x >> level);
+  }
+  void set_found(const Vec3i& at) {
+    found_[shift_][column(at, shift_)] = true;
+    for (int level = shift_ + 1; level <= tree_.level(); ++level) {
+      const std::int32_t half = 1 << (level - 1);
+      const Vec3i corner{at.x & -2 * half, at.y & -2 * half, 0};
+      for (const Vec3i& part : {Vec3i{0, 0, 0}, Vec3i{half, 0, 0}, Vec3i{0, half, 0}, Vec3i{half, half, 0}}) {
+        if (!found_[level - 1][column({corner.x + part.x, corner.y + part.y, 0}, level - 1)]) {
+          return;
+        }
+      }
+      found_[level][column(at, level)] = true;
+    }
   }
   // The corners that the plane hulls of all slabs across x leave.
   std::vector<Vec3i> thinned() const {
@@ -112,8 +168,10 @@ class Columns {
 
   std::int32_t up(std::int32_t value) const { return (value + (1 << shift_) - 1) >> shift_; }
 
+  const CompactTree& tree_;
   int shift_;
   std::size_t side_;
+  std::vector<bool> found_[kMaxLevel + 1];  // of each square of columns: whether all have their end
   std::vector<Ends> ends_;
 };
 
@@ -134,11 +192,7 @@ SceneShape shape_of(const CompactTree& tree) {
   shape.level = tree.level();
   shape.bounds = tree.bounds();
   shape.tree = &tree;
-  Columns columns(tree.level());
-  if (!tree.empty()) {
-    walk_blocks(tree, [&](const Vec3i& corner, int level, std::uint8_t) { columns.add(corner, level); });
-  }
-  shape.corners = thinned_across_z(columns.thinned());
+  shape.corners = thinned_across_z(Columns(tree).thinned());
   return shape;
 }
 
