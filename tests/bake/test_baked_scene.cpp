@@ -112,6 +112,17 @@ constexpr std::size_t entry(std::size_t index) {
 
 }  // namespace
 
+TEST_CASE("baked scene: the tree lies where the scene is written -> the same bytes") {
+  WholeScene whole(perspective());
+  const HeapBytes apart = whole.baked();
+  const std::size_t place = entry(kMaxSections);
+  HeapBytes bytes(place + apart.view().size);
+  std::memcpy(bytes.span().data + place, whole.tree.view().data, whole.tree.view().size);
+  whole.parts.tree = bytes.view().subspan(place, whole.tree.view().size);
+  REQUIRE(BakedScene::make(whole.parts, bytes.span(), nullptr) == Status::kOk);
+  CHECK(std::memcmp(bytes.view().data, apart.view().data, apart.view().size) == 0);
+}
+
 TEST_CASE(
     "baked scene: bytes behind the tree -> refused; a scene never opened -> damaged, without sections") {
   const HeapBytes tree = small_tree();

@@ -1,6 +1,7 @@
 // Scenes that are larger than the memory that the command may have of its own.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -12,15 +13,18 @@
 namespace thimble::tests {
 namespace {
 
-// 163 MB, and 1.3 GB; the limits are what the command may have of its own.
-const int kLevel = many_or_few(11, 10);
-const int kLimitKiB = many_or_few(600, 100) * 1024;
+// 122 MB, and 1.95 GB; the limits are what the command may have of its own.
+const int kLevel = many_or_few(12, 11);
+const std::uint64_t kChildren = many_or_few<std::uint64_t>(6, 3);  // of each child of the root
+const int kLimitKiB = many_or_few(600, 60) * 1024;
 
-// A baked scene of a voxel in each cube of 2 x 2 x 2: of all its nodes but those of level 1 all children are there. Its
-// checksums, which a file that is mapped is not read for, are 0. `first_mask`: of the world's root.
+// A baked scene of a voxel in each cube of 2 x 2 x 2 of a part of the world: below the root, which has two children, and
+// these all nodes but those of level 1 have all children. Its checksums, which a file that is mapped is not read for, are
+// 0. `first_mask`: of the world's root.
 void write_scene(const std::string& path, unsigned first_mask) {
-  const std::uint64_t voxels = std::uint64_t{1} << (3 * (kLevel - 1));
-  const std::uint64_t upper = (voxels - 1) / 7;  // nodes above level 1
+  constexpr std::uint64_t kTop = 3;  // nodes
+  const std::uint64_t voxels = 2 * kChildren << (3 * (kLevel - 3));
+  const std::uint64_t upper = kTop + (voxels - 2 * kChildren) / 7;  // nodes above level 1
   const std::uint64_t nodes = upper + voxels;
   const std::uint64_t masks_bytes = (nodes + 3) & ~std::uint64_t{3};
   const std::uint64_t blocks = (nodes + 63) / 64;
@@ -40,16 +44,15 @@ void write_scene(const std::string& path, unsigned first_mask) {
     }
     file << piece.substr(0, static_cast<std::size_t>(count));
   };
-  file << little(first_mask, 1);
-  fill(upper - 1, '\xff');
+  const std::uint64_t mask = (std::uint64_t{1} << kChildren) - 1;
+  file << little(first_mask, 1) << little(mask, 1) << little(mask, 1);
+  fill(upper - kTop, '\xff');
   fill(voxels, '\1');
   fill(masks_bytes - nodes, '\0');
-  std::string directory;  // of the children before each 64th node
-  for (std::uint64_t node = 0; node < nodes; node += 64) {
-    const std::uint64_t children = node < upper ? 8 * node : 7 * upper + node;
-    for (int shift = 0; shift < 32; shift += 8) {
-      directory.push_back(static_cast<char>(children >> shift));
-    }
+  std::string directory = little(0, 4);  // of the children before each 64th node
+  for (std::uint64_t node = 64; node < nodes; node += 64) {
+    const std::uint64_t full = 2 + 2 * kChildren + 8 * (std::min(node, upper) - kTop);
+    directory += little(full + (node > upper ? node - upper : 0), 4);
   }
   file << directory;
 }
@@ -62,25 +65,31 @@ TEST_CASE("command on a scene larger than its memory: drawn from the file, as wi
   }
   const TemporaryFolder folder;
   const std::string scene = folder.path("large.oct");
-  write_scene(scene, 0xFF);
-  const std::string draw = std::string(THIMBLE_COMMAND_PATH) + " render " + scene +
-                           " --shade depth --size 160x120 --threads 1 --engine ray64 --quiet -o ";
+  const std::string command = std::string(THIMBLE_COMMAND_PATH) + " ";
+  const std::string draw = command + "render " + scene + " --size 160x120 --quiet -o ";
+  const std::string plain = " --shade depth --threads 1 --engine ray64";
   CommandLimits shell;
   shell.program = "/bin/sh";
   shell.seconds = 300;
   const std::string limit = "ulimit -d " + std::to_string(kLimitKiB) + " && ";
-  check_done({"-c", limit + draw + folder.path("a.pgm")}, shell);
-  check_done({"-c", draw + folder.path("b.pgm")}, shell);
+  write_scene(scene, 3);
+  check_done({"-c", limit + draw + folder.path("a.pgm") + plain}, shell);
+  check_done({"-c", draw + folder.path("b.pgm") + plain}, shell);
   const std::string picture = read_text(folder.path("a.pgm"));
   CHECK(picture == read_text(folder.path("b.pgm")));
   CHECK(picture.find_first_not_of(picture.back(), 20) != std::string::npos);
+  // What takes lists, maps and copies of smaller scenes: it does without.
+  check_done({"-c", limit + draw + folder.path("c.png")}, shell);
+  check_done({"-c", limit + draw + folder.path("d.pgm") + " --shade depth"}, shell);
+  CHECK(picture == read_text(folder.path("d.pgm")));
+  check_done({"-c", limit + command + "view " + scene + " --size 160x120 --bench 2"}, shell);
 
-  write_scene(scene, 0x7F);
+  write_scene(scene, 7);
   const CommandResult damaged = run_command({"-c", draw + folder.path("c.pgm")}, shell);
   CHECK(damaged.status == 1);
   CHECK(damaged.err.find("another number of nodes than the masks") != std::string::npos);
 
-  write_scene(scene, 0xFF);
+  write_scene(scene, 3);
   std::fstream(scene, std::ios::in | std::ios::out | std::ios::binary).seekp(-1, std::ios::end).put('\x7f');
   const CommandResult directory = run_command({"-c", draw + folder.path("d.pgm")}, shell);
   CHECK_MESSAGE(directory.status == 1, directory.describe());

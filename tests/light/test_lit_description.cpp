@@ -284,7 +284,7 @@ TEST_CASE("bake: a header -> the set of effects as a macro; --effects as asked f
 TEST_CASE("baked file: lighting damaged under right checksums -> refused by name") {
   const TemporaryFolder folder;
   const Baked baked = bake_scene(*open_file("water,depth=3"), {});
-  std::vector<std::uint8_t> bytes = baked.bytes;
+  std::vector<std::uint8_t> bytes(baked.bytes.begin(), baked.bytes.end());
   const ConstBytes lighting = baked.scene.section(SectionKind::kLighting);
   const auto at = static_cast<std::size_t>(lighting.data - baked.scene.bytes().data);
   bytes[at + 2] = 99;

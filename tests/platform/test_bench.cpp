@@ -19,7 +19,7 @@ struct BenchRun : tests::SimulatedRun {
   std::map<std::string, std::string> values;  ///< the lines `name,value`
 };
 
-BenchRun run_bench(const char* board, const std::vector<std::uint8_t>& scene) {
+BenchRun run_bench(const char* board, std::span<const std::uint8_t> scene) {
   BenchRun run{
       tests::run_simulated({platform::find_board(board), true, {scene.data(), scene.size()}, apps::bench},
                            UINT32_MAX),
@@ -41,10 +41,10 @@ BenchRun run_bench(const char* board, const std::vector<std::uint8_t>& scene) {
 
 TEST_CASE(
     "bench: the demo scene on boards with and without room for a map -> golden pictures, exact, status 0") {
-  const std::vector<std::uint8_t> scene = tests::bake_words("demo").bytes;
+  const tools::Baked scene = tests::bake_words("demo");
   for (const char* board : {"lm3s6965evb", "stm32vldiscovery", "netduinoplus2"}) {
     CAPTURE(std::string(board));
-    BenchRun run = run_bench(board, scene);
+    BenchRun run = run_bench(board, scene.bytes);
     CHECK(run.status == 0);
     CHECK(run.values["board"] == board);
     CHECK(run.values["exact"] == "yes");
@@ -81,7 +81,8 @@ TEST_CASE("bench: rays too long for 32 bits, no scene, a damaged one -> said so"
   CHECK(run.values["ray64.rays"] != "0");
   CHECK(run.values["map_bytes"] == "0");
   CHECK(run_bench("lm3s6965evb", {}).status == 1);
-  std::vector<std::uint8_t> damaged = tests::bake_words("spheres,depth=4").bytes;
+  const tools::Baked sound = tests::bake_words("spheres,depth=4");
+  std::vector<std::uint8_t> damaged(sound.bytes.begin(), sound.bytes.end());
   damaged[damaged.size() - 9] ^= 1;
   run = run_bench("lm3s6965evb", damaged);
   CHECK(run.status == 1);

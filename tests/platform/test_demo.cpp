@@ -34,7 +34,7 @@ const tools::Baked& lit_scene() {
   return baked;
 }
 
-ConstBytes bytes_of(const std::vector<std::uint8_t>& bytes) {
+ConstBytes bytes_of(std::span<const std::uint8_t> bytes) {
   return {bytes.data(), bytes.size()};
 }
 
@@ -136,7 +136,7 @@ TEST_CASE(
 TEST_CASE("demo light: edges -> it turns in light without them, and has them when it stands still") {
   const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
   const tools::Baked baked = bake_demo(Effect::kDirectLight | Effect::kShadows | Effect::kEdges);
-  const Run run = run_demo(board, bytes_of(baked.bytes), 30, {{18, "t"}});
+  const Run run = run_demo(board, baked.scene.bytes(), 30, {{18, "t"}});
   CHECK(run.fault == "");
   const auto crcs = crcs_of(run.out, "frame");
   // 18 that turn, one where it stops, one with edges at the same place.
@@ -163,7 +163,7 @@ TEST_CASE("demo light: edges -> it turns in light without them, and has them whe
 TEST_CASE("demo light: effects that are slow -> a lit frame at first, and none until it moves") {
   const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
   const tools::Baked baked = bake_demo(Effect::kDirectLight | Effect::kAmbientOcclusion);
-  const ConstBytes scene = bytes_of(baked.bytes);
+  const ConstBytes scene = baked.scene.bytes();
   const auto crc = [](const host::PackedPicture& picture) { return crc32(bytes_of(picture.bytes)); };
   const Run run = run_demo(board, scene, 40, {{10, "t"}, {11, "t"}, {20, "l"}, {30, "l"}});
   CHECK(run.status == 0);
@@ -309,7 +309,7 @@ TEST_CASE("demo: p over the UART -> the picture on the display, in its colours; 
 
 TEST_CASE("demo: no scene, a damaged one, another kind of bytes -> a message, a cross, status 1") {
   const platform::BoardFacts& board = *platform::find_board("lm3s6965evb");
-  std::vector<std::uint8_t> damaged = demo_scene().bytes;
+  std::vector<std::uint8_t> damaged(demo_scene().bytes.begin(), demo_scene().bytes.end());
   damaged[damaged.size() / 2] ^= 0x10;
   std::vector<std::uint8_t> cut(damaged.begin(), damaged.begin() + 300);
   struct Case {
@@ -371,11 +371,11 @@ TEST_CASE("demo: rates that are held -> squares as small as the rate leaves time
   for (const char* name : {"gba", "lm3s6965evb", "pico", "pico-lcd-2", "raspi0"}) {
     const platform::BoardFacts& board = *platform::find_board(name);
     const auto width = static_cast<std::size_t>(board.width_px);
-    const Run exact = run_demo(board, bytes_of(baked.bytes), 2, {}, true);
+    const Run exact = run_demo(board, baked.scene.bytes(), 2, {}, true);
     REQUIRE(exact.pictures.size() == 2);
     int before = 1;
     for (const std::uint32_t fps : {1U, 2U, 4U, 10U, 30U, 45U, 60U, 120U}) {
-      const Run held = run_demo(board, bytes_of(baked.bytes), 2, {}, true, fps);
+      const Run held = run_demo(board, baked.scene.bytes(), 2, {}, true, fps);
       REQUIRE(held.pictures.size() == 2);
       const std::size_t told = held.out.find("a pixel of ");
       REQUIRE(told != std::string::npos);

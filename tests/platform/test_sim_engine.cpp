@@ -63,8 +63,9 @@ void check_same(Ran one, Ran other) {
 }
 
 const std::vector<std::uint8_t>& spheres() {
-  static const std::vector<std::uint8_t> bytes =
-      tools::bake_scene(*tools::open_scene({.scene = kScene, .depth = std::nullopt}), {}).bytes;
+  static const tools::Baked baked =
+      tools::bake_scene(*tools::open_scene({.scene = kScene, .depth = std::nullopt}), {});
+  static const std::vector<std::uint8_t> bytes(baked.bytes.begin(), baked.bytes.end());
   return bytes;
 }
 

@@ -37,7 +37,8 @@ const std::vector<std::uint8_t>& baked(const char* text) {
   static std::map<std::string, std::vector<std::uint8_t>> scenes;
   std::vector<std::uint8_t>& bytes = scenes[text];
   if (bytes.empty()) {
-    bytes = tests::bake_words(text).bytes;
+    const tools::Baked made = tests::bake_words(text);
+    bytes.assign(made.bytes.begin(), made.bytes.end());
   }
   return bytes;
 }
@@ -220,9 +221,9 @@ TEST_CASE("water app: its first picture -> that of the scene as it was baked, it
 
 TEST_CASE("water app: what it cannot show -> one sentence, status 1") {
   const auto source = tools::open_scene({.scene = "spheres,depth=4", .depth = std::nullopt});
-  const std::vector<std::uint8_t> dry = tools::bake_scene(*source, {}).bytes;
+  const tools::Baked dry = tools::bake_scene(*source, {});
   const platform::BoardFacts board = board_of("raspi0", 96, 72);
-  const Run run = run_water(board, bytes_of(dry), 1, {});
+  const Run run = run_water(board, dry.scene.bytes(), 1, {});
   CHECK(run.status == 1);
   CHECK(run.out.find("error: the scene holds no water\n") != std::string::npos);
   platform::BoardFacts small = board;

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <utility>
 #include <vector>
 
 #include "apps/demo_view.h"
+#include "readers/oct.h"
 #include "readers/source.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
@@ -170,6 +172,45 @@ constexpr tools::NamedView kSides[] = {
     tools::NamedView::kLeft, tools::NamedView::kRight, tools::NamedView::kTop};
 
 }  // namespace
+
+TEST_CASE("scene shape: worlds of points and blocks -> as far in any direction as all that is solid") {
+  std::mt19937_64 random(7);
+  for (const int level : {1, 3, 6, 10, 11, 12}) {
+    for (int world = 0; world < 8; ++world) {
+      tests::OwnedPool pool(level);
+      const auto any_place = [&](int of) { return static_cast<std::int32_t>(random() >> (64 - of)); };
+      for (int i = 0; i < 1 + 40 * world; ++i) {
+        const int block = random() % 4 == 0 ? static_cast<int>(random() % static_cast<unsigned>(level)) : 0;
+        const std::int32_t inside = ~((1 << block) - 1);
+        REQUIRE(pool.octree.insert_block(
+                    {any_place(level) & inside, any_place(level) & inside, any_place(level) & inside}, block,
+                    0) == Status::kOk);
+      }
+      const tests::HeapBytes bytes = tests::compact_of(pool.octree);
+      const CompactTree tree = tests::open_or_throw(bytes);
+      const std::vector<Vec3i> corners = tools::shape_of(tree).corners;
+      const std::int32_t step = level <= 10 ? 1 : 1 << (level - 10);
+      for (int direction = 0; direction < 30; ++direction) {
+        const Vec3i along{any_place(8) - 128, any_place(8) - 128, any_place(8) - 128};
+        std::int64_t farthest = INT64_MIN;
+        tools::walk_blocks(tree, [&](const Vec3i& corner, int of, std::uint8_t) {
+          std::int64_t at = 0;
+          for (int axis = 0; axis < 3; ++axis) {
+            const std::int32_t high = (corner[axis] + (1 << of) + step - 1) / step * step;
+            at += std::int64_t{along[axis]} * (along[axis] > 0 ? high : corner[axis] / step * step);
+          }
+          farthest = std::max(farthest, at);
+        });
+        std::int64_t found = INT64_MIN;
+        for (const Vec3i& corner : corners) {
+          found = std::max(found, std::int64_t{along.x} * corner.x + std::int64_t{along.y} * corner.y +
+                                      std::int64_t{along.z} * corner.z);
+        }
+        CHECK(found == farthest);
+      }
+    }
+  }
+}
 
 TEST_CASE("framing: every named view and shape -> what is occupied fills 90 % of the tighter side, centred") {
   const Balls balls;

@@ -109,7 +109,8 @@ std::vector<std::uint8_t> page_scene(const RenderCommand& command, const SceneSo
   options.keeps_look = options.default_look;
   options.display = DisplayFacts{PixelFormat::kRgb888, command.view.width_px, command.view.height_px};
   options.camera = [&](const CompactTree&) { return camera; };
-  const std::vector<std::uint8_t> bytes = bake_scene(source, options).bytes;
+  const Baked baked = bake_scene(source, options);
+  const std::span<const std::uint8_t> bytes = baked.bytes;
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<std::uint8_t> packed(size);
   if (compress2(packed.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), 9) != Z_OK) {

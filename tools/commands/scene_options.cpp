@@ -323,7 +323,7 @@ void EngineOptions::check_budget(bool has_budget) const {
 
 std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, std::int32_t width_px,
                                                            std::int32_t height_px) const {
-  if (name != "auto" && name != "wide") {
+  if (name != "wide" && (name != "auto" || built->draws_from_file())) {
     return nullptr;
   }
   auto renderer = WideRenderer::make(built, width_px, height_px, threads);
@@ -340,8 +340,9 @@ std::unique_ptr<LitStreams> EngineOptions::lit_streams(BuiltScene* built, Effect
   if (name == "gpu") {
     return gpu(*built, effects);
   }
-  return name == "auto" ? LitStreams::make(built->compact(), &built->arena(), effects, scene, threads)
-                        : nullptr;
+  return name == "auto" && !built->draws_from_file()
+             ? LitStreams::make(built->compact(), &built->arena(), effects, scene, threads)
+             : nullptr;
 }
 
 int EngineOptions::lit_threads(BuiltScene* built, EffectSet effects) const {

@@ -111,11 +111,11 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     options.camera = [&](const CompactTree& tree) {
       return frame_round(view, *source, shape_of(*source, tree)).kept;
     };
-    Baked made = with_progress("baking", command.scene.quiet, [&](const Progress& progress) {
+    const Baked made = with_progress("baking", command.scene.quiet, [&](const Progress& progress) {
       return bake_within({&board, std::nullopt}, *source, &options, progress);
     });
     limit = *options.limit_bytes;
-    bytes = std::move(made.bytes);
+    bytes.assign(made.bytes.begin(), made.bytes.end());
   }
   if (bytes.size() > limit) {
     throw InputError("takes " + grouped(bytes.size()) + " bytes baked; " + board.name + " has " +

@@ -42,23 +42,22 @@ bool adds_up(const CompactTree& tree) {
   std::uint64_t node = 0;
   std::uint64_t end = nodes == 0 ? 0 : 1;
   std::uint64_t behind = 1;  // the number of the next child
+  const std::uint64_t block = std::uint64_t{1} << tree.rank_shift();
   for (int level = tree.level(); level >= 1; --level) {
     if (end > nodes) {
       return false;
     }
     while (node < end) {
-      const auto number = static_cast<std::uint32_t>(node);
-      const bool begins_block = (number & ((1U << tree.rank_shift()) - 1)) == 0;
-      if (begins_block && tree.first_child(number) != static_cast<std::uint32_t>(behind)) {
+      const bool begins_block = node % block == 0;
+      if (begins_block &&
+          tree.first_child(static_cast<std::uint32_t>(node)) != static_cast<std::uint32_t>(behind)) {
         return false;
       }
-      std::uint64_t word = tree.mask(number);
-      const bool is_whole = number % 8 == 0 && node + 8 <= end;
-      if (is_whole) {
-        std::memcpy(&word, tree.masks() + node, sizeof word);
-      }
-      behind += static_cast<unsigned>(std::popcount(word));
-      node += is_whole ? 8 : 1;
+      std::array<std::uint64_t, 8> words{};
+      const std::uint64_t next = std::min({end, node - node % block + block, node + sizeof words});
+      std::memcpy(words.data(), tree.masks() + node, static_cast<std::size_t>(next - node));
+      behind += count_bits({words.data(), words.size()});
+      node = next;
     }
     end = level > 1 ? behind : end;
   }

@@ -10,6 +10,19 @@
 
 namespace thimble::tools {
 
+/// The bits of at most 8 words, by lanes: there may be no instruction that counts them.
+inline unsigned count_bits(Span<const std::uint64_t> words) {
+  constexpr std::uint64_t kOnes = 0x0101010101010101;
+  std::uint64_t bytes = 0;
+  for (const std::uint64_t word : words) {
+    const std::uint64_t pairs = word - (word >> 1 & 0x55 * kOnes);
+    const std::uint64_t fours = (pairs & 0x33 * kOnes) + (pairs >> 2 & 0x33 * kOnes);
+    bytes += (fours + (fours >> 4)) & 0x0F * kOnes;
+  }
+  constexpr std::uint64_t kEven = 0x00FF00FF00FF00FF;
+  return static_cast<unsigned>(((bytes & kEven) + (bytes >> 8 & kEven)) * 0x0001000100010001 >> 48);
+}
+
 /// A solid block of one material: its lowest corner, the log2 of its side (0 for a voxel), its material.
 using VisitBlock = std::function<void(const Vec3i& corner, int level, std::uint8_t material)>;
 

@@ -48,6 +48,9 @@ std::string cut_off(std::string text) {
   return text;
 }
 
+// In front of the first section, the tree.
+constexpr std::size_t kFrontBytes = (kBakedHeaderBytes + kMaxSections * kBakedEntryBytes + 7) / 8 * 8;
+
 // The parts of a baked scene around a tree.
 class Assembly {
  public:
@@ -102,16 +105,20 @@ class Assembly {
     }
   }
 
-  void write(Baked* result) const {
+  /// Into `memory`, in which the tree may lie behind kFrontBytes, where there is room.
+  void write(HostMemory memory, Baked* result) const {
     const std::size_t size = bytes();
     if (size == SIZE_MAX) {
       throw InputError("too large to be baked: a baked scene holds less than 4 GiB");
     }
     result->effects = effects_;
-    result->bytes.resize(size);
-    if (BakedScene::make(parts_, {result->bytes.data(), size}, &result->scene) != Status::kOk) {
+    result->memory = memory.bytes().size < size ? HostMemory(size) : std::move(memory);
+    const Bytes to = result->memory.bytes().subspan(0, size);
+    if (BakedScene::make(parts_, to, &result->scene) != Status::kOk) {
       throw InputError("internal error: the scene cannot be baked");
     }
+    result->memory.keep(size);
+    result->bytes = {to.data, to.size};
   }
 
  private:
@@ -290,7 +297,10 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
   const auto start = std::chrono::steady_clock::now();
   Baked result;
   const std::uint64_t limit = options.limit_bytes.value_or(UINT32_MAX);
-  const BuiltScene built(source, {}, progress);
+  BuildOptions build;
+  build.front_bytes =
+      kFrontBytes;  // so that the tree, which may be large, becomes a part of the scene where it is
+  BuiltScene built(source, build, progress);
   const CompactTree& exact = built.compact();
   Assembly whole(source, options, exact);
   result.work_bytes = built.high_water_bytes();
@@ -299,7 +309,7 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
     if (options.brick_map) {
       whole.add_brick_map(exact, options.most_map_level, limit);
     }
-    whole.write(&result);
+    whole.write(built.take_memory(), &result);
   } else {
     // What stands around the tree takes the same room whatever the tree, or less: merging can only leave
     // materials unused.
@@ -317,7 +327,7 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
     if (options.brick_map) {
       coarse.add_brick_map(tree, options.most_map_level, limit);
     }
-    coarse.write(&result);
+    coarse.write({}, &result);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

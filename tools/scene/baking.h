@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "boards/board_table.h"
+#include "scene/host_memory.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "thimble/bake/baked_scene.h"
@@ -59,17 +61,14 @@ struct BakingOptions {
 
 /// A baked scene and what its making took.
 struct Baked {
-  std::vector<std::uint8_t> bytes;
-  BakedScene scene;  ///< views into `bytes`; moving this keeps them, copying does not
+  std::span<const std::uint8_t> bytes;
+  BakedScene scene;   ///< views into `bytes`
+  HostMemory memory;  ///< of `bytes`
   EffectSet effects = Effect::kNone;
   std::uint64_t work_bytes = 0;
   double seconds = 0;
   /// Whether it keeps the limit. If not, it is the scene as it is (or, coarsened, as small as it gets).
   bool fits = true;
-
-  Baked() = default;
-  Baked(Baked&&) = default;
-  Baked& operator=(Baked&&) = default;
 };
 
 /// Bakes `source`. With `coarsen` and a limit that the exact tree does not keep, blocks are merged in the

@@ -24,15 +24,12 @@ std::uint64_t count(const platform::BoardFacts& board, const SceneSource& source
   options.camera = [&](const CompactTree& tree) {
     return frame_round(view, source, shape_of(source, tree)).kept;
   };
-  std::vector<std::uint8_t> bytes;
-  if (const BakedScene* baked = source.baked()) {
-    bytes.assign(baked->bytes().begin(), baked->bytes().end());
-  } else {
-    bytes = bake_scene(source, options).bytes;
-  }
+  const BakedScene* const given = source.baked();
+  const Baked made = given != nullptr ? Baked() : bake_scene(source, options);
+  const ConstBytes bytes = (given != nullptr ? *given : made.scene).bytes();
   const bool is_ink = bits_per_pixel(board.format) == 1;
-  return counted::count_frames(bytes.data(), bytes.size(), board.width_px, board.height_px, is_ink, work)
-             ? bytes.size()
+  return counted::count_frames(bytes.data, bytes.size, board.width_px, board.height_px, is_ink, work)
+             ? bytes.size
              : 0;
 }
 

@@ -510,7 +510,7 @@ bool BuiltScene::try_to_build(const SceneSource& source, const Progress& progres
 
 void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool coarsen,
                        const Progress& progress) {
-  arena_ = Arena(memory_.bytes());
+  arena_ = Arena(memory_.bytes().subspan(options_.front_bytes));
   band_ = {};
   if (band_bytes != 0) {
     const bool has_state = !arena_.take(static_cast<std::size_t>(options_.render_state_bytes)).empty();
@@ -538,6 +538,14 @@ std::uint64_t BuiltScene::voxels() const {
   return structure() == StructureKind::kDense  ? traced_.dense.voxel_count()
          : structure() == StructureKind::kPool ? traced_.pool.voxels()
                                                : compact().voxel_count();
+}
+
+bool BuiltScene::draws_from_file() const {
+  constexpr std::size_t kLargeBytes = std::size_t{1} << 30;
+  const Bytes own = memory_.bytes();
+  const std::uint8_t* const bytes = compact().bytes();
+  return structure() == StructureKind::kCompact && compact().size_bytes() >= kLargeBytes &&
+         (bytes < own.data || bytes >= own.data + own.size);
 }
 
 std::uint64_t BuiltScene::tree_bytes() const {

@@ -55,6 +55,8 @@ struct BuildOptions {
   /// A baked scene is traced where the source has it, as a board does in flash: not part of the budget, and
   /// the source must outlive the result. Otherwise its tree is copied into the arena. Compact trees only.
   bool baked_in_flash = false;
+  std::size_t front_bytes =
+      0;  ///< of memory, a multiple of 8, that others take in front of all that is built
 };
 
 /// Built once, then only read. Layout of the arena, front to back: render state and band, the structure, and what
@@ -85,6 +87,9 @@ class BuiltScene {
     return structure() == StructureKind::kPool ? traced_.pool.nodes_used() : compact().node_count();
   }
   std::uint64_t tree_bytes() const;
+  /// Whether it is traced where a large file has it. Lists or maps beside it would read all of the file, and take several
+  /// times as much memory: they are made on demand alone.
+  bool draws_from_file() const;
   /// --memory, or what was used at most where none was given.
   std::uint64_t budget_bytes() const { return options_.memory_bytes.value_or(high_water_bytes()); }
   /// The most of the arena that was in use.
@@ -95,6 +100,8 @@ class BuiltScene {
   double build_seconds() const { return build_seconds_; }
   const std::vector<Rgb8>& palette() const { return palette_; }
   Bytes band() const { return band_; }
+  /// Gives the memory away, in which the structure then lives.
+  HostMemory take_memory() { return std::move(memory_); }
   /// For what is wanted beside what was built, within the budget.
   Arena& arena() { return arena_; }
   const CompactTree& compact() const { return traced_.compact; }

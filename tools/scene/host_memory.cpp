@@ -37,6 +37,14 @@ HostMemory HostMemory::largest() {
   throw std::bad_alloc();
 }
 
+void HostMemory::keep(std::size_t size) {
+  constexpr std::size_t kPage = 4096;
+  const std::size_t kept = (size + kPage - 1) / kPage * kPage;
+  if (kept < size_) {
+    ::madvise(data_ + kept, size_ - kept, MADV_DONTNEED);
+  }
+}
+
 HostMemory::~HostMemory() {
   if (data_ != nullptr) {
     ::munmap(data_, size_);

@@ -27,6 +27,8 @@ class HostMemory {
   }
 
   Bytes bytes() const { return {data_, size_}; }
+  /// Gives what whole pages there are behind the first `size` bytes back to the system; what they held is lost.
+  void keep(std::size_t size);
 
  private:
   uint8_t* data_ = nullptr;

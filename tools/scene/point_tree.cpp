@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "readers/oct.h"
 #include "scene/host_memory.h"
 #include "scene/scene_source.h"
 #include "scene/workers.h"
@@ -204,19 +205,6 @@ class PartLists {
   std::vector<Bytes> free_grids_;
   std::uint64_t bytes_ = 0;
 };
-
-// The bits of at most 8 words, by lanes: there may be no instruction that counts them.
-unsigned count_bits(Span<const std::uint64_t> words) {
-  constexpr std::uint64_t kOnes = 0x0101010101010101;
-  std::uint64_t bytes = 0;
-  for (const std::uint64_t word : words) {
-    const std::uint64_t pairs = word - (word >> 1 & 0x55 * kOnes);
-    const std::uint64_t fours = (pairs & 0x33 * kOnes) + (pairs >> 2 & 0x33 * kOnes);
-    bytes += (fours + (fours >> 4)) & 0x0F * kOnes;
-  }
-  constexpr std::uint64_t kEven = 0x00FF00FF00FF00FF;
-  return static_cast<unsigned>(((bytes & kEven) + (bytes >> 8 & kEven)) * 0x0001000100010001 >> 48);
-}
 
 // One bit for each byte of `word` that is not zero.
 unsigned full_bytes(std::uint64_t word) {

@@ -126,7 +126,7 @@ std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* built, std::int32_t
 
 FirstHits wide_first_hits(BuiltScene* built) {
   wide::RayMap map;
-  if (built->structure() != StructureKind::kCompact ||
+  if (built->structure() != StructureKind::kCompact || built->draws_from_file() ||
       wide::RayMap::make(built->compact(), &built->arena(), &map) != Status::kOk) {
     return nullptr;
   }

@@ -107,12 +107,13 @@ std::string FinishedLook::gpu() const {
   return has_gpu_.load() ? gpu_->device() : "";
 }
 
-// Null where there is no room: then the core draws.
+// Null where there is no room, or nothing is to stand beside a large file: then the core draws.
 LitStreams* FinishedLook::streams_for(const Look& look, const Camera& camera, const Shading& shading,
                                       int threads) const {
   const EffectSet effects = look.effects;
   const LitScene scene = look.lit_scene();
-  if (engine_ != "wide" && (effects & ~GpuEngine::effects()) == 0) {
+  const bool from_file = scene_->built->draws_from_file();
+  if (engine_ != "wide" && (effects & ~GpuEngine::effects()) == 0 && (!from_file || engine_ == "gpu")) {
     try {
       if (!gpu_tried_) {
         try_gpu(look, camera, shading, threads);
@@ -125,6 +126,9 @@ LitStreams* FinishedLook::streams_for(const Look& look, const Camera& camera, co
     if (gpu_ != nullptr) {
       return gpu_.get();
     }
+  }
+  if (from_file) {
+    return nullptr;
   }
   const std::size_t bytes = LitStreams::bytes(scene_->tree(), effects, scene, threads);
   if (bytes > streams_bytes_ || (effects & ~streams_effects_) != 0) {

@@ -33,6 +33,7 @@ void run_viewer(const ViewerOptions& options);
 /// light, and until the picture was finished. Throws InputError.
 std::string bench_viewer(const ViewerOptions& options, int frames);
 inline constexpr const char* kBenchColumns =
-    "scene,voxels,size_px,threads,engine,step,frames_a_second,frame_ms,slowest_frame_ms,lit_ms,finished_ms";
+    "scene,voxels,size_px,threads,engine,step,first_ms,frames_a_second,frame_ms,slowest_frame_ms,lit_ms,"
+    "finished_ms";
 
 }  // namespace thimble::tools::viewer

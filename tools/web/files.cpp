@@ -175,6 +175,8 @@ HostMemory HostMemory::largest() {
   throw std::bad_alloc();
 }
 
+void HostMemory::keep(std::size_t /*size*/) {}
+
 HostMemory::~HostMemory() {
   if (data_ != nullptr) {
     kept_memory.push_back({data_, size_});

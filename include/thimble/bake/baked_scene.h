@@ -87,9 +87,9 @@ size_t baked_bytes(const BakedParts& parts);
 class BakedScene {
  public:
   /// Writes the header, the list and the sections to the front of `to`, which does not overlap the parts, and
-  /// opens them as `scene` (null: only the bytes are wanted). kOutOfMemory when they do not fit, kBadArgument
-  /// when the tree does not open, the camera makes no view or a part is too long; nothing is written then.
-  /// The CRC-32 makes it read what it wrote: two passes.
+  /// opens them as `scene` (null: only the bytes are wanted). The tree may lie in `to`, behind a list of
+  /// kMaxSections. kOutOfMemory when they do not fit, kBadArgument when the tree does not open, the camera makes
+  /// no view or a part is too long; nothing is written then. The CRC-32 makes it read what it wrote: two passes.
   static Status make(const BakedParts& parts, Bytes to, BakedScene* scene);
 
   /// Looks at the header, the list of sections and what each must hold; does not read the tree's nodes, so
