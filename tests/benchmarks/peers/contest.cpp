@@ -10,6 +10,7 @@
 #include "output/output_file.h"
 #include "readers/oct.h"
 #include "scene/scene_source.h"
+#include "wide/raster/voxel_lists.h"
 
 namespace thimble::benchmarks {
 namespace {
