@@ -64,8 +64,7 @@ float power_about(float base, float exponent) {
 // what is hidden as if all that stands in front were strewn at random.
 class Haze {
  public:
-  Haze(const VoxelLists& lists, const WideFrame& frame, bool by_rows)
-      : lists_(lists), frame_(frame), by_rows_(by_rows) {
+  Haze(const VoxelLists& lists, const WideFrame& frame) : lists_(lists), frame_(frame) {
     // A block's bend is its pixels times this (TileDrawer::is_flat).
     const float bend_per_px = frame.perspective ? frame.norm_w / (4 * frame.reach_x) : 0;
     table_px_ =
@@ -75,11 +74,8 @@ class Haze {
   }
 
   CostEstimate cost() const {
-    CostEstimate cost = cost_;
-    cost.blocks_pay = count_ != 0 && blocks_ + kBlocks <= flat_;
-    cost.work = cost.blocks_pay ? blocks_ + kBlocks : flat_;
-    cost.painted_px = painted_px_;
-    return cost;
+    const bool blocks_pay = count_ != 0 && blocks_ + kBlocks <= flat_;
+    return {blocks_pay, blocks_pay ? blocks_ + kBlocks : flat_, painted_px_};
   }
 
  private:
@@ -289,23 +285,6 @@ class Haze {
       }
       blocks_ += work;
       flat_ += flat;
-      if (by_rows_) {
-        spread(cell, work, cost_.blocks);
-        spread(cell, flat, cost_.flat);
-      }
-    }
-  }
-
-  // Spreads work over the rows that the cell takes.
-  void spread(const Cell& cell, float work, float (&parts)[CostEstimate::kParts]) const {
-    const float per_row =
-        static_cast<float>(CostEstimate::kParts) / static_cast<float>(frame_.tile.y1 - frame_.tile.y0);
-    const float from = (cell.y0 - static_cast<float>(frame_.tile.y0)) * per_row;
-    const float to = (cell.y1 - static_cast<float>(frame_.tile.y0)) * per_row;
-    const float each = work / (to - from);
-    for (int part = static_cast<int>(from); part < CostEstimate::kParts && static_cast<float>(part) < to;
-         ++part) {
-      parts[part] += each * (fminf(to, static_cast<float>(part + 1)) - fmaxf(from, static_cast<float>(part)));
     }
   }
 
@@ -313,20 +292,18 @@ class Haze {
   static constexpr int kRoom = 4 * kMostCells;
   const VoxelLists& lists_;
   const WideFrame& frame_;
-  bool by_rows_;
   float table_px_;  // mean side of blocks that are drawn by tables
   Cell cells_[kRoom];
   int count_ = 0;
   float flat_ = 0;  // work in the order of the list
   float blocks_ = 0;
   float painted_px_ = 0;  // estimated
-  CostEstimate cost_;
 };
 
 }  // namespace
 
-CostEstimate estimate_cost(const VoxelLists& lists, const WideFrame& frame, bool by_rows) {
-  return lists.size() > kFewBoxes ? Haze(lists, frame, by_rows).cost() : CostEstimate{};
+CostEstimate estimate_cost(const VoxelLists& lists, const WideFrame& frame) {
+  return lists.size() > kFewBoxes ? Haze(lists, frame).cost() : CostEstimate{};
 }
 
 bool boxes_pay(const CostEstimate& boxes, const CostEstimate& surface, bool perspective) {

@@ -15,22 +15,16 @@ inline constexpr float kMostBentPx = 0.15F;
 
 /// What drawing a frame is expected to take.
 struct CostEstimate {
-  static constexpr int kParts = 32;
   /// Whether boxes hide one another so much that blocks pay. Blocks are drawn front to back, and left out when all
   /// their pixels are covered.
   bool blocks_pay = false;
-  /// Roughly how much work equal parts of the tile's rows take, from the first row down: in the order of the list, and
-  /// with blocks.
-  float flat[kParts] = {};
-  float blocks[kParts] = {};
   /// The work in the order that pays, in tests of a pixel and without painting; and how many pixels get painted.
   float work = 0;
   float painted_px = 0;
 };
 
-/// Takes about a hundredth of the frame's time: it looks at 65 cells at most. `by_rows` says whether to find the work
-/// of the parts.
-CostEstimate estimate_cost(const VoxelLists& lists, const WideFrame& frame, bool by_rows);
+/// Takes about a hundredth of the frame's time: it looks at 65 cells at most.
+CostEstimate estimate_cost(const VoxelLists& lists, const WideFrame& frame);
 
 /// Whether a list of boxes, with its cost, is expected to be drawn faster than that of the surface, with its own.
 bool boxes_pay(const CostEstimate& boxes, const CostEstimate& surface, bool perspective);

@@ -62,25 +62,22 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 struct Plan {
   bool has_boxes;  // whether the list of boxes is drawn, not that of the surface
   Order order;
-  CostEstimate cost;
 };
 
-Plan plan_of(const VoxelLists& lists, const WideFrame& frame, const Options& options, int threads) {
-  const Order wanted = options.order;
-  Plan plan{options.list == List::kBoxes && lists.has_boxes_beside(), wanted, {}};
+Plan plan_of(const VoxelLists& lists, const WideFrame& frame, const Options& options) {
+  Plan plan{options.list == List::kBoxes && lists.has_boxes_beside(), options.order};
   const bool chooses = lists.has_boxes_beside() && options.list == List::kAuto;
-  if (wanted == Order::kAuto || threads > 1 || chooses) {
-    plan.cost = estimate_cost(plan.has_boxes ? lists.boxes_beside() : lists, frame, threads > 1);
+  if (options.order != Order::kAuto && !chooses) {
+    return plan;
   }
+  CostEstimate cost = estimate_cost(plan.has_boxes ? lists.boxes_beside() : lists, frame);
   if (chooses) {
-    const CostEstimate other = estimate_cost(lists.boxes_beside(), frame, threads > 1);
-    if (boxes_pay(other, plan.cost, frame.perspective)) {
-      plan.cost = other;
-      plan.has_boxes = true;
-    }
+    const CostEstimate other = estimate_cost(lists.boxes_beside(), frame);
+    plan.has_boxes = boxes_pay(other, cost, frame.perspective);
+    cost = plan.has_boxes ? other : cost;
   }
-  if (wanted == Order::kAuto) {
-    plan.order = plan.cost.blocks_pay ? Order::kBlocks : Order::kFlat;
+  if (options.order == Order::kAuto) {
+    plan.order = cost.blocks_pay ? Order::kBlocks : Order::kFlat;
   }
   return plan;
 }
@@ -102,7 +99,7 @@ Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& 
   if (!make_frame(camera, {0, band.first_row, camera.width_px(), band.first_row + band.rows}, &frame)) {
     return Status::kTooFine;
   }
-  const Plan plan = plan_of(all_lists, frame, options, threads);
+  const Plan plan = plan_of(all_lists, frame, options);
   const VoxelLists lists = plan.has_boxes ? all_lists.boxes_beside() : all_lists;
   SolidStarts starts;
   if (lists.is_surface()) {
@@ -116,9 +113,8 @@ Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& 
                                     is_sparse(lists, camera, band, by_blocks, threads, painter),
                                     painter.gray_scale(), &shading});
   const TileDrawer::Task task{lists, frame, by_blocks, lists.is_surface() ? &starts : nullptr};
-  const Tiles tiles(band.rows, threads, by_blocks ? plan.cost.blocks : plan.cost.flat);
   Stats done{{}, plan.order, 0, plan.has_boxes};
-  const uint64_t hits = draw_tiles(options.threads, tiles, task, painter, space, &done);
+  const uint64_t hits = draw_tiles(options.threads, task, painter, space, &done);
   if (counts != nullptr) {
     counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);
     counts->hits += hits;

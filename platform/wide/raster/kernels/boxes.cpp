@@ -98,62 +98,23 @@ void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, B
   }
 }
 
-// Draws a run from front to back: all that is in the picture lies in front of what follows.
+// Draws a run from front to back: all that is in the picture lies in front of what follows. So no pair waits, and each box
+// covers its pixels at once.
 template <bool kPerspective, bool kUnit>
 void draw_sorted_of(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
   const F32 d;
-  const I32 di;
-  const U32 du;
-  const size_t lanes = hn::Lanes(d);
   enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
   bool written = false;
-  pair_boxes<kPerspective, kUnit>(frame, depths, &written, batch);
-  if (batch->waiting.count >= 128) {
-    test_waiting<kPerspective, kUnit>(frame, depths, &written, batch);
-  }
+  test_boxes<kPerspective, kUnit>(frame, depths, &written, batch);
   write_hits(depths, batch);
   batch->counts.boxes += run.count;
   const OpenPixels open_pixels(depths, run.place.where);
   const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.place.where;
   const Reach reach(frame, clip);
-  const auto most = hn::Set(d, kMostQueuedSorted - 1);
-  Pairs& waiting = batch->waiting;
-  for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
+  for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(hn::Lanes(d))) {
     const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
-    auto large = hn::And(boxes.seen, hn::Gt(hn::Max(boxes.wide_x, boxes.wide_y), most));
-    if (kPerspective) {
-      large = hn::Or(large, boxes.crossing);
-    }
-    if (!hn::AllFalse(d, large)) {  // then all boxes of the vector are drawn one by one, in order
-      draw_large_of<kPerspective>(frame, run, at, boxes, hn::Or(large, boxes.seen), true, &written, depths,
-                                  batch);
-      continue;
-    }
-    if (hn::AllFalse(d, boxes.seen)) {
-      continue;
-    }
-    const auto number = hn::LoadU(du, run.numbers + at);
-    const auto x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
-    const auto y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
-    const auto first = hn::Or(hn::ShiftLeft<16>(y), x);
-    // Room for all pairs of a vector: nothing may be written into the picture between them, since a farther
-    // box may be tested before a nearer one has been looked up.
-    constexpr size_t kMostSortedPairs = static_cast<size_t>(kMostQueuedSorted * kMostQueuedSorted);
-    if (waiting.count + (kMostSortedPairs + 1) * lanes > Pairs::kSize) {
-      test_waiting<kPerspective, kUnit>(frame, depths, &written, batch);
-    }
-    auto in_row = boxes.seen;
-    for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
-      const auto open = open_pixels.at(in_row, x, hn::Add(y, hn::Set(du, down)));
-      auto in_column = hn::And(in_row, any_open(open, boxes.wide_x));
-      for (uint32_t across = 0; !hn::AllFalse(d, in_column); ++across) {
-        const auto chosen =
-            hn::And(in_column, hn::RebindMask(d, hn::TestBit(open, hn::Set(du, 1U << across))));
-        append(chosen, boxes.entry, number, hn::Add(first, hn::Set(du, down << 16 | across)), &waiting);
-        in_column = hn::And(in_column, hn::Gt(boxes.wide_x, hn::Set(d, static_cast<float>(across))));
-      }
-      in_row = hn::And(in_row, hn::Gt(boxes.wide_y, hn::Set(d, static_cast<float>(down))));
-    }
+    const auto seen = kPerspective ? hn::Or(boxes.crossing, boxes.seen) : boxes.seen;
+    draw_large_of<kPerspective>(frame, run, at, boxes, seen, true, &written, depths, batch);
   }
 }
 

@@ -159,10 +159,8 @@ HWY_INLINE void store_bytes(hn::Vec<HalfI32> values, uint8_t* to) {
   }
 }
 
-// Finds greys in doubles alone.
 template <bool kPerspective>
-HWY_NOINLINE void find_grays_exactly(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale,
-                                     uint8_t* gray) {
+void find_grays_of(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
   Corners corners;
   find_corners(pixels, &corners);
   for (size_t at = 0; at < pixels.count; at += hn::Lanes(F64())) {
@@ -171,124 +169,7 @@ HWY_NOINLINE void find_grays_exactly(const WideFrame& frame, const Pixels& pixel
   }
 }
 
-// Finds the greys of the pixels with these numbers again, exactly.
-template <bool kPerspective>
-void find_unclear_grays(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale,
-                        const uint32_t* numbers, uint32_t count, uint8_t* gray) {
-  Pixels few;
-  few.count = count;
-  few.any_levels = pixels.any_levels;
-  for (uint32_t i = 0; i < count + hn::Lanes(F32()); ++i) {  // the vector behind them means nothing
-    const uint32_t from = numbers[i < count ? i : 0];
-    few.x[i] = pixels.x[from];
-    few.y[i] = pixels.y[from];
-    few.key[i] = pixels.key[from];
-    few.cube[i] = pixels.cube[from];
-    few.level[i] = pixels.any_levels ? pixels.level[from] : 0;
-    few.voxels[i] = pixels.any_levels ? pixels.voxels[from] : 0;
-  }
-  uint8_t found[kMostPixels + 64];
-  find_grays_exactly<kPerspective>(frame, few, scale, found);
-  for (uint32_t i = 0; i < count; ++i) {
-    gray[numbers[i]] = found[i];
-  }
-}
-
-// Finds in floats where the rays of a vector of pixels enter their boxes. Distances are integers below 2^24. Adds to
-// `unclear` the lanes that floats do not decide.
-template <bool kPerspective>
-HWY_INLINE EntryPlane entry_planes(const WideFrame& frame, const Pixels& pixels, const Corners& corners,
-                                   size_t at, hn::Mask<F32>* unclear) {
-  const F32 d;
-  const I32 di;
-  const U32 du;
-  const auto zero = hn::Zero(d);
-  const auto x = hn::ConvertTo(d, hn::LoadU(di, pixels.x + at));
-  const auto y = hn::ConvertTo(d, hn::LoadU(di, pixels.y + at));
-  auto side = hn::Set(d, 1.0F);
-  if (pixels.any_levels) {
-    const auto level = hn::BitCast(du, hn::LoadU(di, pixels.level + at));
-    side = hn::ConvertTo(d, hn::BitCast(di, hn::Shl(hn::Set(du, 1U), level)));
-    *unclear = hn::Or(*unclear, hn::Gt(side, hn::Set(d, 1.0F)));
-  }
-  const auto size = hn::Mul(side, hn::Set(d, 256.0F));
-  const auto last = hn::Sub(hn::Set(d, 4096.0F), side);  // corners are mirrored in a world of 4096 voxels
-  EntryPlane plane;
-  auto off = zero;
-#pragma GCC unroll 3
-  for (int axis = 0; axis < 3; ++axis) {
-    auto direction = varying_of(frame, axis, x, y, &off);
-    auto origin = hn::Set(d, static_cast<float>(frame.eye[axis]));
-    if (!kPerspective) {
-      origin = hn::Add(origin, direction);
-      direction = hn::Set(d, static_cast<float>(frame.direction[axis]));
-    }
-    const auto downward = hn::Lt(direction, zero);
-    const auto mirrored = hn::ConvertTo(d, hn::LoadU(di, corners.at[axis] + at));
-    const auto corner = hn::IfThenElse(downward, hn::Sub(last, mirrored), mirrored);
-    const auto low = hn::MulSub(corner, hn::Set(d, 256.0F), origin);
-    const auto speed = hn::Abs(direction);
-    const auto distance = hn::IfThenElse(downward, hn::Neg(hn::Add(low, size)), low);
-    // A ray that does not move along an axis passes none of its planes.
-    plane.take_later(axis, hn::IfThenElseZero(hn::Gt(speed, zero), distance), speed, unclear);
-  }
-  *unclear = hn::Or(*unclear, rounding_is_unclear(frame, off));
-  return plane;
-}
-
-// Finds greys in floats where these decide, and the other greys exactly.
-template <bool kPerspective>
-void find_grays_of(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
-  const F32 d;
-  const I32 di;
-  const F64 d64;
-  const size_t lanes = hn::Lanes(d);
-  const hn::Rebind<float, F64> half_d;
-  Corners corners;
-  find_corners(pixels, &corners);
-  uint32_t unclear_at[kMostPixels];
-  uint32_t unclear_count = 0;
-  for (size_t at = 0; at < pixels.count; at += lanes) {
-    auto unclear = hn::Lt(hn::Zero(d), hn::Zero(d));
-    const EntryPlane plane = entry_planes<kPerspective>(frame, pixels, corners, at, &unclear);
-    if (scale.floats_tell) {
-      const hn::Rebind<uint8_t, I32> bytes;
-      const auto product = hn::Mul(plane.numerator, ratios_of(scale, plane.speed));
-      const auto found = grays_in_floats(scale, product, 1.0F, &unclear);
-      hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(di, found)), bytes, gray + at);
-    } else {
-      HWY_ALIGN float numerators[64];
-      HWY_ALIGN float speeds[64];
-      hn::Store(plane.numerator, d, numerators);
-      hn::Store(plane.speed, d, speeds);
-      for (size_t part = 0; part < lanes; part += hn::Lanes(d64)) {
-        store_bytes(grays_in_doubles(scale, hn::PromoteTo(d64, hn::LoadU(half_d, numerators + part)),
-                                     hn::PromoteTo(d64, hn::LoadU(half_d, speeds + part))),
-                    gray + at + part);
-      }
-    }
-    for (uint32_t bits = bits_of(d, unclear); bits != 0; bits &= bits - 1) {
-      const uint32_t i = static_cast<uint32_t>(at) + static_cast<uint32_t>(__builtin_ctz(bits));
-      if (i < pixels.count) {
-        unclear_at[unclear_count++] = i;
-      }
-    }
-  }
-  if (unclear_count != 0) {
-    find_unclear_grays<kPerspective>(frame, pixels, scale, unclear_at, unclear_count, gray);
-  }
-}
-
 void find_grays(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray) {
-  uint32_t blocks = 0;  // pixels that show blocks, which floats never decide
-  for (uint32_t i = 0; pixels.any_levels && i < pixels.count; ++i) {
-    blocks += pixels.level[i] > 0 ? 1 : 0;
-  }
-  if (blocks > pixels.count / 4) {
-    frame.perspective ? find_grays_exactly<true>(frame, pixels, scale, gray)
-                      : find_grays_exactly<false>(frame, pixels, scale, gray);
-    return;
-  }
   frame.perspective ? find_grays_of<true>(frame, pixels, scale, gray)
                     : find_grays_of<false>(frame, pixels, scale, gray);
 }

@@ -167,13 +167,13 @@ HWY_INLINE hn::Vec<F32> ratios_of(const GrayScale& scale, hn::Vec<F32> speed) {
   return hn::Add(hn::Sub(quotient, hn::IfThenElseZero(is_above, one)), hn::IfThenElseZero(is_below, one));
 }
 
-// Finds greys from numerator * ratio = `product`, in units of `unit` / 256 voxel. Adds to `unclear` the lanes whose
+// Finds greys from numerator * ratio = `product`, in units of 1/512 voxel. Adds to `unclear` the lanes whose
 // grey floats do not decide (GrayScale). Greys do not jump at the near and far planes themselves; between these they
 // change where the fall passes a whole number.
-HWY_INLINE hn::Vec<U32> grays_in_floats(const GrayScale& scale, hn::Vec<F32> product, float unit,
+HWY_INLINE hn::Vec<U32> grays_in_floats(const GrayScale& scale, hn::Vec<F32> product,
                                         hn::Mask<F32>* unclear) {
   const F32 d;
-  const auto depth = hn::Mul(product, hn::Set(d, unit * scale.float_scale));
+  const auto depth = hn::Mul(product, hn::Set(d, 0.5F * scale.float_scale));
   const auto fall = hn::Mul(hn::Sub(depth, hn::Set(d, scale.float_near)), hn::Set(d, scale.float_per_depth));
   const auto most = hn::Set(d, static_cast<float>(kMostFall) + 0.5F);
   const auto clamped = hn::Max(hn::Set(d, 0.5F), hn::Min(fall, most));
@@ -233,7 +233,7 @@ HWY_INLINE hn::Vec<U32> grays_of(const WideFrame& frame, const GrayScale& scale,
   if (kPerspective) {
     ratio = ratios_of(scale, plane.speed);
   }
-  return grays_in_floats(scale, hn::Mul(plane.numerator, ratio), 0.5F, unclear);
+  return grays_in_floats(scale, hn::Mul(plane.numerator, ratio), unclear);
 }
 
 // Finds the faces, plus 1, through which rays enter single voxels. Adds to `unclear` the lanes that floats do not

@@ -104,32 +104,6 @@ class LargeBox {
     }
   }
 
-  // Writes the hits of a vector of open pixels, whose indices are `pixels`.
-  HWY_INLINE void put_open(const RowTest& test, const uint32_t* pixels, const uint32_t* codes) {
-    uint32_t* const covered = depths_.covered;
-    uint64_t* const nearest = depths_.nearest;
-    uint16_t* const sums = depths_.nearest_sum;
-    uint8_t* const grays = depths_.gray;
-    if (test.same) {
-      find_value(test.down);
-    }
-    uint64_t value = value_;
-    for (uint32_t left = test.hits; left != 0; left &= left - 1) {
-      const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(left));
-      const uint32_t pixel = pixels[lane];
-      if (!test.same) {
-        value = value_for(test.down_of(lane));
-      }
-      if (kGray) {
-        sums[pixel] = static_cast<uint16_t>(value);
-        grays[pixel] = static_cast<uint8_t>(codes[lane]);
-      } else {
-        nearest[pixel] = value;
-      }
-      covered[pixel >> 5] |= uint32_t{1} << (pixel & 31U);
-    }
-  }
-
   // Writes hits; values of Depths::nearest decide which box is nearer.
   HWY_INLINE void put_values(const RowTest& test) {
     const U64 d64;
@@ -268,96 +242,6 @@ HWY_NOINLINE void draw_large_in(const WideFrame& frame, uint32_t entry, uint32_t
   }
 }
 
-// Boxes of at most so many pixels a side have their open pixels gathered. With fewer lanes rows fill vectors well enough.
-constexpr int32_t kMostGathered = 24;
-constexpr size_t kLeastLanesGathered = 8;
-
-// Stores the open pixels of a rectangle as y << 16 | x. Returns how many they are.
-inline size_t gather_open(const Rectangle& where, const Depths& depths, uint32_t* places) {
-  const U32 du;
-  const int32_t lanes = static_cast<int32_t>(hn::Lanes(du));
-  const uint32_t in_row = (uint32_t{1} << (where.x1 - where.x0)) - 1;
-  const uint32_t shift = static_cast<uint32_t>(where.x0) & 31U;
-  const uint32_t* word = depths.covered + depths.word(where.x0, where.y0);
-  size_t count = 0;
-  for (int32_t y = where.y0; y < where.y1; ++y, ++word) {
-    const uint64_t covered = uint64_t{word[0]} | uint64_t{word[depths.rows]} << 32;
-    const uint32_t open = static_cast<uint32_t>(~covered >> shift) & in_row;
-    const uint32_t first = static_cast<uint32_t>(y) << 16 | static_cast<uint32_t>(where.x0);
-    for (int32_t part = 0; part < where.x1 - where.x0; part += lanes) {
-      const uint32_t bits = open >> part & UINT32_MAX >> (32 - (lanes < 32 ? lanes : 32));
-      const uint8_t mask_bits[8] = {static_cast<uint8_t>(bits), static_cast<uint8_t>(bits >> 8),
-                                    static_cast<uint8_t>(bits >> 16), static_cast<uint8_t>(bits >> 24)};
-      const auto place = hn::Iota(du, first + static_cast<uint32_t>(part));
-      hn::StoreU(squeeze(place, hn::LoadMaskBits(du, mask_bits)), du, places + count);
-      count += static_cast<size_t>(__builtin_popcount(bits));
-    }
-  }
-  return count;
-}
-
-// Draws a box that covers some pixels, in front of which all lies that is in the picture: gathers its open pixels, so
-// that vectors are full however narrow the box is and however much of it is covered.
-template <bool kPerspective, Keep kKeep>
-HWY_NOINLINE void draw_gathered_in(const WideFrame& frame, uint32_t entry, uint32_t number,
-                                   const Rectangle& where, const Depths& depths, Batch* batch) {
-  constexpr bool kGray = kKeep != Keep::kNumbers;
-  const F32 d;
-  const I32 di;
-  const U32 du;
-  HWY_ALIGN uint32_t places[kMostGathered * kMostGathered + 64];
-  const size_t count = gather_open(where, depths, places);
-  batch->counts.candidates += count;
-  const size_t lanes = hn::Lanes(d);
-  const PlacedBox place(frame, entry, *batch);
-  LargeBox<kGray> box(entry, number, depths, batch);
-  for (size_t at = 0; at < count; at += lanes) {
-    const auto live = hn::FirstN(d, count - at < lanes ? count - at : lanes);
-    const auto pixel_place = hn::Load(du, places + at);
-    const auto x = hn::And(pixel_place, hn::Set(du, 0xFFFFU));
-    const auto y = hn::ShiftRight<16>(pixel_place);
-    const Aims aims = aims_of<kPerspective>(frame, place.origin, hn::ConvertTo(d, hn::BitCast(di, x)),
-                                            hn::ConvertTo(d, hn::BitCast(di, y)), place.low, place.half);
-    const Verdict verdict = judge<kPerspective>(frame, aims, place.half);
-    auto unclear = hn::Or(verdict.unclear, aims.unclear);
-    HWY_ALIGN uint32_t codes[64];
-    if (kGray) {
-      auto no_gray = hn::Lt(place.half, hn::Zero(d));
-      hn::Store(codes_of<kPerspective, kKeep>(frame, *depths.gray_scale, aims, &no_gray), du, codes);
-      unclear = hn::Or(unclear, hn::And(no_gray, verdict.hit));
-    }
-    HWY_ALIGN uint32_t pixels[64];
-    hn::Store(hn::Or(hn::ShiftLeft<5>(word_of(depths, x, y)), hn::And(x, hn::Set(du, 31U))), du, pixels);
-    RowTest test{};
-    for (uint32_t left = bits_of(d, hn::And(unclear, live)); left != 0; left &= left - 1) {
-      const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(left));
-      const int32_t pixel_x = static_cast<int32_t>(places[at + lane] & 0xFFFFU);
-      test.first = pixels[lane];
-      test.word = depths.covered + (pixels[lane] >> 5);
-      test.shift = pixels[lane] & 31U;
-      box.put_unclear(frame, pixel_x, static_cast<int32_t>(places[at + lane] >> 16), 1, test);
-    }
-    test.hits = bits_of(d, hn::And(hn::AndNot(unclear, verdict.hit), live));
-    batch->counts.hits += static_cast<unsigned>(__builtin_popcount(test.hits));
-    test.set_directions(aims);
-    box.put_open(test, pixels, codes);
-  }
-}
-
-template <bool kPerspective, Keep kKeep>
-HWY_INLINE void draw_large_as(const WideFrame& frame, uint32_t entry, uint32_t number, const Rectangle& where,
-                              bool reject, const Depths& depths, Batch* batch) {
-  constexpr bool kGathers = hn::MaxLanes(F32()) >= kLeastLanesGathered;
-  const bool is_small = where.x1 - where.x0 <= kMostGathered && where.y1 - where.y0 <= kMostGathered;
-  if (kGathers && is_small && reject && depths.marks) {
-    if (where.x0 < where.x1) {
-      draw_gathered_in<kPerspective, kKeep>(frame, entry, number, where, depths, batch);
-    }
-    return;
-  }
-  draw_large_in<kPerspective, kKeep>(frame, entry, number, where, reject, depths, batch);
-}
-
 template <bool kPerspective>
 void draw_large(const WideFrame& frame, uint32_t entry, uint32_t number, const Rectangle& where, bool reject,
                 const Depths& depths, Batch* batch) {
@@ -365,11 +249,11 @@ void draw_large(const WideFrame& frame, uint32_t entry, uint32_t number, const R
     touch_all(depths, where);
   }
   if (depths.gray_scale == nullptr) {
-    draw_large_as<kPerspective, Keep::kNumbers>(frame, entry, number, where, reject, depths, batch);
+    draw_large_in<kPerspective, Keep::kNumbers>(frame, entry, number, where, reject, depths, batch);
   } else if (depths.gray_scale->code == GrayScale::Code::kGray) {
-    draw_large_as<kPerspective, Keep::kGrays>(frame, entry, number, where, reject, depths, batch);
+    draw_large_in<kPerspective, Keep::kGrays>(frame, entry, number, where, reject, depths, batch);
   } else {
-    draw_large_as<kPerspective, Keep::kFaces>(frame, entry, number, where, reject, depths, batch);
+    draw_large_in<kPerspective, Keep::kFaces>(frame, entry, number, where, reject, depths, batch);
   }
 }
 

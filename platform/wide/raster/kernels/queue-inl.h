@@ -346,10 +346,8 @@ HWY_NOINLINE void pair_boxes(const WideFrame& frame, const Depths& depths, bool*
   batch->all_behind = true;
 }
 
-// Boxes of at most so many pixels a side are paired; larger ones are drawn row by row. In sorted runs smaller boxes are
-// drawn so, too: it pays that they cover their pixels at once.
+// Boxes of at most so many pixels a side are paired; larger ones, and those of sorted runs, are drawn row by row.
 constexpr float kMostQueued = 8;
-constexpr float kMostQueuedSorted = 3;
 // When so many boxes wait, they are drawn before the next run looks up open pixels.
 constexpr size_t kMostBoxesWaiting = 128;
 
