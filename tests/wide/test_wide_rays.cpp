@@ -190,7 +190,14 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
   check_each("any_hit_before", batch, [&](std::size_t i) { return any[i] == hit_before(i); });
   CHECK(wide::first_hit(map, rays, to_hits) == Status::kOk);
   check_each("first_hit", batch, [&](std::size_t i) { return same_hit(hits[i], batch.first[i]); });
-  CHECK(wide::first_unnamed_hit(map, rays, to_hits) == Status::kOk);
+  std::vector<RayPoint> no_later = batch.from;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Hit& hit = batch.first[i];
+    if (hit.kind == HitKind::kHit && is_before(hit, no_later[i])) {
+      no_later[i] = {};
+    }
+  }
+  CHECK(wide::first_unnamed_hit(map, rays, {no_later.data(), count}, to_hits) == Status::kOk);
   check_each("first_unnamed_hit", batch, [&](std::size_t i) {
     if (hits[i].kind == HitKind::kHit) {
       hits[i].material = wide::unnamed_material(map, hits[i]);

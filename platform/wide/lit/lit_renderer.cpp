@@ -33,6 +33,7 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, PixelQueue* queue, By
     slots /= 2;
   }
   const Shape shape(frame.effects, frame.scene, slots);
+  queue->clear();
   std::atomic_flag adding;
   const auto work = [&](int worker) {
     Stream stream(frame, map, shape,
@@ -95,8 +96,7 @@ Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, co
   if (status != Status::kOk) {
     return status;
   }
-  return draw_by_either(frame, map, PixelQueue(frame, band, stride, !is_opaque(effects)), workspace, threads,
-                        counts);
+  return draw_by_either(frame, map, PixelQueue(frame, band, stride), workspace, threads, counts);
 }
 
 Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,

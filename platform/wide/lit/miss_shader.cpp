@@ -1,7 +1,6 @@
 #include "wide/lit/miss_shader.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace thimble::wide {
 namespace {
@@ -10,58 +9,7 @@ lit::Color color_of(const Rgb8& color) {
   return {{color.r * lit::kLevel, color.g * lit::kLevel, color.b * lit::kLevel}};
 }
 
-using Vec3d = Vec3<double>;
-
-template <class T>
-Vec3d times(double factor, const Vec3<T>& of) {
-  return {factor * static_cast<double>(of.x), factor * static_cast<double>(of.y),
-          factor * static_cast<double>(of.z)};
-}
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const Vec3d& a, const Vec3d& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 }  // namespace
-
-// A way from the eye to a corner is a sum of the camera's three vectors (Cramer's rule). Rays are as near to their pixels as
-// the camera says; doubles are off by far less than the pixel more.
-PixelBox pixels_that_show(const Camera& camera, const VoxelBox& box) {
-  const Camera::Affine& affine = camera.affine();
-  const Vec3d base = times(0x1p-32, affine.base);
-  const Vec3d step_x = times(0x1p-32, affine.step_x);
-  const Vec3d step_y = times(0x1p-32, affine.step_y);
-  const Vec3d onward = camera.is_perspective() ? base : times(1, camera.direction());
-  const double volume = dot(step_x, cross(step_y, onward));
-  const PixelBox all{0, 0, camera.width_px(), camera.height_px()};
-  double low[2] = {HUGE_VAL, HUGE_VAL};
-  double high[2] = {-HUGE_VAL, -HUGE_VAL};
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    Vec3d way;
-    for (int axis = 0; axis < 3; ++axis) {
-      way[axis] = ((corner >> axis & 1U) != 0 ? box.high : box.low)[axis] * Q8::kOne -
-                  camera.eye()[axis].raw - (camera.is_perspective() ? 0 : base[axis]);
-    }
-    const double depth = camera.is_perspective() ? dot(way, cross(step_x, step_y)) / volume : 1;
-    if (!(depth > 0)) {
-      return all;
-    }
-    const double place[2] = {dot(way, cross(step_y, onward)) / volume / depth,
-                             dot(way, cross(onward, step_x)) / volume / depth};
-    for (int i = 0; i < 2; ++i) {
-      low[i] = std::min(low[i], place[i]);
-      high[i] = std::max(high[i], place[i]);
-    }
-  }
-  const double margin = 1 + camera.error_bound_px_q16() / 65536.0;
-  const auto pixel = [](double place, int32_t most) {
-    return static_cast<int32_t>(std::clamp(place, 0.0, static_cast<double>(most)));
-  };
-  return {pixel(low[0] - margin, all.x1), pixel(low[1] - margin, all.y1), pixel(high[0] + margin + 1, all.x1),
-          pixel(high[1] + margin + 1, all.y1)};
-}
 
 void SkyColumns::lay_out(uint32_t count, ArrayArena* arena) {
   for (int32_t*& column : of) {
@@ -72,8 +20,7 @@ void SkyColumns::lay_out(uint32_t count, ArrayArena* arena) {
 // The core, which traces where there is no map, counts its visits of all rays.
 MissShader::MissShader(const lit::Frame& frame, const RayMap& map, const SkyColumns& columns, uint32_t most)
     : frame_(frame),
-      shown_(map.cells() != nullptr ? pixels_that_show(frame.camera, map.tree().bounds())
-                                    : PixelBox{0, 0, frame.camera.width_px(), frame.camera.height_px()}),
+      beams_(frame.camera, map),
       columns_(columns),
       most_(most),
       background_(lit::background(frame)),
@@ -86,15 +33,40 @@ MissShader::MissShader(const lit::Frame& frame, const RayMap& map, const SkyColu
   }
 }
 
-bool MissShader::begin_row(PixelReader* pixels, LitCounts* counts) const {
+void MissShader::look(const PixelReader& pixels, const PixelColumns& whole) {
+  const int32_t rows = pixels.row() / kBeam;
+  if (left_ == whole.first && rows_ == rows) {
+    return;
+  }
+  if (left_ != whole.first || rows % (PixelQueue::kSquare / kBeam) == 0) {
+    of_square_ = beams_.first_plane(
+        {whole.first, pixels.camera_row(), whole.end, pixels.camera_row() + PixelQueue::kSquare});
+  }
+  left_ = whole.first;
+  rows_ = rows;
+  const int32_t first_row = pixels.camera_row() - pixels.row() % kBeam;
+  for (int32_t x = whole.first; x < whole.end; x += kBeam) {
+    planes_[(x - left_) / kBeam] =
+        beams_.first_plane({x, first_row, std::min(x + kBeam, whole.end), first_row + kBeam}, of_square_);
+  }
+}
+
+bool MissShader::begin_row(PixelReader* pixels, LitCounts* counts) {
   if (!pixels->begin_row()) {
     return false;
   }
   if (pixels->is_row()) {
     const PixelColumns whole = pixels->columns();
-    const bool is_shown = shown_.y0 <= pixels->camera_row() && pixels->camera_row() < shown_.y1;
-    const int32_t first = std::clamp(is_shown ? shown_.x0 : whole.end, whole.first, whole.end);
-    const int32_t end = std::clamp(shown_.x1, first, whole.end);
+    look(*pixels, whole);
+    const auto is_clear = [&](int32_t x) { return planes_[(x - left_) / kBeam].is_clear; };
+    int32_t first = whole.first;
+    int32_t end = whole.end;
+    while (first < end && is_clear(first)) {
+      first = std::min(first + kBeam, end);
+    }
+    while (first < end && is_clear(end - 1)) {
+      end = left_ + (end - 1 - left_) / kBeam * kBeam;
+    }
     show_row(*pixels, whole.first, first);
     show_row(*pixels, end, whole.end);
     pixels->narrow(first, end);

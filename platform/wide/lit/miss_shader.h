@@ -5,6 +5,7 @@
 
 #include "thimble/light/host/asked.h"
 #include "wide/lit/array_arena.h"
+#include "wide/lit/beam.h"
 #include "wide/lit/kernels.h"
 #include "wide/lit/pixel_queue.h"
 #include "wide/rays/ray_map.h"
@@ -23,31 +24,32 @@ struct SkyColumns {
   int32_t* of[4];
 };
 
-/// Some pixels of a picture.
-struct PixelBox {
-  int32_t x0, y0, x1, y1;
-};
-
-/// The pixels of which rays may touch a box, its faces included; no ray of another pixel does.
-PixelBox pixels_that_show(const Camera& camera, const VoxelBox& box);
-
 class MissShader {
  public:
   /// `columns` are for `most` rays.
   MissShader(const lit::Frame& frame, const RayMap& map, const SkyColumns& columns, uint32_t most);
 
-  /// Begins a row, of which only what can show the occupied box is left to be taken: the rest is stored. False: there is
-  /// no row left.
-  bool begin_row(PixelReader* pixels, LitCounts* counts) const;
+  /// Begins a row, of which only what can show something solid is left to be taken: what is beside that is stored. False:
+  /// there is no row left.
+  bool begin_row(PixelReader* pixels, LitCounts* counts);
+  /// Where the ray of a pixel of the row can first meet something.
+  const FirstPlane& first_plane(const PixelSlot& at) const { return planes_[(at.x - left_) / kBeam]; }
   /// Calls give(i, color) for the first `count` directions of the columns: lit::sky_color, or the background.
   template <class Give>
   void each_color(uint32_t count, const Give& give) const;
 
  private:
+  static constexpr int32_t kBeam = 8;  // a side of the pixels that are looked at together
+
+  void look(const PixelReader& pixels, const PixelColumns& whole);
   void show_row(const PixelReader& pixels, int32_t first, int32_t end) const;
 
   const lit::Frame& frame_;
-  PixelBox shown_;
+  Beams beams_;
+  int32_t left_ = 0;  // the planes are for the columns from here on, and some rows
+  int32_t rows_ = -1;
+  FirstPlane of_square_;
+  FirstPlane planes_[PixelQueue::kSquare / kBeam];
   SkyColumns columns_;
   uint32_t most_;
   lit::Color background_;

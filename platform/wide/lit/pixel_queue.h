@@ -15,25 +15,14 @@ namespace thimble::wide {
 /// The rows of a band, or places on a camera's picture, for any number of threads.
 class PixelQueue {
  public:
-  /// `in_squares`: where pixels have bytes of their own, a thread takes what lies together both ways.
-  PixelQueue(const lit::Frame& frame, const Band& band, size_t stride, bool in_squares)
+  PixelQueue(const lit::Frame& frame, const Band& band, size_t stride)
       : frame_(frame),
         band_(band),
         stride_(stride),
         width_(frame.camera.width_px()),
-        columns_(width_),
-        count_(static_cast<size_t>(band.rows)) {
-    is_whole_ = bits_per_pixel(band.format) % 8 == 0;
-    if (in_squares && is_whole_) {
-      columns_ = kSquare;
-      together_ = kSquare;
-      return;
-    }
-    // A thread takes some kTogether pixels at a time, and whole bytes.
-    const auto rows = static_cast<size_t>(kTogether / width_);
-    const auto multiple = static_cast<size_t>(band_row_multiple(band.format));
-    together_ = std::max<size_t>(rows / multiple, 1) * multiple;
-  }
+        columns_(kSquare),
+        count_(static_cast<size_t>(band.rows)),
+        together_(kSquare) {}
   /// `rgb` gets three bytes for each place.
   PixelQueue(const lit::Frame& frame, Span<const PixelPlace> places, Bytes rgb)
       : frame_(frame),
@@ -41,16 +30,28 @@ class PixelQueue {
         width_(1),
         columns_(1),
         count_(places.size),
-        together_(kTogether),
-        is_whole_(true) {
+        together_(kTogether) {
     band_.format = PixelFormat::kRgb888;
     band_.pixels = rgb;
   }
 
+  /// Clears the rows whose pixels share bytes, before any is stored.
+  void clear() const {
+    for (int32_t row = 0; places_ == nullptr && row < band_.rows; ++row) {
+      if (bits_per_pixel(band_.format) % 8 != 0 && begins_bytes(band_.format, row)) {
+        lit::clear_row(frame_, band_, line_of(row));
+      }
+    }
+  }
+
+  static constexpr int32_t kSquare =
+      32;  ///< a thread takes squares: whole bytes, which lie together both ways
+
  private:
   friend class PixelReader;
   static constexpr int32_t kTogether = 256;
-  static constexpr int32_t kSquare = 32;
+
+  uint8_t* line_of(int32_t row) const { return band_.pixels.data + stride_ * row_place(band_.format, row); }
 
   const lit::Frame& frame_;
   const PixelPlace* places_ = nullptr;
@@ -60,7 +61,6 @@ class PixelQueue {
   int32_t columns_;  // pixels of a row that a thread takes at a time
   size_t count_;     // rows, or places
   size_t together_;  // how many of them it takes
-  bool is_whole_;    // each pixel has bytes of its own
   std::atomic<size_t> next_{0};
 };
 
@@ -83,7 +83,7 @@ class PixelReader {
 
   /// Whether the row, or place, has no pixel left.
   bool row_is_done() const { return x_ == end_x_; }
-  /// Begins the next one; false: there is none left. One thread takes all rows that share bytes.
+  /// Begins the next one; false: there is none left.
   bool begin_row() {
     if (at_ != end_) {
       ++at_;
@@ -103,11 +103,7 @@ class PixelReader {
     x_ = first_x_;
     end_x_ = std::min(first_x_ + queue_.columns_, queue_.width_);
     if (is_row()) {
-      const auto row = static_cast<int32_t>(at_);
-      rays_ = RowRays(queue_.frame_.camera, x_, queue_.band_.first_row + row);
-      if (!queue_.is_whole_ && begins_bytes(queue_.band_.format, row)) {
-        lit::clear_row(queue_.frame_, queue_.band_, line_of(row));
-      }
+      rays_ = RowRays(queue_.frame_.camera, x_, camera_row());
     }
     return true;
   }
@@ -141,13 +137,14 @@ class PixelReader {
     if (rgb != nullptr && std::max({color.c[0], color.c[1], color.c[2]}) <= lit::kWhite) {
       store_rgb(color, rgb);
     } else {
-      lit::store(queue_.frame_, queue_.band_, line_of(at.row), at.x, queue_.band_.first_row + at.row, color);
+      lit::store(queue_.frame_, queue_.band_, queue_.line_of(at.row), at.x, queue_.band_.first_row + at.row,
+                 color);
     }
   }
   /// A pixel's three bytes, where its row's begin; null in other formats. What `store_rgb` puts there is
   /// not above kWhite.
   uint8_t* rgb_of(const PixelSlot& at) const {
-    return queue_.band_.format == PixelFormat::kRgb888 ? line_of(at.row) + 3 * at.x : nullptr;
+    return queue_.band_.format == PixelFormat::kRgb888 ? queue_.line_of(at.row) + 3 * at.x : nullptr;
   }
   static void store_rgb(const lit::Color& color, uint8_t* rgb) {
     const auto byte = [](uint32_t c) { return static_cast<uint8_t>((c + lit::kLevel / 2) / lit::kLevel); };
@@ -157,10 +154,6 @@ class PixelReader {
   }
 
  private:
-  uint8_t* line_of(int32_t row) const {
-    return queue_.band_.pixels.data + queue_.stride_ * row_place(queue_.band_.format, row);
-  }
-
   PixelQueue& queue_;
   RowRays rays_;
   size_t at_ = 0;  // the row, or place

@@ -373,6 +373,7 @@ size_t OpaqueShape::bytes() const {
 void OpaqueParts::lay_out(const OpaqueShape& shape, ArrayArena* arena) {
   const size_t slots = shape.slots;
   rays = arena->take<Ray>(slots);
+  from = arena->take<RayPoint>(slots);
   hits = arena->take<Hit>(slots);
   beyond = arena->take<uint32_t>(slots);
   sky.lay_out(shape.slots, arena);
@@ -493,7 +494,7 @@ void OpaqueStream::paint() {
 
 // Finds the colours of the first `count` rays.
 void OpaqueStream::light_up(uint32_t count) {
-  (void)first_unnamed_hit(map_, {parts_.rays, count}, {parts_.hits, count});
+  (void)first_unnamed_hit(map_, {parts_.rays, count}, {parts_.from, count}, {parts_.hits, count});
   find_faces(count);
   lights_.shine(face_count_);
   paint();
@@ -506,6 +507,7 @@ void OpaqueStream::draw(PixelQueue* queue) {
     while (count < shape_.slots && (!pixels.row_is_done() || misses_.begin_row(&pixels, &frame_.counts))) {
       for (; count < shape_.slots && !pixels.row_is_done(); ++count) {
         pixels.take(&parts_.rays[count], &parts_.places[count]);
+        parts_.from[count] = misses_.first_plane(parts_.places[count]).on(parts_.rays[count]);
       }
     }
     if (count == 0) {

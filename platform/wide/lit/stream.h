@@ -144,7 +144,8 @@ struct OpaqueShape {
 struct OpaqueParts {
   void lay_out(const OpaqueShape& shape, ArrayArena* arena);
 
-  Ray* rays;  ///< the pixels' rays
+  Ray* rays;       ///< the pixels' rays
+  RayPoint* from;  ///< where they can first meet something
   Hit* hits;
   uint32_t* beyond;    ///< the pixels that met nothing
   SkyColumns sky;      ///< of these

@@ -259,9 +259,8 @@ void trace_by_core(Job* job, size_t ray) {
     return;
   }
   Hit hit;
-  const Status status = job->bound == Bound::kFrom
-                            ? closest_hit_from(tree, job->rays[ray], job->points[ray], &hit)
-                            : closest_hit(tree, job->rays[ray], &hit);
+  const Status status = job->exits != nullptr ? closest_hit_from(tree, job->rays[ray], job->points[ray], &hit)
+                                              : closest_hit(tree, job->rays[ray], &hit);
   if (job->status == Status::kOk) {
     job->status = status;
   }
@@ -341,8 +340,8 @@ Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits) {
   return run(map, rays, {.hits = hits.data});
 }
 
-Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits) {
-  return run(map, rays, {.hits = hits.data, .names = false});
+Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits) {
+  return run(map, rays, {.points = from.data, .bound = Bound::kFrom, .hits = hits.data, .names = false});
 }
 
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,

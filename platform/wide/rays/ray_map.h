@@ -94,8 +94,9 @@ Status any_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoi
 /// level.
 Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits);
 
-/// The same, but with material 0 where `unnamed_material` can find the material later, if it is wanted.
-Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits);
+/// The same, but with material 0 where `unnamed_material` can find the material later, if it is wanted; and nothing that a ray
+/// could hit comes before its point `from[i]`, where it crosses a voxel's plane.
+Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits);
 
 /// The material of a kHit of `first_unnamed_hit`.
 uint8_t unnamed_material(const RayMap& map, const Hit& hit);
