@@ -24,7 +24,9 @@ const int kSunnyWorlds = many_or_few(60, 12);
 /// A world in bytes of its own, with room, and its sun.
 struct SunnyWorld {
   SunnyWorld(const CompactTree& tree, const Vec3i& towards)
-      : bytes(std::size_t{1} << 20), proven(0), journal_bytes(std::size_t{1} << 18) {
+      : bytes(EditedWorld::least_bytes(tree) + (std::size_t{1} << 20)),
+        proven(0),
+        journal_bytes(std::size_t{1} << 18) {
     REQUIRE(EditedWorld::make(tree, EditedWorld::room_in(tree, bytes.view().size), bytes.span(), &world) ==
             Status::kOk);
     light.place = towards;
@@ -63,14 +65,16 @@ struct SunnyWorld {
   SunBricks sun;
 };
 
-/// One voxel, a box, a ball, or one of these taken back.
-void edit_at_random(std::mt19937_64& random, SunnyWorld* sunny) {
+/// One voxel, a box, a ball, or one of these taken back; mostly near a place.
+void edit_at_random(std::mt19937_64& random, const Vec3i& near, SunnyWorld* sunny) {
   EditedWorld& world = sunny->world;
   const int last = (1 << world.level()) - 1;
   VoxelBox box;
   const int most = pick_int(random, 1, 3) == 1 ? 12 : 3;
+  const bool anywhere = last < 64 || pick_int(random, 0, 9) == 0;
   for (int axis = 0; axis < 3; ++axis) {
-    box.low[axis] = pick_int(random, 0, last);
+    box.low[axis] =
+        anywhere ? pick_int(random, 0, last) : std::clamp(near[axis] + pick_int(random, -32, 32), 0, last);
     box.high[axis] = box.low[axis] + pick_int(random, 1, most);
   }
   const int material = pick_int(random, 0, 2) - 1;
@@ -121,6 +125,21 @@ TEST_CASE(
   }
 }
 
+/// A camera that makes ties, or one that looks at a place from near by.
+Camera camera_for(std::mt19937_64& random, const Vec3i& near, int level) {
+  const Camera hard = hard_chip_camera(random, level);
+  PerspectiveView view;
+  for (int axis = 0; axis < 3; ++axis) {
+    view.forward[axis] = pick_int(random, -1000, 1000);
+    view.eye[axis] = Q8::from_raw(near[axis] * 256 - view.forward[axis] * pick_int(random, 4, 20));
+  }
+  view.fov_degrees = Q16::saturate(pick_int(random, 20, 90));
+  view.width_px = 160;
+  view.height_px = 90;
+  Camera camera;
+  return pick_int(random, 0, 2) == 0 || camera.set(view, level) != Status::kOk ? hard : camera;
+}
+
 TEST_CASE(
     "edited light: random edits, followed now and then -> the pictures of trees built anew, all proven in "
     "the end") {
@@ -128,15 +147,19 @@ TEST_CASE(
   int drawn = 0;
   for (int trial = 0; trial < kSunnyWorlds; ++trial) {
     CAPTURE(trial);
-    const ChipWorld kind = kChipWorlds[std::size_t{0} + static_cast<std::size_t>(trial % 4)];
-    const int level = pick_int(random, 3, 6);
+    const bool is_deep = trial % 3 == 2;
+    const ChipWorld kind =
+        is_deep ? ChipWorld::kBlocks : kChipWorlds[std::size_t{0} + static_cast<std::size_t>(trial % 4)];
+    const int level = is_deep ? pick_int(random, 9, 10) : pick_int(random, 3, 6);
+    const int last = (1 << level) - 1;
+    const Vec3i near{pick_int(random, 0, last), pick_int(random, 0, last), pick_int(random, 0, last)};
     Vec3i towards{pick_int(random, -9, 9), pick_int(random, -9, 9),
                   pick_int(random, 0, 1) * pick_int(random, -9, 9)};
     towards.z += towards == Vec3i{} ? 1 : 0;
     SunnyWorld sunny(make_chip_scene(random, kind, level).tree, towards);
     for (int edit = 0; edit < 40; ++edit) {
       CAPTURE(edit);
-      edit_at_random(random, &sunny);
+      edit_at_random(random, near, &sunny);
       const int way = pick_int(random, 0, 9);
       if (way == 0) {
         sunny.world.forget_changes();  // before they were followed: nothing is known then
@@ -147,11 +170,11 @@ TEST_CASE(
         }
       }
       if (edit % 4 == 3) {
-        sunny.compare(hard_chip_camera(random, level));
+        sunny.compare(camera_for(random, near, level));
         ++drawn;
       }
     }
-    while (sunny.sun.follow(sunny.world, 100)) {
+    while (sunny.sun.follow(sunny.world, is_deep ? 20000 : 100)) {
     }
     HeapBytes anew(sunny.proven.view().size);
     SunBricks fresh;

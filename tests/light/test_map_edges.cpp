@@ -268,15 +268,18 @@ TEST_CASE(
   CHECK(bytes == before);
 }
 
-TEST_CASE("lit frames by the map: a world of level 9 -> the tree's bytes, and nothing is proven of a sun") {
-  const House world(false, 9);
-  CHECK(SunBricks::bytes(world.map) == 0);
-  HeapBytes sun_bytes(4096);
-  SunBricks sun;
-  CHECK(SunBricks::make(world.map, world.lights[0].place, sun_bytes.span(), &sun) == Status::kOutOfRange);
-  CHECK_FALSE(sun.belongs_to(world.map, world.lights[0].place));
-  compare(world);
-  compare(world, {&sun, 1}, PixelFormat::kGray8);
+TEST_CASE("lit frames by the map: worlds of level 9 and 10 -> the tree's bytes, by nodes of few pixels") {
+  for (const int level : {9, 10}) {
+    const House world(false, level);
+    const ProvenSun proven(world);
+    for (const bool is_proven : {false, true}) {
+      compare_sets(world, {&proven.sun, is_proven ? 1U : 0U}, {&proven.sun, 1}, PixelFormat::kRgb565);
+      const BothCounts both =
+          draw_both<kSun>(world, PixelFormat::kGray8, 0, {&proven.sun, is_proven ? 1U : 0U});
+      constexpr int kShadow = static_cast<int>(LitRayKind::kShadow);
+      CHECK(both.by_map.node_visits[kShadow] * 10 < both.by_tree.node_visits[kShadow]);
+    }
+  }
 }
 
 TEST_CASE(

@@ -11,7 +11,7 @@
 #include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
-#include "thimble/light/render.h"
+#include "thimble/light/map_render.h"
 #include "thimble/picture/cutoff.h"
 #include "thimble/picture/render.h"
 #include "thimble/tree/edited_world.h"
@@ -72,7 +72,7 @@ void compare_pictures(std::mt19937_64& random, const EditedWorld& world) {
   shading.mode = ShadeMode::kColor;
   shading.palette = {palette.data(), palette.size()};
   const Camera camera = hard_chip_camera(random, world.level());
-  std::vector<std::uint8_t> pictures[5];
+  std::vector<std::uint8_t> pictures[6];
   for (std::vector<std::uint8_t>& rgb : pictures) {
     rgb.resize(band_bytes(PixelFormat::kRgb888, camera.width_px(), camera.height_px()));
   }
@@ -92,7 +92,10 @@ void compare_pictures(std::mt19937_64& random, const EditedWorld& world) {
   constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion;
   REQUIRE(render_lit_band<kSun>(tree, camera, shading, scene, band(3)) == Status::kOk);
   REQUIRE(render_lit_band<kSun>(world.tree(), camera, shading, scene, band(4)) == Status::kOk);
+  REQUIRE(render_lit_band<kSun>(world.tree(), world.map(), camera, shading, scene, {}, band(5)) ==
+          Status::kOk);
   REQUIRE(pictures[4] == pictures[3]);
+  REQUIRE(pictures[5] == pictures[3]);
 }
 
 TEST_CASE(

@@ -4,8 +4,8 @@
 /// The pixels are those of `render_lit_band` for the tree, bit for bit, whatever the set, camera, scene and band.
 /// Where the light of a pixel is a function of the face that it shows, of the lights that reach it and of what
 /// occludes it, or a sum of such by way of mirrors or water (a set that `is_flat`, at most kMaxFlatSuns distant lights,
-/// a camera that `draws_fast`, a world up to level 8, no limit of visits), all rays go through the map; everything else is
-/// drawn by the tree. An image has the first way only when its set allows it, and lamps there only when it says that it
+/// a camera that `draws_fast`, no water in worlds above level 8, no limit of visits), all rays go through the map; everything
+/// else is drawn by the tree. An image has the first way only when its set allows it, and lamps there only when it says that it
 /// has any.
 ///
 /// Cost of the fast way: platform/README.md, "Light on a chip". Stack: tests/budgets/stack.csv.
@@ -27,7 +27,8 @@ namespace thimble {
 class EditedWorld;
 
 /// The bricks of a map from which nothing is in the way to a distant light, a bit each, so that most shadow rays end
-/// after a few voxels. The bytes of the bits and of the map outlive it.
+/// after a few voxels. Above level 8 a byte for each ray that leaves a grid of bricks' sides across the light: in which layer of
+/// bricks it meets something last. The bytes and the map outlive it.
 ///
 ///     SunBricks sun;
 ///     const Bytes bytes = arena.take(SunBricks::bytes(map));
@@ -40,22 +41,24 @@ class SunBricks {
  public:
   SunBricks() = default;
 
-  /// Bytes that `make` takes: a bit a brick of the map's box, 512 for a full world of 64.
+  /// Bytes that `make` takes: a bit a brick of the map's box, 512 for a full world of 64; above level 8 the product of two
+  /// sides in bricks, each with a third one and 1: 66,049 for a full world of 512, 263,169 for one of 1,024.
   static size_t bytes(const BrickMap& map);
 
   /// Makes bits of which none is proven yet, which is never wrong. `towards` is as `Light::place` of a distant light.
-  /// Errors, `*sun` as it was: kOutOfMemory; kBadArgument for no direction or no map; kOutOfRange above level 8.
+  /// Errors, `*sun` as it was: kOutOfMemory; kBadArgument for no direction or no map.
   static Status make(const BrickMap& map, const Vec3i& towards, Bytes room, SunBricks* sun);
 
   /// Proves for up to `bricks` more bricks whether anything solid lies behind them towards the light: for all at
   /// once, or for a few at a time where a light moves. Returns whether any are left. Cost: some ten instructions for
-  /// each brick that lies behind another, up to the first that is not empty; some millions in a world of 64.
+  /// each brick that lies behind another, up to the first that is not empty; some millions in a world of 64. Above level 8
+  /// it is a byte in place of a brick, some thousand instructions each; 300 millions in an edited world of 1,024.
   bool prove(uint32_t bricks = UINT32_MAX);
 
   /// Withdraws what the edits since it was made or last followed may have made wrong, then proves up to `bricks` more
   /// bricks, those that were not proven yet and those behind an edit. Returns whether any are left. Until it is called an
   /// edited world's bits belong to no map, so that a frame does without them. Withdrawing clears at most each bit once:
-  /// some ten instructions a brick behind what `world.changed()` holds. Bits that are behind by more than that, or those of
+  /// some ten instructions a brick behind what `world.changed()` holds, above level 8 a byte before or behind it. Bits that are behind by more than that, or those of
   /// another world, are withdrawn altogether, or left alone.
   bool follow(const EditedWorld& world, uint32_t bricks);
 
@@ -63,7 +66,7 @@ class SunBricks {
   bool belongs_to(const BrickMap& map, const Vec3i& towards) const {
     return bits_ != nullptr && directory_ == map.directory() && stamp_ == map.stamp() && towards_ == towards;
   }
-  /// A bit a brick, in the directory's order, the lowest of a byte first.
+  /// A bit a brick, in the directory's order, the lowest of a byte first; above level 8 a byte as above.
   const uint8_t* bits() const { return bits_; }
 
  private:
@@ -71,6 +74,10 @@ class SunBricks {
 
   bool is_free(const Vec3i& brick) const;
   void prove_cell(uint32_t cell);
+  void set_deep();
+  void lower(uint32_t cell);
+  template <class Each>
+  void each_in_row(const Way& way, const VoxelBox& box, int32_t row, uint32_t first, const Each& each) const;
   template <class Each>
   void each_behind(const Way& way, const VoxelBox& box, int32_t layer, uint32_t first,
                    const Each& each) const;
@@ -86,6 +93,7 @@ class SunBricks {
   uint32_t layers_left_ = 0;  // of these, the one that was begun, and how many of its bricks are done
   int32_t layer_ = 0;
   uint32_t in_layer_ = 0;
+  bool is_deep_ = false;  // of level 9 and 10 layers are rows of the plane
 };
 
 /// Whether a set has the fast way: direct light alone, or with shadows and any of emission, sky, and either occlusion and

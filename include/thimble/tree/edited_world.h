@@ -9,7 +9,8 @@
 /// built anew would be: same voxels, same materials, same pictures and hits. What an edit does to what was made of them:
 ///
 ///   copies of `tree()`, `map()`    stale: fetch them again; a frame with a map and a tree of two times is kDamaged
-///   SunBricks                      belong to no map until they are followed (map_render.h), so a frame is right without
+///   SunBricks                      belong to no map until they are followed (map_render.h), so a frame is right without;
+///                                  of level 9 and 10 as well, where what they hold is bytes of a plane, not bits of bricks
 ///   AnytimeFrame, bands            of the world as it was; begin again
 ///   BakedScene, Octree, flash      copies, of the world as it was; `pack` writes the tree as bytes for flash
 ///   wide::VoxelLists, RayMap, what is kept on a GPU, NodeColors    copies as well: make them anew, of level 9 and 10 of

@@ -38,7 +38,7 @@ struct WetNotes {
 };
 
 // The face on which a ray has landed; not where on it.
-inline FacePoint landed_on(const SightCourse& course) {
+inline FacePoint landed_on(const SightCourse<false>& course) {
   const Landing& landing = course.landing;
   FacePoint face;
   for (int i = 0; i < 3; ++i) {

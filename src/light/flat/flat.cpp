@@ -5,8 +5,9 @@
 namespace thimble::lit {
 
 bool draws_flat(const Frame& frame, const BrickMap& map) {
-  if (DeepMap::is_deep(map.level()) || frame.options.max_visits != UINT32_MAX ||
-      !draws_fast(map, frame.camera)) {
+  // Notes of pixels in water have no bits for voxels of level 9 and 10.
+  const bool is_wide = DeepMap::is_deep(map.level()) && (frame.effects & Effect::kWater) != 0;
+  if (is_wide || frame.options.max_visits != UINT32_MAX || !draws_fast(map, frame.camera)) {
     return false;
   }
   size_t suns = 0;

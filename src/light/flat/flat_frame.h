@@ -34,7 +34,6 @@ constexpr uint32_t kInks = kGathersLight<kSet> || kIsWet<kSet> ? 8
 template <EffectSet kSet>
 constexpr uint32_t kFaces = kIsWet<kSet> ? 32 : 64;
 constexpr uint16_t kNoKey = UINT16_MAX;
-constexpr uint32_t kNoFace = UINT32_MAX;
 
 uint8_t* line_of(const Band& band, size_t stride, int32_t y) {
   return band.pixels.data + stride * row_place(band.format, y - band.first_row);
@@ -42,16 +41,18 @@ uint8_t* line_of(const Band& band, size_t stride, int32_t y) {
 
 // Shades and stores what SightPainter finds. kSecondary: rays leave its points, as they do from mirrors; in water a second
 // sink sends them, for the pixels that the first has noted.
-template <EffectSet kSet, bool kSecondary = kMirrors<kSet>>
-class FlatSink : PointLighting<kSet, kSecondary>,
-                 MirrorRays<kSet, FlatSink<kSet, kSecondary>>,
-                 WaterRays<kSet, FlatSink<kSet, kSecondary>, kSecondary> {
-  friend class MirrorRays<kSet, FlatSink<kSet, kSecondary>>;
+template <EffectSet kSet, bool kIsDeep = false, bool kSecondary = kMirrors<kSet>>
+class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
+                 MirrorRays<kSet, FlatSink<kSet, kIsDeep, kSecondary>>,
+                 WaterRays<kSet, FlatSink<kSet, kIsDeep, kSecondary>, kSecondary> {
+  friend class MirrorRays<kSet, FlatSink<kSet, kIsDeep, kSecondary>>;
   friend struct MapFrame<FlatSink>;
 
  public:
+  static constexpr bool kDeep = kIsDeep;
+
   FlatSink(Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
-      : WaterRays<kSet, FlatSink<kSet, kSecondary>, kSecondary>(frame, *this),
+      : WaterRays<kSet, FlatSink<kSet, kDeep, kSecondary>, kSecondary>(frame, *this),
         frame_(frame),
         map_(map),
         band_(band),
@@ -67,8 +68,8 @@ class FlatSink : PointLighting<kSet, kSecondary>,
     for (FlatInk& ink : inks_) {
       ink.key = kNoKey;
     }
-    for (uint32_t& seen : seen_) {
-      seen = kNoFace;
+    for (Seen& seen : seen_) {
+      seen = ~Seen{0};
     }
     if (!has_sky()) {
       make_ink(background(frame), &sky_);
@@ -108,7 +109,7 @@ class FlatSink : PointLighting<kSet, kSecondary>,
     }
   }
 
-  void hit(int32_t x, int32_t y, const SightCourse& course, const Vec3<uint32_t>& d) {
+  void hit(int32_t x, int32_t y, const SightCourse<kDeep>& course, const Vec3<uint32_t>& d) {
     const unsigned face = course.face[course.landing.axis];
     unsigned lights = lights_of_[face];
     if constexpr (kIsWet<kSet>) {
@@ -288,7 +289,7 @@ class FlatSink : PointLighting<kSet, kSecondary>,
   static constexpr bool kHasShadows = (kSet & Effect::kShadows) != 0;
   static constexpr bool kHasLamps = (kSet & kLamps) != 0;
   static constexpr bool kGathers = kGathersLight<kSet>;
-  static constexpr bool kKeepsSuns = PointLighting<kSet, kSecondary>::kKeepsSuns;
+  static constexpr bool kKeepsSuns = PointLighting<kSet, kDeep, kSecondary>::kKeepsSuns;
 
   static uint32_t count_of(const Pixels& pixels) {
     uint32_t count = 0;
@@ -334,8 +335,9 @@ class FlatSink : PointLighting<kSet, kSecondary>,
         if ((open >> i & 1U) != 0) {
           ++shadow_rays_;
           const size_t sun = kHasShadows && kSlots != 0 ? i : 0;
-          if (blockers_[sun].count <= Blockers::kMost ? is_blocked(suns_[sun], blockers_[sun], face.point)
-                                                      : is_shadowed(suns_[sun], face.point)) {
+          if (blockers_[sun].count <= Blockers<kDeep>::kMost
+                  ? is_blocked(suns_[sun], blockers_[sun], face.point)
+                  : is_shadowed(suns_[sun], face.point)) {
             reach &= ~(1U << i);
             ++shadows_;
           }
@@ -371,7 +373,7 @@ class FlatSink : PointLighting<kSet, kSecondary>,
   }
 
   // The direction of a ray of the camera that is `d` mirrored.
-  static Vec3i direction_of(const SightCourse& course, const Vec3<uint32_t>& d) {
+  static Vec3i direction_of(const Course& course, const Vec3<uint32_t>& d) {
     Vec3i direction;
     for (int i = 0; i < 3; ++i) {
       const auto size = static_cast<int32_t>(d[i]);
@@ -395,8 +397,8 @@ class FlatSink : PointLighting<kSet, kSecondary>,
   }
 
   // Stores a point of a metal, which the ray of direction `d` meets.
-  [[gnu::noinline]] void show_mirrored(int32_t x, int32_t y, const SightCourse& course,
-                                       const Vec3<uint32_t>& d, const FacePoint& point, uint8_t material) {
+  [[gnu::noinline]] void show_mirrored(int32_t x, int32_t y, const Course& course, const Vec3<uint32_t>& d,
+                                       const FacePoint& point, uint8_t material) {
     const Vec3i arriving = direction_of(course, d);
     const auto counted = this->counted();
     const uint32_t shadow_rays = shadow_rays_;
@@ -434,12 +436,15 @@ class FlatSink : PointLighting<kSet, kSecondary>,
   }
   bool has_sky() const { return has<kSet, Effect::kSky>(frame_); }
 
-  // A face's key has 25 bits: its place in the table says the lower ones, the entry keeps the others beside the material.
+  // A face's key has 25 bits, of level 9 and 10 32: its place in the table says the lower ones, the entry keeps the others
+  // beside the material.
+  using Seen = Choose<kDeep, uint64_t, uint32_t>;
   [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
     const uint32_t key = voxel << 3 | face;
-    uint32_t& seen = seen_[(key ^ key / kFaces<kSet>) % kFaces<kSet>];
-    if (seen >> 8 != key / kFaces<kSet>) {
-      seen = key / kFaces<kSet> << 8 | map_.material(frame_.tree, voxel >> 6, voxel & 63U);
+    const Seen rest = key / kFaces<kSet>;
+    Seen& seen = seen_[(key ^ rest) % kFaces<kSet>];
+    if (seen >> 8 != rest) {
+      seen = rest << 8 | map_.material(frame_.tree, voxel >> 6, voxel & 63U);
     }
     return static_cast<uint8_t>(seen);
   }
@@ -618,10 +623,10 @@ class FlatSink : PointLighting<kSet, kSecondary>,
   FlatInk sky_;
   static constexpr bool kFindsFaces = !(kSecondary && kIsWet<kSet>);
   FlatInk inks_[kFindsFaces ? kInks<kSet> : 1];
-  uint32_t seen_[kFindsFaces ? kFaces<kSet> : 1];  // material, from bit 8 on the face
-  ShadowCourse suns_[kHasShadows ? kMaxFlatSuns : 1];
+  Seen seen_[kFindsFaces ? kFaces<kSet> : 1];  // material, from bit 8 on the face
+  ShadowCourse<kDeep> suns_[kHasShadows ? kMaxFlatSuns : 1];
   // Of the face that is being drawn.
-  Blockers blockers_[kHasShadows && kSlots != 0 && kFindsFaces ? kMaxFlatSuns : 1];
+  Blockers<kDeep> blockers_[kHasShadows && kSlots != 0 && kFindsFaces ? kMaxFlatSuns : 1];
 };
 
 bool shares_bytes(PixelFormat format) {
@@ -630,18 +635,18 @@ bool shares_bytes(PixelFormat format) {
 
 // Draws tiles up to the first with deferred pixels. Not inlined, so that its frame has left the stack when the tree
 // traces them.
-template <EffectSet kSet>
+template <EffectSet kSet, bool kDeep>
 [[gnu::noinline]] void draw_tiles(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                   const Band& band, size_t stride, ProgressOf<kSet>* progress,
                                   LitCounts* counts) {
-  FlatSink<kSet> sink(frame, map, band, stride, counts != nullptr);
+  FlatSink<kSet, kDeep> sink(frame, map, band, stride, counts != nullptr);
   sink.note_in(progress);
   sink.set_lights(suns);
-  const BrickFrame sights = brick_frame(frame.tree, map, frame.camera, frame.shading, band.format);
+  const BrickFrame sights = brick_frame<kDeep>(frame.tree, map, frame.camera, frame.shading, band.format);
   Sweep sweep;
   sweep.begin(map);
-  const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid(sights);
-  SightPainter<FlatSink<kSet>> painter(sights, swept ? &sweep : nullptr, sink);
+  const bool swept = kSlots != 0 && set_steps(frame.camera, &sweep) && !touches_solid<kDeep>(sights);
+  SightPainter<FlatSink<kSet, kDeep>> painter(sights, swept ? &sweep : nullptr, sink);
   const int32_t width = frame.camera.width_px();
   const int32_t end = band.first_row + band.rows;
   for (bool open = false; progress->y < end && !open;) {
@@ -666,7 +671,7 @@ template <EffectSet kSet>
 template <EffectSet kSet>
 [[gnu::noinline]] void draw_noted(Frame& frame, const BrickMap& map, Span<const SunBricks> suns,
                                   const Band& band, size_t stride, WetProgress* progress, LitCounts* counts) {
-  FlatSink<kSet, true> sink(frame, map, band, stride, counts != nullptr);
+  FlatSink<kSet, false, true> sink(frame, map, band, stride, counts != nullptr);
   sink.set_lights(suns);
   sink.set_asked(progress->asked);
   const bool first = progress->x == 0;
@@ -688,7 +693,7 @@ template <EffectSet kSet>
                                       LitCounts* counts) {
   WetNotes notes;
   progress->notes = &notes;
-  draw_tiles<kSet>(frame, map, suns, band, stride, progress, counts);
+  draw_tiles<kSet, false>(frame, map, suns, band, stride, progress, counts);
   if (notes.any) {
     draw_noted<kSet>(frame, map, suns, band, stride, progress, counts);
   }
@@ -712,10 +717,8 @@ template <EffectSet kSet>
   }
 }
 
-}  // namespace
-
-template <EffectSet kSet>
-Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+template <EffectSet kSet, bool kDeep>
+Status draw_band(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                  LitCounts* counts) {
   size_t stride = 0;
   const Status status = check_frame(frame, band, &stride);
@@ -734,7 +737,7 @@ Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, 
     if constexpr (kIsWet<kSet>) {
       draw_wet_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
     } else {
-      draw_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
+      draw_tiles<kSet, kDeep>(frame, map, suns, band, stride, &progress, counts);
     }
     if ((progress.asked[0] | progress.asked[1] | progress.asked[2] | progress.asked[3]) == 0) {
       continue;
@@ -746,6 +749,19 @@ Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, 
                      first ? progress.y - 1 : progress.y, progress, counts);
   }
   return Status::kOk;
+}
+
+}  // namespace
+
+template <EffectSet kSet>
+Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+                 LitCounts* counts) {
+  if constexpr (kDeepWorlds && !kIsWet<kSet>) {
+    if (DeepMap::is_deep(map.level())) {
+      return draw_band<kSet, true>(frame, map, suns, band, counts);
+    }
+  }
+  return draw_band<kSet, false>(frame, map, suns, band, counts);
 }
 
 }  // namespace thimble::lit

@@ -18,14 +18,9 @@ template <EffectSet kSet>
 constexpr bool kIsWet = (kSet & Effect::kWater) != 0;
 
 // What rays leave from.
-template <EffectSet kSet, bool kSecondary>
-struct PointOf {
-  using Type = NearPoint<(kSet & kLamps) != 0>;
-};
-template <EffectSet kSet>
-struct PointOf<kSet, true> {
-  using Type = MirrorPoint<(kSet & kLamps) != 0>;
-};
+template <EffectSet kSet, bool kDeep, bool kSecondary>
+using PointOf = Choose<kSecondary, MirrorPoint<(kSet & kLamps) != 0, kDeep>,
+                       NearPoint<NearRay<(kSet & kLamps) != 0, kDeep>>>;
 
 // Directions to the distant lights. Empty: no water filters their rays.
 template <bool kKept>
@@ -36,15 +31,15 @@ struct SunDirections<true> {
 };
 
 // Empty: this set keeps no state per point.
-template <EffectSet kSet, bool kSecondary, bool = kGathersLight<kSet> || kSecondary>
+template <EffectSet kSet, bool kDeep, bool kSecondary, bool = kGathersLight<kSet> || kSecondary>
 class PointLighting {
  public:
   static constexpr bool kKeepsSuns = false;
 };
 
 // Keeps what the suns give each face, since the light of points is not looked up by their face.
-template <EffectSet kSet, bool kSecondary>
-class PointLighting<kSet, kSecondary, true> : protected SunDirections<kIsWet<kSet>> {
+template <EffectSet kSet, bool kDeep, bool kSecondary>
+class PointLighting<kSet, kDeep, kSecondary, true> : protected SunDirections<kIsWet<kSet>> {
  public:
   static constexpr bool kKeepsSuns = true;
   // Rays to lamps and of occlusion, and those of them that meet something.
@@ -60,8 +55,9 @@ class PointLighting<kSet, kSecondary, true> : protected SunDirections<kIsWet<kSe
     const Occlusion& occlusion = frame.scene.occlusion;
     rays_ =
         has<kSet, Effect::kAmbientOcclusion>(frame) && occlusion.reach != 0 ? occlusion_rays(occlusion) : 0;
-    // Along any direction of the pattern a ray leaves a box of 256 voxels a side within 512.
-    const uint32_t reach = occlusion.reach < 512 ? occlusion.reach : 512;
+    // Along any direction of the pattern a ray leaves the box within two sides of the largest world.
+    constexpr uint32_t kMost = 2U << (kDeep ? kMaxDeepMapLevel : kMaxBrickMapLevel);
+    const uint32_t reach = occlusion.reach < kMost ? occlusion.reach : kMost;
     reach_q12_ = ((reach << 20) + kOcclusionLength - 1) / kOcclusionLength;
   }
   // Sets what sun `number` gives a face that it reaches.
@@ -129,7 +125,7 @@ class PointLighting<kSet, kSecondary, true> : protected SunDirections<kIsWet<kSe
     counts->rays[kOcclusion] += counted_.occlusion_rays;
     counts->hits[kOcclusion] += counted_.occlusion_hits;
   }
-  typename PointOf<kSet, kSecondary>::Type& from() { return from_; }
+  PointOf<kSet, kDeep, kSecondary>& from() { return from_; }
   const Counted& counted() const { return counted_; }
   void set_counted(const Counted& counted) { counted_ = counted; }
 
@@ -223,7 +219,7 @@ class PointLighting<kSet, kSecondary, true> : protected SunDirections<kIsWet<kSe
     return false;
   }
 
-  typename PointOf<kSet, kSecondary>::Type from_;
+  PointOf<kSet, kDeep, kSecondary> from_;
   LightRay ray_;            // to a lamp
   int rays_ = 0;            // of occlusion, a point
   uint32_t reach_q12_ = 0;  // of occlusion: 1/256 voxel for each unit of a direction, in 1/2^12

@@ -198,7 +198,7 @@ bool has_empty_layer(const DeepCourse& course, const Shadow& a, const Shadow& b,
   };
   set(kOtherA<kC>, a);
   set(kOtherB<kC>, b);
-  return has_empty_pages(course, low, high);
+  return has_empty_pages(course.directory, course.empty_page, low, high);
 }
 
 // Finds the first slab of voxels from `slab` on in which rays of `fan` may meet something, or the number of slabs when

@@ -223,6 +223,9 @@ class BrickRay {
   static constexpr bool kMirrors = OneCourse::kAim == Aim::kMirror;
   static constexpr bool kFromFace =
       OneCourse::kAim == Aim::kShadow || OneCourse::kAim == Aim::kNear || kMirrors;
+  // Whether rays end at a plane of c: those of shadow at bricks with nothing behind them, but of level 9 and 10.
+  static constexpr bool kEnds =
+      OneCourse::kAim == Aim::kNear || (OneCourse::kAim == Aim::kShadow && OneCourse::kDeep);
   // Whether rays pass layers of empty bricks at once. Cores without a divider have little flash, and leave this out.
   static constexpr bool skips_layers() {
     if constexpr (OneCourse::kAim == Aim::kNear || kMirrors) {
@@ -356,8 +359,8 @@ class BrickRay {
   // Finds the brick that the ray has entered. For rays of shadow it is known where nothing behind a brick is solid:
   // there it returns false if the brick is empty, and else sets kInside, so that the ray ends with this brick.
   [[gnu::always_inline]] bool find_brick() {
-    if constexpr (OneCourse::kAim == Aim::kShadow) {
-      const uint32_t number = number_at<OneCourse::kDeep>(course_.directory, cell_);
+    if constexpr (OneCourse::kAim == Aim::kShadow && !kEnds) {
+      const uint32_t number = number_at<false>(course_.directory, cell_);
       if (course_.is_free(cell_)) {
         if (number == 0) {
           return false;
@@ -478,7 +481,7 @@ class BrickRay {
 
   // Whether the ray ends here, before a plane of c.
   [[gnu::always_inline]] bool ends() {
-    if constexpr (OneCourse::kAim == Aim::kNear) {
+    if constexpr (kEnds) {
       return planes_-- == 0;
     } else {
       return false;
@@ -488,7 +491,7 @@ class BrickRay {
   // Crosses the planes that the ray reaches at the same time; it spends no time in the voxels between them. Returns
   // false when closest_hit must say what the ray hits, or when the ray ends here.
   [[gnu::always_inline]] bool cross_together() {
-    if constexpr (OneCourse::kAim == Aim::kShadow) {
+    if constexpr (OneCourse::kAim == Aim::kShadow && !kEnds) {
       left_ &= ~kInside;  // the ray may stay in its brick, which is then found again
     }
     if (rest_a_ == 0 || rest_b_ == 0) {  // with the plane of c
@@ -565,7 +568,7 @@ class BrickRay {
   uint32_t shift_;     // the voxel's place: x and y
   const uint8_t* at_;  // and z: its halfword
   int axis_;           // of the plane that was crossed last
-  uint32_t planes_;    // planes of c that the ray may still cross (Aim::kNear, Aim::kMirror)
+  uint32_t planes_;    // planes of c that the ray may still cross (kEnds, Aim::kMirror)
 };
 
 template <int kC, unsigned kMirrored, class OneCourse>

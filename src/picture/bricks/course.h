@@ -86,22 +86,6 @@ struct DeepCourse : Course {
   uint32_t empty_page;  // what the directory says of pages that are empty
 };
 
-// Whether all pages are empty of bricks from `low` to `high`, by the box's axes.
-[[gnu::noinline, maybe_unused]] bool has_empty_pages(const DeepCourse& course, const Vec3i& low,
-                                                     const Vec3i& high) {
-  for (int32_t z = low.z >> 2; z <= high.z >> 2; ++z) {
-    for (int32_t y = low.y >> 2; y <= high.y >> 2; ++y) {
-      const int32_t row = z * 4096 + y * 64;
-      for (int32_t x = low.x >> 2; x <= high.x >> 2; ++x) {
-        if (word_at(course.directory, 4 * (row + x)) != course.empty_page) {
-          return false;
-        }
-      }
-    }
-  }
-  return true;
-}
-
 // Sets all members but those that say where the rays start.
 template <bool kDeep = false>
 [[THIMBLE_HOT]] void set_course(Course& course, unsigned mirrored, int c) {

@@ -19,20 +19,23 @@ enum class FaceLight : uint8_t { kLit, kDark, kMixed };
 
 // The voxels that may hide a light from points of a face, by a, b and c, mirrored. Where there are more than kMost, or
 // a component of the light's direction is 0, each point traces its own ray.
+template <bool kDeep>
 struct Blockers {
   static constexpr uint32_t kMost = 12;
+  using Cell = Choose<kDeep, uint16_t, uint8_t>;
   uint32_t count;
-  uint8_t cell[kMost][3];
+  Cell cell[kMost][3];
 };
 
 // The rays of a face, mirrored so that they go up on all axes. In a slab they pass the voxels of a window on a and b.
 // The rays of a face across c start on a plane of c; those of other faces start within a slab, the last of them at
 // its far plane.
+template <bool kDeep>
 class FaceBeam {
  public:
-  FaceBeam(const ShadowCourse& course, const FacePoint& face, Blockers* blockers)
+  FaceBeam(const ShadowCourse<kDeep>& course, const FacePoint& face, Blockers<kDeep>* blockers)
       : course_(course), blockers_(blockers) {
-    blockers->count = course.d[0] != 0 && course.d[1] != 0 && course.d[2] != 0 ? 0 : Blockers::kMost + 1;
+    blockers->count = course.d[0] != 0 && course.d[1] != 0 && course.d[2] != 0 ? 0 : kMost + 1;
     for (int k = 0; k < 3; ++k) {
       const int axis = course.axes[k];
       const int32_t own = face.voxel[axis];
@@ -49,6 +52,13 @@ class FaceBeam {
       }
       last_[k] = course.cells[axis] - 1;
       stride_[k] = course.next_brick[axis];
+    }
+    if constexpr (kDeep) {
+      const int32_t low[3] = {low_[0] >> 8, low_[1] >> 8, 256 * slab_};
+      const int32_t high[3] = {(high_[0] - course.high_slope[course.axes[0]]) >> 8,
+                               (high_[1] - course.high_slope[course.axes[1]]) >> 8,
+                               256 * (slab_ + (begins_ ? 1 : 0))};
+      last_[2] = course.end_of(low, high) - 1;
     }
   }
 
@@ -74,7 +84,7 @@ class FaceBeam {
       for (int32_t b = from_[1]; b <= to[1]; ++b, row += stride_[1]) {
         int32_t place = row;
         for (int32_t a = from_[0]; a <= to[0]; ++a, place += stride_[0]) {
-          any |= half_at(course_.directory, place);
+          any |= number_at<kDeep>(course_.directory, place);
           clear = clear && course_.is_free(place);
         }
       }
@@ -100,6 +110,8 @@ class FaceBeam {
 
  private:
   static constexpr int32_t kOne = 1 << 16;
+  static constexpr uint32_t kMost = Blockers<kDeep>::kMost;
+  using Cell = typename Blockers<kDeep>::Cell;
 
   FaceLight result() const { return some_ ? FaceLight::kMixed : FaceLight::kLit; }
 
@@ -134,7 +146,7 @@ class FaceBeam {
     for (int32_t b = from_[1]; b <= to[1]; ++b, row += stride_[1]) {
       int32_t place = row;
       for (int32_t a = from_[0]; a <= to[0]; ++a, place += stride_[0]) {
-        const auto number = static_cast<int32_t>(half_at(course_.directory, place));
+        const auto number = static_cast<int32_t>(number_at<kDeep>(course_.directory, place));
         if (number == 0) {
           continue;
         }
@@ -163,20 +175,20 @@ class FaceBeam {
   }
 
   void note(uint32_t solid, int32_t a, int32_t b, int32_t c) {
-    for (; solid != 0 && blockers_->count <= Blockers::kMost; solid &= solid - 1) {
-      if (blockers_->count < Blockers::kMost) {
+    for (; solid != 0 && blockers_->count <= kMost; solid &= solid - 1) {
+      if (blockers_->count < kMost) {
         const auto bit = static_cast<int32_t>(bits::lowest_bit(solid));
-        uint8_t* const cell = blockers_->cell[blockers_->count];
-        cell[0] = static_cast<uint8_t>(a + (bit & 3));
-        cell[1] = static_cast<uint8_t>(b + (bit >> 2));
-        cell[2] = static_cast<uint8_t>(c);
+        Cell* const cell = blockers_->cell[blockers_->count];
+        cell[0] = static_cast<Cell>(a + (bit & 3));
+        cell[1] = static_cast<Cell>(b + (bit >> 2));
+        cell[2] = static_cast<Cell>(c);
       }
       ++blockers_->count;
     }
   }
 
-  const ShadowCourse& course_;
-  Blockers* blockers_;
+  const ShadowCourse<kDeep>& course_;
+  Blockers<kDeep>* blockers_;
   bool some_ = false;
   bool begins_ = false;  // rays start within this slab
   int32_t slab_ = 0;
@@ -191,14 +203,16 @@ class FaceBeam {
 };
 
 // `face` is given by one of its points; the light is in front of it. `blockers` counts only where the answer is kMixed.
-[[gnu::noinline]] FaceLight light_of_face(const ShadowCourse& course, const FacePoint& face,
-                                          Blockers* blockers) {
-  return FaceBeam(course, face, blockers).find();
+template <bool kDeep>
+[[gnu::noinline]] FaceLight light_of_face(const ShadowCourse<kDeep>& course, const FacePoint& face,
+                                          Blockers<kDeep>* blockers) {
+  return FaceBeam<kDeep>(course, face, blockers).find();
 }
 
 // Whether one of the blockers hides the light from a point. A ray spends a length in a voxel if it enters it on each
 // axis i before it leaves it on each other axis j: (low_i - p_i) / d_i < (high_j - p_j) / d_j.
-bool is_blocked(const ShadowCourse& course, const Blockers& blockers, const FacePoint& point) {
+template <bool kDeep>
+bool is_blocked(const ShadowCourse<kDeep>& course, const Blockers<kDeep>& blockers, const FacePoint& point) {
   uint32_t at[3];
   uint32_t d[3];
   for (int k = 0; k < 3; ++k) {

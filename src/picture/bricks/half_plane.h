@@ -16,18 +16,6 @@
 namespace thimble::bricks {
 namespace {
 
-// One of two types, known when compiling: compilers for small chips come without <type_traits>.
-template <bool kFirst, class First, class Second>
-struct Chosen {
-  using Type = First;
-};
-template <class First, class Second>
-struct Chosen<false, First, Second> {
-  using Type = Second;
-};
-template <bool kFirst, class First, class Second>
-using Choose = typename Chosen<kFirst, First, Second>::Type;
-
 // Bit x + 16 y of 128 is a pixel.
 constexpr int kTileWords = kTileAcrossPx * kTileDownPx / 32;
 

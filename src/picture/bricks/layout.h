@@ -12,6 +12,18 @@
 namespace thimble::bricks {
 namespace {
 
+// One of two types, known when compiling: compilers for small chips come without <type_traits>.
+template <bool kFirst, class First, class Second>
+struct Chosen {
+  using Type = First;
+};
+template <class First, class Second>
+struct Chosen<false, First, Second> {
+  using Type = Second;
+};
+template <bool kFirst, class First, class Second>
+using Choose = typename Chosen<kFirst, First, Second>::Type;
+
 // The two axes besides the fastest one, c; a is the lower of them.
 constexpr int other_a(int c) {
   return c == 0 ? 1 : 0;
@@ -82,6 +94,29 @@ template <bool kDeep>
   }
 }
 
+// What the directory of a box of level 9 or 10 says of pages that are empty; and whether all pages are that hold bricks from
+// `low` to `high`.
+[[maybe_unused]] uint32_t empty_page_of(const Vec3i& side) {
+  const auto last =
+      static_cast<uint32_t>((side.x - 1) * deep_place::kStride[0] + (side.y - 1) * deep_place::kStride[1] +
+                            (side.z - 1) * deep_place::kStride[2]);
+  return (4 * (deep_place::page_of(last) + 1) + 7) & ~uint32_t{7};
+}
+[[gnu::noinline, maybe_unused]] bool has_empty_pages(const uint8_t* directory, uint32_t empty_page,
+                                                     const Vec3i& low, const Vec3i& high) {
+  for (int32_t z = low.z >> 2; z <= high.z >> 2; ++z) {
+    for (int32_t y = low.y >> 2; y <= high.y >> 2; ++y) {
+      const int32_t row = z * 4096 + y * 64;
+      for (int32_t x = low.x >> 2; x <= high.x >> 2; ++x) {
+        if (word_at(directory, 4 * (row + x)) != empty_page) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
 // A voxel's place in its brick: x and y are a shift within a halfword, z is the address of the halfword. Each
 // axis has two bits, shifted by this.
 constexpr int kPlaceShift[3] = {0, 2, 1};
@@ -89,7 +124,7 @@ template <int kAxis>
 constexpr uint32_t kField = 3U << kPlaceShift[kAxis];
 
 // The z part of the place, from the address of the halfword: bricks lie at multiples of 8.
-uint32_t row_of(const uint8_t* at) {
+[[maybe_unused]] uint32_t row_of(const uint8_t* at) {
   return static_cast<uint32_t>(reinterpret_cast<size_t>(at)) & 6U;
 }
 

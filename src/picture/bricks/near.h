@@ -9,11 +9,12 @@ namespace {
 
 // A ray: what BrickRay reads of a course, its direction, mirrored, and where it begins. kFar says that some of the rays
 // run far through the air, to lamps.
-template <bool kFar>
+template <bool kFar, bool kIsDeep>
 struct NearRay {
   static constexpr Aim kAim = Aim::kNear;
-  static constexpr bool kDeep = false;
+  static constexpr bool kDeep = kIsDeep;
   static constexpr bool kRunsFar = kFar;
+  using Near = NearRay;
   static constexpr bool wide = true;  // the wide comparison is right for directions of few bits, too
   static constexpr bool exact_ties = false;
   const uint8_t* directory;
@@ -31,8 +32,8 @@ struct NearRay {
 };
 
 // The same for what a mirror shows.
-template <bool kFar>
-struct MirrorRay : NearRay<kFar> {
+template <bool kFar, bool kDeep>
+struct MirrorRay : NearRay<kFar, kDeep> {
   static constexpr Aim kAim = Aim::kMirror;
   static constexpr bool kRunsFar = true;
 };
@@ -49,7 +50,8 @@ template <int kC, class OneRay>
   // The rests on the plane of c before the point.
   const uint32_t rest_a = from.within[kA] * d_c - from.within[kC] * d_a - (d_c << 8);
   const uint32_t rest_b = from.within[kB] * d_c - from.within[kC] * d_b - (d_c << 8);
-  ray.begin(half_at(from.directory, from.cell), from.left, from.cell, from.place, rest_a, rest_b);
+  ray.begin(number_at<OneRay::kDeep>(from.directory, from.cell), from.left, from.cell, from.place, rest_a,
+            rest_b);
   ray.end_after(from.planes);
   if constexpr (OneRay::kAim == Aim::kMirror) {
     return ray.trace();
@@ -67,7 +69,7 @@ struct NearHit {
 };
 
 // A point on a face, from which rays leave.
-template <bool kFar, class OneRay = NearRay<kFar>>
+template <class OneRay>
 class NearPoint {
  public:
   [[gnu::cold, gnu::noinline]] void set_map(const BrickMap& map) {
@@ -77,6 +79,9 @@ class NearPoint {
     int32_t stride = 2;
     for (int i = 0; i < 3; ++i) {
       const int32_t side = map.box().high[i] - map.box().low[i];
+      if constexpr (OneRay::kDeep) {
+        stride = deep_place::kStride[i];
+      }
       low_[i] = 1024 * map.box().low[i];
       size_[i] = 1024 * side;
       near_left_ += static_cast<uint32_t>(512 - side) << 10 * i;
@@ -131,7 +136,7 @@ class NearPoint {
     ray_.d[1] = d[1];
     ray_.d[2] = d[2];
     ray_.planes = (reach + ray_.within[c] - 1) >> 8;
-    const NearRay<kFar>& ray = ray_;
+    const typename OneRay::Near& ray = ray_;
     return (c == 0 ? near_along<0>(ray) : c == 1 ? near_along<1>(ray) : near_along<2>(ray)) && find(hit);
   }
 
@@ -189,8 +194,8 @@ class NearPoint {
 
 // A point on a face that may be a metal's, from which rays go to what it mirrors, too; or any other place where rays
 // start.
-template <bool kFar>
-class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
+template <bool kFar, bool kDeep>
+class MirrorPoint : public NearPoint<MirrorRay<kFar, kDeep>> {
  public:
   // Traces a ray of any direction that leaves the face: kMissed; kAsk, where only the tree knows what is hit, since the
   // ray enters that through an edge, or begins in it; else moves to the point that it hits, of `voxel` (as Landing's).
@@ -199,7 +204,7 @@ class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
     if constexpr (!kPlaced) {
       this->set(*point);
     }
-    MirrorRay<kFar>& ray = this->ray();
+    MirrorRay<kFar, kDeep>& ray = this->ray();
     unsigned mirrored = 0;
     int c = 0;
     for (int i = 0; i < 3; ++i) {
@@ -230,7 +235,7 @@ class MirrorPoint : public NearPoint<kFar, MirrorRay<kFar>> {
  private:
   // As that of rays of the camera. False where the ray begins in the voxel.
   bool find_point(FacePoint* point) {
-    const MirrorRay<kFar>& ray = this->ray();
+    const MirrorRay<kFar, kDeep>& ray = this->ray();
     struct {
       uint32_t flip[3];
     } signs;

@@ -127,13 +127,6 @@ class BrickPainter : public TilePainter<OneCourse, BrickPainter<OneCourse>> {
         counts_(counts) {
     course_.inks = &inks;
     course_.exact_ties = !frame.tree.merged();
-    if constexpr (OneCourse::kDeep) {
-      const Vec3i& side = frame.side;
-      const auto last = static_cast<uint32_t>((side.x - 1) * deep_place::kStride[0] +
-                                              (side.y - 1) * deep_place::kStride[1] +
-                                              (side.z - 1) * deep_place::kStride[2]);
-      course_.empty_page = (4 * (deep_place::page_of(last) + 1) + 7) & ~uint32_t{7};
-    }
   }
 
   uint32_t misses() const { return misses_ + (sweep_ != nullptr ? sweep_->misses : 0); }

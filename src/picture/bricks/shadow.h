@@ -2,18 +2,24 @@
 #pragma once
 
 #include "brick_ray.h"
+#include "sun_plane.h"
 
 namespace thimble::bricks {
 namespace {
 
-// Rays of one direction from any point: what BrickRay reads of a course, and what starting a ray takes.
-struct ShadowCourse {
+// Empty: rays end at bricks with nothing behind them.
+struct NoSunPlane {};
+
+// Rays of one direction from any point: what BrickRay reads of a course, and what starting a ray takes. Of level 9 and 10
+// they end where the light's plane says.
+template <bool kIsDeep>
+struct ShadowCourse : Choose<kIsDeep, SunPlane, NoSunPlane> {
   static constexpr Aim kAim = Aim::kShadow;
-  static constexpr bool kDeep = false;
+  static constexpr bool kDeep = kIsDeep;
   const uint8_t* directory;
   const uint8_t* bricks;
-  const uint8_t*
-      behind_bits;  // one bit for each brick of the directory: nothing behind it is solid (or null)
+  // One bit for each brick of the directory: nothing behind it is solid; or a byte for each cell of the plane. Or null.
+  const uint8_t* behind_bits;
   int32_t next_brick[3];
   uint32_t last[3];
   int32_t one_step[3];
@@ -30,7 +36,8 @@ struct ShadowCourse {
   bool wide;
 
   [[gnu::always_inline]] bool is_free(int32_t at) const {
-    return behind_bits != nullptr && (static_cast<uint32_t>(behind_bits[at >> 4]) >> (at >> 1 & 7) & 1U) != 0;
+    return !kDeep && behind_bits != nullptr &&
+           (static_cast<uint32_t>(behind_bits[at >> 4]) >> (at >> 1 & 7) & 1U) != 0;
   }
   [[gnu::always_inline]] bool goes_down(int axis) const { return (mirrored >> axis & 1U) != 0; }
 
@@ -53,6 +60,9 @@ struct ShadowCourse {
       last[i] = down ? 0U : 3U << kPlaceShift[i];
       one_step[i] = down ? -(1 << kPlaceShift[i]) : 1 << kPlaceShift[i];
       const int32_t side = map.box().high[i] - map.box().low[i];
+      if constexpr (kDeep) {
+        step = deep_place::kStride[i];
+      }
       cells[i] = 4 * side;
       next_brick[i] = down ? -step : step;
       near_left += static_cast<uint32_t>(down ? 511 : 512 - side) << 10 * i;
@@ -67,6 +77,28 @@ struct ShadowCourse {
     axes[0] = c == 0 ? 1 : 0;
     axes[1] = c == 2 ? 1 : 2;
     axes[2] = c;
+    if constexpr (kDeep) {
+      for (int k = 0; k < 2; ++k) {
+        SunPlane::set(k, low_slope[axes[k]], cells[axes[k]] >> 2, cells[c] >> 2);
+      }
+    }
+  }
+
+  // The slab of voxels along c at which rays end from some points, which lie between two corners, by a, b and c, mirrored,
+  // in 1/256 voxel.
+  int32_t end_of(const int32_t (&low)[3], const int32_t (&high)[3]) const {
+    int32_t layers = behind_bits == nullptr ? SunPlane::kAll : 0;
+    if (layers == 0) {
+      const int32_t to_a = this->cell_of(0, high[0], low[2]);
+      const int32_t to_b = this->cell_of(1, high[1], low[2]);
+      for (int32_t b = this->cell_of(1, low[1], high[2]); b <= to_b; ++b) {
+        for (int32_t a = this->cell_of(0, low[0], high[2]); a <= to_a; ++a) {
+          const int32_t own = behind_bits[b * this->count[0] + a];
+          layers = own > layers ? own : layers;
+        }
+      }
+    }
+    return layers == SunPlane::kAll ? cells[c] : 4 * layers;
   }
 };
 
@@ -79,24 +111,29 @@ struct FacePoint {
   bool faces_up;  // the face looks to larger coordinates
 };
 
-template <int kC>
-[[gnu::noinline]] int32_t shadow_along(const ShadowCourse& course, uint32_t number, uint32_t left,
-                                       int32_t cell, uint32_t place, const uint32_t (&within)[3]) {
+template <int kC, class OneCourse>
+[[gnu::noinline]] int32_t shadow_along(const OneCourse& course, uint32_t number, uint32_t left, int32_t cell,
+                                       uint32_t place, const uint32_t (&within)[3],
+                                       [[maybe_unused]] uint32_t planes) {
   constexpr int kA = kOtherA<kC>;
   constexpr int kB = kOtherB<kC>;
   const uint32_t d_a = course.d[kA];
   const uint32_t d_b = course.d[kB];
   const uint32_t d_c = course.d[kC];
-  BrickRay<kC, kAnySigns, ShadowCourse> ray(course, d_a, d_b, d_c);
+  BrickRay<kC, kAnySigns, OneCourse> ray(course, d_a, d_b, d_c);
   // The rests on the plane of c before the point.
   const uint32_t rest_a = within[kA] * d_c - within[kC] * d_a - (d_c << 8);
   const uint32_t rest_b = within[kB] * d_c - within[kC] * d_b - (d_c << 8);
   ray.begin(number, left, cell, place, rest_a, rest_b);
+  if constexpr (OneCourse::kDeep) {
+    ray.end_after(planes);
+  }
   return ray.trace();
 }
 
 // Whether the ray that leaves a face at a point meets something solid, as `any_hit` says for the tree.
-bool is_shadowed(const ShadowCourse& course, const FacePoint& point) {
+template <bool kDeep>
+bool is_shadowed(const ShadowCourse<kDeep>& course, const FacePoint& point) {
   uint32_t within[3];
   uint32_t left = course.near_left;
   uint32_t place = 0;
@@ -121,16 +158,32 @@ bool is_shadowed(const ShadowCourse& course, const FacePoint& point) {
     place |= (static_cast<uint32_t>(voxel) & 3U) << 2 * i;
     within[i] = in;
   }
-  const uint32_t number = half_at(course.directory, cell);
+  uint32_t planes = 0;
+  if constexpr (kDeep) {
+    int32_t at[3];
+    for (int k = 0; k < 3; ++k) {
+      const int axis = course.axes[k];
+      const auto brick = static_cast<int32_t>(count_of(left, axis)) - (512 - (course.cells[axis] >> 2));
+      const auto own = static_cast<int32_t>(place >> 2 * axis & 3U);
+      at[k] =
+          256 * (4 * brick + (course.goes_down(axis) ? 3 - own : own)) + static_cast<int32_t>(within[axis]);
+    }
+    const int32_t slabs = course.end_of(at, at) - (at[2] >> 8);
+    if (slabs <= 0) {
+      return false;
+    }
+    planes = static_cast<uint32_t>(slabs - 1);
+  }
+  const uint32_t number = number_at<kDeep>(course.directory, cell);
   if (course.is_free(cell)) {
     if (number == 0) {
       return false;
     }
     left |= kInside;
   }
-  const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, left, cell, place, within)
-                         : course.c == 1 ? shadow_along<1>(course, number, left, cell, place, within)
-                                         : shadow_along<2>(course, number, left, cell, place, within);
+  const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, left, cell, place, within, planes)
+                         : course.c == 1 ? shadow_along<1>(course, number, left, cell, place, within, planes)
+                                         : shadow_along<2>(course, number, left, cell, place, within, planes);
   return answer != kMissed;
 }
 

@@ -22,7 +22,8 @@ struct Landing {
 };
 
 // A course whose signs are data.
-struct SightCourse : Course {
+template <bool kDeep>
+struct SightCourse : Choose<kDeep, DeepCourse, Course> {
   static constexpr Aim kAim = Aim::kSight;
   uint32_t last[3];     // the last voxel of a brick, shifted to its place
   int32_t one_step[3];  // what a step adds to a voxel's place
@@ -31,8 +32,8 @@ struct SightCourse : Course {
 
   void set_signs() {
     for (int i = 0; i < 3; ++i) {
-      last[i] = flip[i] != 0 ? 0U : 3U << kPlaceShift[i];
-      one_step[i] = flip[i] != 0 ? -(1 << kPlaceShift[i]) : 1 << kPlaceShift[i];
+      last[i] = this->flip[i] != 0 ? 0U : 3U << kPlaceShift[i];
+      one_step[i] = this->flip[i] != 0 ? -(1 << kPlaceShift[i]) : 1 << kPlaceShift[i];
     }
   }
 };
@@ -49,8 +50,8 @@ template <int kAxis, class OneCourse, class Direction>
       continue;
     }
     const uint32_t in = static_cast<uint32_t>(way[kAxis]) * d[i] - static_cast<uint32_t>(way[i]) * speed;
-    THIMBLE_NOTE(Range::kBrickPlace, Exact(way[kAxis]) * Exact(d[i]));
-    THIMBLE_NOTE(Range::kBrickPlace, Exact(way[i]) * Exact(speed));
+    // Of level 9 and 10 the products have more bits, but not their difference.
+    THIMBLE_NOTE(Range::kDeepPlace, Exact(way[kAxis]) * Exact(d[i]) - Exact(way[i]) * Exact(speed));
     point->within[i] = place_across<kDivides>(in, speed, course.flip[i] != 0);
   }
   point->axis = kAxis;
@@ -68,7 +69,8 @@ template <class OneCourse, class Direction>
       return find_within<2>(course, way, d, point);
   }
 }
-void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* point) {
+template <bool kDeep>
+void find_point(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FacePoint* point) {
   const Landing& landing = course.landing;
   int32_t way[3];  // from the eye to the voxel's near plane
   for (int i = 0; i < 3; ++i) {
@@ -82,15 +84,15 @@ void find_point(const SightCourse& course, const Vec3<uint32_t>& d, FacePoint* p
   find_within(landing.axis, course, way, d, point);
 }
 
-template <int kC>
-[[gnu::noinline]] int32_t sight_along(const SightCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
-  return BrickRay<kC, kAnySigns, SightCourse>(course, d_a, d_b, d_c).trace();
+template <int kC, class OneCourse>
+[[gnu::noinline]] int32_t sight_along(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
+  return BrickRay<kC, kAnySigns, OneCourse>(course, d_a, d_b, d_c).trace();
 }
 
 // Traces the ray of a pixel, of direction `d`, mirrored, and tells the sink what it meets.
 template <class Sink>
-[[gnu::always_inline]] inline void see(Sink& sink, const SightCourse& course, int32_t x, int32_t y,
-                                       const Vec3<uint32_t>& d) {
+[[gnu::always_inline]] inline void see(Sink& sink, const SightCourse<Sink::kDeep>& course, int32_t x,
+                                       int32_t y, const Vec3<uint32_t>& d) {
   const int32_t answer = course.c == 0   ? sight_along<0>(course, d.y, d.z, d.x)
                          : course.c == 1 ? sight_along<1>(course, d.x, d.z, d.y)
                                          : sight_along<2>(course, d.x, d.y, d.z);
@@ -112,13 +114,13 @@ struct SeenFace {
 };
 
 // Finds where the ray of direction `d` meets the face.
-void find_point(const SightCourse& course, const Vec3<uint32_t>& d, SeenFace* face) {
+void find_point(const Course& course, const Vec3<uint32_t>& d, SeenFace* face) {
   find_within(face->point.axis, course, face->way, d, &face->point);
 }
 
 // The pixels of a tile that show one face.
 struct SeenPixels {
-  const SightCourse& course;
+  const Course& course;
   const FirstDirection& first;
   const TilePlace& place;
   const Pixels& pixels;
@@ -141,9 +143,9 @@ struct SeenPixels {
 // Hands what a sweep finds to a sink, where no inks are wanted.
 template <class Sink>
 struct SightPaint {
-  static constexpr bool kDeep = false;
+  static constexpr bool kDeep = Sink::kDeep;
   Sweep& sweep_;
-  SightCourse& course_;
+  SightCourse<kDeep>& course_;
   const FirstDirection& first_direction_;
   const TilePlace& place_;
   Sink& sink_;
@@ -180,9 +182,11 @@ struct SightPaint {
 //
 //   face(pixels, face)    all of these pixels show that face
 //   miss(place, pixels)   all of these pixels show nothing
+//
+// Sink::kDeep says whether the world has level 9 or 10.
 template <class Sink>
-class SightPainter : public TilePainter<SightCourse, SightPainter<Sink>> {
-  using Tiles = TilePainter<SightCourse, SightPainter>;
+class SightPainter : public TilePainter<SightCourse<Sink::kDeep>, SightPainter<Sink>> {
+  using Tiles = TilePainter<SightCourse<Sink::kDeep>, SightPainter>;
   friend Tiles;
 
  public:

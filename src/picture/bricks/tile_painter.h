@@ -103,6 +103,9 @@ class TilePainter {
     course_.bricks = frame.map.bricks();
     course_.wide = frame.camera.direction_bits() > kNarrowDirectionBits;
     course_.most_cells = (1U << (23 - frame.camera.direction_bits())) - 1;
+    if constexpr (OneCourse::kDeep) {
+      course_.empty_page = empty_page_of(frame.side);
+    }
     set(0, 0);  // NOLINT: where rays start is set_start's
   }
 

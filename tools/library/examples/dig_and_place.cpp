@@ -36,7 +36,7 @@ int main(int count, char** words) {
   LitScene light;
   light.lights = {&sun, 1};
   light.has_shadows = true;
-  std::vector<std::uint8_t> proofs(SunBricks::bytes(world.map()));  // where no shadow falls; to level 8
+  std::vector<std::uint8_t> proofs(SunBricks::bytes(world.map()));  // where no shadow falls
   SunBricks proven;
   if (SunBricks::make(world.map(), sun.place, Bytes(proofs.data(), proofs.size()), &proven) == Status::kOk) {
     (void)proven.prove();
