@@ -717,8 +717,10 @@ template <EffectSet kSet>
   }
 }
 
-template <EffectSet kSet, bool kDeep>
-Status draw_band(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
+}  // namespace
+
+template <EffectSet kSet>
+Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
                  LitCounts* counts) {
   size_t stride = 0;
   const Status status = check_frame(frame, band, &stride);
@@ -736,8 +738,10 @@ Status draw_band(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, 
   while (progress.y < end) {
     if constexpr (kIsWet<kSet>) {
       draw_wet_tiles<kSet>(frame, map, suns, band, stride, &progress, counts);
+    } else if (DeepMap::is_deep(map.level())) {
+      draw_tiles<kSet, kDeepWorlds>(frame, map, suns, band, stride, &progress, counts);
     } else {
-      draw_tiles<kSet, kDeep>(frame, map, suns, band, stride, &progress, counts);
+      draw_tiles<kSet, false>(frame, map, suns, band, stride, &progress, counts);
     }
     if ((progress.asked[0] | progress.asked[1] | progress.asked[2] | progress.asked[3]) == 0) {
       continue;
@@ -749,19 +753,6 @@ Status draw_band(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, 
                      first ? progress.y - 1 : progress.y, progress, counts);
   }
   return Status::kOk;
-}
-
-}  // namespace
-
-template <EffectSet kSet>
-Status draw_flat(Frame& frame, const BrickMap& map, Span<const SunBricks> suns, const Band& band,
-                 LitCounts* counts) {
-  if constexpr (kDeepWorlds && !kIsWet<kSet>) {
-    if (DeepMap::is_deep(map.level())) {
-      return draw_band<kSet, true>(frame, map, suns, band, counts);
-    }
-  }
-  return draw_band<kSet, false>(frame, map, suns, band, counts);
 }
 
 }  // namespace thimble::lit

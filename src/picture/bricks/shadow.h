@@ -10,10 +10,14 @@ namespace {
 // Empty: rays end at bricks with nothing behind them.
 struct NoSunPlane {};
 
+struct SunEnds : SunPlane {
+  mutable uint32_t planes;  // that the last ray may cross
+};
+
 // Rays of one direction from any point: what BrickRay reads of a course, and what starting a ray takes. Of level 9 and 10
 // they end where the light's plane says.
 template <bool kIsDeep>
-struct ShadowCourse : Choose<kIsDeep, SunPlane, NoSunPlane> {
+struct ShadowCourse : Choose<kIsDeep, SunEnds, NoSunPlane> {
   static constexpr Aim kAim = Aim::kShadow;
   static constexpr bool kDeep = kIsDeep;
   const uint8_t* directory;
@@ -113,8 +117,7 @@ struct FacePoint {
 
 template <int kC, class OneCourse>
 [[gnu::noinline]] int32_t shadow_along(const OneCourse& course, uint32_t number, uint32_t left, int32_t cell,
-                                       uint32_t place, const uint32_t (&within)[3],
-                                       [[maybe_unused]] uint32_t planes) {
+                                       uint32_t place, const uint32_t (&within)[3]) {
   constexpr int kA = kOtherA<kC>;
   constexpr int kB = kOtherB<kC>;
   const uint32_t d_a = course.d[kA];
@@ -126,7 +129,7 @@ template <int kC, class OneCourse>
   const uint32_t rest_b = within[kB] * d_c - within[kC] * d_b - (d_c << 8);
   ray.begin(number, left, cell, place, rest_a, rest_b);
   if constexpr (OneCourse::kDeep) {
-    ray.end_after(planes);
+    ray.end_after(course.planes);
   }
   return ray.trace();
 }
@@ -158,7 +161,6 @@ bool is_shadowed(const ShadowCourse<kDeep>& course, const FacePoint& point) {
     place |= (static_cast<uint32_t>(voxel) & 3U) << 2 * i;
     within[i] = in;
   }
-  uint32_t planes = 0;
   if constexpr (kDeep) {
     int32_t at[3];
     for (int k = 0; k < 3; ++k) {
@@ -172,7 +174,7 @@ bool is_shadowed(const ShadowCourse<kDeep>& course, const FacePoint& point) {
     if (slabs <= 0) {
       return false;
     }
-    planes = static_cast<uint32_t>(slabs - 1);
+    course.planes = static_cast<uint32_t>(slabs - 1);
   }
   const uint32_t number = number_at<kDeep>(course.directory, cell);
   if (course.is_free(cell)) {
@@ -181,9 +183,9 @@ bool is_shadowed(const ShadowCourse<kDeep>& course, const FacePoint& point) {
     }
     left |= kInside;
   }
-  const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, left, cell, place, within, planes)
-                         : course.c == 1 ? shadow_along<1>(course, number, left, cell, place, within, planes)
-                                         : shadow_along<2>(course, number, left, cell, place, within, planes);
+  const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, left, cell, place, within)
+                         : course.c == 1 ? shadow_along<1>(course, number, left, cell, place, within)
+                                         : shadow_along<2>(course, number, left, cell, place, within);
   return answer != kMissed;
 }
 
