@@ -220,7 +220,8 @@ TEST_CASE("place_points: outside the world -> an error that names the point") {
 
 TEST_CASE("smallest_level: every border of a world -> the smallest that holds the cloud") {
   const auto level_of = [](std::array<double, 3> p) {
-    return smallest_level(survey_points(ListCloud({{0, 0, 0}, p})));
+    const ListCloud cloud({{0, 0, 0}, p});
+    return smallest_level(cloud, survey_points(cloud));
   };
   CHECK(level_of({0, 0, 0}) == 1);
   CHECK(level_of({0, 1.9, 0}) == 1);
@@ -230,7 +231,7 @@ TEST_CASE("smallest_level: every border of a world -> the smallest that holds th
   }
   CHECK(level_of({4095.999, 0, 0}) == 12);
   const ListCloud outside({{1, 1, 1}, {5, -1, 4096}, {-1, -1, -1}});
-  const std::string error = error_of([&] { smallest_level(survey_points(outside)); });
+  const std::string error = error_of([&] { smallest_level(outside, survey_points(outside)); });
   CHECK(error == "point 2: (5, -1, 4096) is outside the world's voxels 0..4095 on an axis");
   // Fitted, the same cloud is fine.
   CHECK(fitted(outside, 3).size() == 3);

@@ -173,7 +173,9 @@ constexpr tools::NamedView kSides[] = {
 
 }  // namespace
 
-TEST_CASE("scene shape: worlds of points and blocks -> as far in any direction as all that is solid") {
+TEST_CASE(
+    "scene shape: worlds of points and blocks -> as far in any direction as all that is solid; voxels by "
+    "number") {
   std::mt19937_64 random(7);
   for (const int level : {1, 3, 6, 10, 11, 12}) {
     for (int world = 0; world < 8; ++world) {
@@ -188,6 +190,10 @@ TEST_CASE("scene shape: worlds of points and blocks -> as far in any direction a
       }
       const tests::HeapBytes bytes = tests::compact_of(pool.octree);
       const CompactTree tree = tests::open_or_throw(bytes);
+      std::uint32_t number = tree.node_count();
+      tools::walk_blocks(tree, [&](const Vec3i& corner, int of, std::uint8_t) {
+        CHECK((of != 0 || tools::corner_of(tree, number++) == corner));
+      });
       const std::vector<Vec3i> corners = tools::shape_of(tree).corners;
       const std::int32_t step = level <= 10 ? 1 : 1 << (level - 10);
       for (int direction = 0; direction < 30; ++direction) {

@@ -18,7 +18,7 @@ double half(unsigned bits) {
 
 }  // namespace
 
-double load_number(const std::uint8_t* first, const NumberType& type, bool is_big_endian) {
+double load_any_number(const std::uint8_t* first, const NumberType& type, bool is_big_endian) {
   const std::uint64_t bits = load_bits(first, type.size_bytes, is_big_endian);
   if (type.kind == 'f') {
     return type.size_bytes == 2 ? half(static_cast<unsigned>(bits))

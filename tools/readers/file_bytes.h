@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <span>
@@ -115,8 +116,18 @@ inline std::uint64_t load_bits(const std::uint8_t* first, std::size_t size_bytes
   return bits;
 }
 
+double load_any_number(const std::uint8_t* first, const NumberType& type, bool is_big_endian);
+
 /// The number at `first`, NaN included.
-double load_number(const std::uint8_t* first, const NumberType& type, bool is_big_endian);
+inline double load_number(const std::uint8_t* first, const NumberType& type, bool is_big_endian) {
+  // What most files hold, and many of them.
+  if (std::endian::native == std::endian::little && type == NumberType{} && !is_big_endian) {
+    float number = 0;
+    std::memcpy(&number, first, sizeof number);
+    return static_cast<double>(number);
+  }
+  return load_any_number(first, type, is_big_endian);
+}
 
 /// A cursor over bytes that somebody else owns. Each read checks that its bytes are there and moves past
 /// them; a read that does not fit throws and leaves the cursor where it was.

@@ -128,6 +128,32 @@ Source read_oct(const SharedBytes& file, const ReadOptions&, const Progress&) {
   return result;
 }
 
+Vec3i corner_of(const CompactTree& tree, std::uint32_t number) {
+  Vec3i corner;
+  int up = 0;
+  for (; number != 0; ++up) {
+    // The parent is the last node whose first child is not behind it.
+    std::uint32_t parent = 0;
+    for (std::uint64_t step = std::bit_floor(tree.node_count()); step != 0; step /= 2) {
+      const std::uint64_t next = parent + step;
+      if (next < tree.node_count() && tree.first_child(static_cast<std::uint32_t>(next)) <= number) {
+        parent = static_cast<std::uint32_t>(next);
+      }
+    }
+    unsigned mask = tree.mask(parent);
+    for (std::uint32_t before = number - tree.first_child(parent); before != 0; --before) {
+      mask &= mask - 1;
+    }
+    const auto octant = static_cast<unsigned>(std::countr_zero(mask));
+    for (int axis = 0; axis < 3; ++axis) {
+      corner[axis] |= static_cast<std::int32_t>(octant >> axis & 1U) << up;
+    }
+    number = parent;
+  }
+  const int level = tree.level() - up;
+  return {corner.x << level, corner.y << level, corner.z << level};
+}
+
 void for_each_block(const CompactTree& tree, const VisitBlock& visit) {
   walk_blocks(tree, visit);
 }

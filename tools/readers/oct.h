@@ -26,6 +26,10 @@ inline unsigned count_bits(Span<const std::uint64_t> words) {
 /// A solid block of one material: its lowest corner, the log2 of its side (0 for a voxel), its material.
 using VisitBlock = std::function<void(const Vec3i& corner, int level, std::uint8_t material)>;
 
+/// The lowest corner of what has that number in a sound tree whose nodes are in order: a node, or, on from `node_count()`,
+/// a voxel.
+Vec3i corner_of(const CompactTree& tree, std::uint32_t number);
+
 /// Visits everything solid of a sound tree, in Morton order.
 void for_each_block(const CompactTree& tree, const VisitBlock& visit);
 

@@ -22,11 +22,10 @@ namespace {
 
 // Colours up to the last one that the tree uses.
 std::vector<Rgb8> used_palette(const SceneSource& source, const CompactTree& tree) {
-  int last = tree.uniform_material();
-  if (tree.many_materials()) {
-    last = 0;
-    for_each_block(tree,
-                   [&](const Vec3i&, int, std::uint8_t material) { last = std::max<int>(last, material); });
+  const UsedMaterials used = used_materials(tree);
+  int last = 255;
+  while (last > 0 && !used.is[static_cast<std::size_t>(last)]) {
+    --last;
   }
   std::vector<Rgb8> palette;
   for (int index = 0; index <= last && !tree.empty(); ++index) {
@@ -113,12 +112,13 @@ class Assembly {
     }
     result->effects = effects_;
     result->memory = memory.bytes().size < size ? HostMemory(size) : std::move(memory);
-    const Bytes to = result->memory.bytes().subspan(0, size);
-    if (BakedScene::make(parts_, to, &result->scene) != Status::kOk) {
+    const bool is_made =
+        BakedScene::make(parts_, result->memory.bytes().subspan(0, size), nullptr) == Status::kOk;
+    result->memory.keep(size);
+    result->bytes = {result->memory.bytes().data, size};
+    if (!is_made || BakedScene::open({result->bytes.data(), size}, &result->scene) != Status::kOk) {
       throw InputError("internal error: the scene cannot be baked");
     }
-    result->memory.keep(size);
-    result->bytes = {to.data, to.size};
   }
 
  private:

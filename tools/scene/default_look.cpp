@@ -49,10 +49,22 @@ bool has_neighbours(const CompactTree& tree, const Vec3i& at) {
 // Per cent of the voxels, of up to 4,096 of them, that have neighbours.
 int surface_share(const CompactTree& tree) {
   constexpr std::uint64_t kMost = 4096;
+  constexpr std::uint64_t kMany = std::uint64_t{1} << 24;
   const std::uint64_t every = tree.voxel_count() / kMost + 1;
   std::uint64_t seen = 0;
   std::uint64_t asked = 0;
   std::uint64_t have = 0;
+  if (tree.voxel_count() > kMany) {
+    // Without a walk over all: those that are in no block are counted on from the nodes.
+    const std::uint32_t last = tree.node_count() - 1;
+    const std::uint64_t end = tree.first_child(last) + static_cast<unsigned>(std::popcount(tree.mask(last)));
+    for (std::uint64_t number = tree.node_count(); number < end; number += every) {
+      ++asked;
+      have += has_neighbours(tree, corner_of(tree, static_cast<std::uint32_t>(number))) ? 1U : 0U;
+    }
+    const std::uint64_t blocks = (tree.voxel_count() - (end - tree.node_count())) / 8 / every;
+    return static_cast<int>(100 * (have + blocks) / (asked + blocks));
+  }
   walk_blocks(tree, [&](const Vec3i& corner, int level, std::uint8_t) {
     if (seen++ % every == 0) {
       ++asked;

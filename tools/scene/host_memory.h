@@ -27,7 +27,7 @@ class HostMemory {
   }
 
   Bytes bytes() const { return {data_, size_}; }
-  /// Gives what whole pages there are behind the first `size` bytes back to the system; what they held is lost.
+  /// Keeps the first `size` bytes, which may then be elsewhere, and gives the system what it can of the rest.
   void keep(std::size_t size);
 
  private:

@@ -45,9 +45,10 @@ constexpr std::uint32_t kDefaultFogDensity = 65536 / 64;
 
 UsedMaterials used_materials(const CompactTree& tree) {
   UsedMaterials used;
-  if (tree.empty() || tree.many_materials()) {
-    for_each_block(tree, [&](const Vec3i&, int, std::uint8_t material) { used.is[material] = true; });
-  } else {
+  for (const std::uint8_t material : tree.materials()) {
+    used.is[material] = true;
+  }
+  if (!tree.empty() && !tree.many_materials()) {
     used.is[tree.uniform_material()] = true;
   }
   return used;

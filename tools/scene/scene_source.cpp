@@ -230,7 +230,8 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
   const auto points = std::make_shared<const Points>(std::move(read), as_voxels ? nullptr : &wishes);
   SourceFacts facts;
   facts.kind = as_voxels ? "points as voxels" : "point cloud, fitted to the world";
-  facts.level = arguments.depth.value_or(as_voxels ? smallest_level(points->survey) : kDefaultDepth);
+  facts.level =
+      arguments.depth.value_or(as_voxels ? smallest_level(*points->cloud, points->survey) : kDefaultDepth);
   facts.points = points->survey.points;
   facts.is_point_set = true;
   facts.single_material = points->colors.colors() == 0;

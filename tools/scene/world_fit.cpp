@@ -6,6 +6,16 @@
 #include <cstdio>
 
 namespace thimble::tools {
+namespace {
+
+// As std::lround, whose call takes longer than all of it.
+std::int32_t rounded(double value) {
+  const auto whole = static_cast<std::int32_t>(value);
+  const double rest = value - whole;
+  return whole + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0);
+}
+
+}  // namespace
 
 void Bounds::add(const std::array<double, 3>& position) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -50,7 +60,7 @@ std::array<std::int32_t, 3> WorldFit::units(const std::array<double, 3>& positio
     // Divided first: 1 / half_extent may be infinite for tiny scenes. The clamp catches what rounding of
     // the centre adds (a scene a few ulps wide, or denormal numbers).
     const double offset = std::clamp((position[axis] - center_[axis]) / half_extent_, -1.0, 1.0);
-    result[axis] += static_cast<std::int32_t>(std::lround(offset * half_units_));
+    result[axis] += rounded(offset * half_units_);
     const std::int32_t largest = static_cast<std::int32_t>(half_units_) * 2 + 1;
     result[axis] = std::clamp(result[axis], 1, largest);
   }
@@ -96,7 +106,6 @@ std::optional<std::array<std::int32_t, 3>> voxel_at(const CloudPoint& point, std
 PointSurvey survey_points(const PointCloud& cloud) {
   constexpr std::size_t kMostSamples = std::size_t{1} << 16;
   PointSurvey survey;
-  survey.counts_in = cloud.counts_in();
   const bool colored = cloud.has_color();
   std::uint64_t every = 1;
   cloud.for_each([&](const CloudPoint& point) {
@@ -114,9 +123,6 @@ PointSurvey survey_points(const PointCloud& cloud) {
     survey.bounds.add({point.x, point.y, point.z});
     if (colored) {
       survey.colors.add(point.color);
-    }
-    if (!survey.unplaceable && !voxel_at(point, 1 << kLargestLevel)) {
-      survey.unplaceable = point;
     }
   });
   if (survey.points == 0) {
@@ -175,11 +181,13 @@ void choose_world(const PointCloud& cloud, const FitWishes& wishes, PointSurvey*
   survey->left_out = survey->points - inside;
 }
 
-int smallest_level(const PointSurvey& survey) {
-  if (survey.unplaceable) {
-    refuse(survey.counts_in, *survey.unplaceable, 1 << kLargestLevel);
-  }
+int smallest_level(const PointCloud& cloud, const PointSurvey& survey) {
+  const std::array<double, 3>& min = survey.bounds.low;
   const std::array<double, 3>& max = survey.bounds.high;
+  if (std::min({min[0], min[1], min[2]}) < 0 || std::max({max[0], max[1], max[2]}) >= 1 << kLargestLevel) {
+    place_points(cloud, kLargestLevel, nullptr,
+                 [](auto, auto, auto, auto) {});  // refuses the first that lies outside
+  }
   int level = 1;
   while (level < kLargestLevel && (max[0] >= 1 << level || max[1] >= 1 << level || max[2] >= 1 << level)) {
     ++level;
@@ -193,7 +201,7 @@ void fit_points(const PointCloud& cloud, const PointSurvey& survey, int level, c
   const PaletteMap* const used = cloud.has_color() ? colors : nullptr;
   cloud.for_each([&](const CloudPoint& point) {
     const std::array<double, 3> position{point.x, point.y, point.z};
-    if (!survey.world.holds(position)) {
+    if (survey.left_out != 0 && !survey.world.holds(position)) {
       return;
     }
     const auto voxel = fit.voxel(position);

@@ -69,9 +69,6 @@ struct PointSurvey {
   std::uint64_t left_out = 0;                 ///< points that are not in there
   std::vector<std::array<double, 3>> sample;  ///< every nth point
   ColorHistogram colors;                      ///< empty when the cloud has no colours
-  /// The first point that no world holds as it is: its floor is outside 0 .. 2^12 - 1 on some axis.
-  std::optional<CloudPoint> unplaceable;
-  const char* counts_in = "point";  ///< of the cloud
 };
 
 /// Pass 1. InputError "no points" for an empty cloud.
@@ -90,7 +87,7 @@ void choose_world(const PointCloud& cloud, const FitWishes& wishes, PointSurvey*
 
 /// The smallest level, 1..12, whose world holds every point as it is. InputError that names the first point
 /// with a coordinate below 0 or at 4096 or above, by its line (its number, where points have no lines).
-int smallest_level(const PointSurvey& survey);
+int smallest_level(const PointCloud& cloud, const PointSurvey& survey);
 
 /// Pass 2: the survey's world scaled to that of 2^level voxels a side, level 1..12: the longest axis fills it,
 /// the others are centred. Points outside are left out. A cloud without extent (one point, or all equal) is the one voxel in the middle.

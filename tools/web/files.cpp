@@ -155,6 +155,7 @@ HostMemory::HostMemory(std::size_t size) : size_(size) {
 // are never given back: the next frame of an animation is built where the one before was.
 namespace {
 std::vector<Bytes> kept_memory;
+std::vector<const std::uint8_t*> large_memory;  // free or not
 }  // namespace
 
 HostMemory HostMemory::largest() {
@@ -169,18 +170,23 @@ HostMemory HostMemory::largest() {
     memory.data_ = static_cast<std::uint8_t*>(std::malloc(size));
     if (memory.data_ != nullptr) {
       memory.size_ = size;
+      large_memory.push_back(memory.data_);
       return memory;
     }
   }
   throw std::bad_alloc();
 }
 
-void HostMemory::keep(std::size_t /*size*/) {}
+void HostMemory::keep(std::size_t size) {
+  HostMemory small(size);
+  std::memcpy(small.data_, data_, size);
+  std::swap(data_, small.data_);
+  std::swap(size_, small.size_);
+}
 
 HostMemory::~HostMemory() {
-  if (data_ != nullptr) {
-    kept_memory.push_back({data_, size_});
-  }
+  const bool is_large = std::count(large_memory.begin(), large_memory.end(), data_) != 0;
+  is_large ? kept_memory.push_back({data_, size_}) : std::free(data_);
 }
 
 }  // namespace thimble::tools

@@ -145,6 +145,10 @@ class CompactTree {
   }
   /// The masks, one a node. Three bytes behind the last one may be read.
   const uint8_t* masks() const { return masks_; }
+  /// Materials of the solid blocks, then of the voxels; empty in a tree of one.
+  ConstBytes materials() const {
+    return {materials_, materials_ == nullptr ? size_t{0} : size_t{solid_blocks_} + voxel_bits_};
+  }
   /// Material of the voxel numbered `number` (`first_child` of a level-1 node and on).
   uint8_t voxel_material(uint32_t number) const;
 

@@ -68,28 +68,31 @@ const Entrant* Result::best_peer() const {
   return best;
 }
 
-Contest::Contest(const std::string& kind, std::uint64_t points, std::uint64_t most_bytes)
+Contest::Contest(const std::string& kind, std::uint64_t points, int depth, std::uint64_t most_bytes)
     : kind_(kind), points_(points), pixels_(kPixels) {
   tools::SceneArguments arguments;
   arguments.scene = kind + ":" + std::to_string(points);
+  arguments.depth = depth;
   const auto source = tools::open_scene(arguments);
   built_ = std::make_unique<tools::BuiltScene>(*source, tools::BuildOptions{});
   renderer_ = tools::WideRenderer::make(built_.get(), kWidthPx, kHeightPx, 1);
-  if (renderer_ == nullptr) {
-    throw std::runtime_error("no room for the wide renderer");
-  }
-  voxels_ = voxels_of(*built_);
+  const std::uint64_t voxels = built_->voxels();
   // What they keep a voxel, about, while they build; and what a grid of bits takes in any case.
   struct Maker {
+    const char* name;
     std::unique_ptr<Peer> (*make)(const std::vector<Voxel>&);
     std::uint64_t bytes;
   };
   for (const Maker& maker :
-       {Maker{make_raster, voxels_.size() * sizeof(Voxel)}, Maker{make_loop, voxels_.size() * sizeof(Voxel)},
-        Maker{make_embree, voxels_.size() * 200},
-        Maker{make_nanovdb, std::min<std::uint64_t>(voxels_.size() * 3000, 5'000'000'000)}}) {
-    if (maker.bytes > most_bytes) {
+       {Maker{"raster in floats", make_raster, voxels * sizeof(Voxel)},
+        Maker{"exact loop", make_loop, voxels * sizeof(Voxel)}, Maker{"Embree", make_embree, voxels * 200},
+        Maker{"NanoVDB", make_nanovdb, std::min<std::uint64_t>(voxels * 3000, 5'000'000'000)}}) {
+    if (maker.bytes + voxels * sizeof(Voxel) > most_bytes) {
+      left_out_.emplace_back(maker.name);
       continue;
+    }
+    if (voxels_.empty()) {
+      voxels_ = voxels_of(*built_);
     }
     Rival rival;
     rival.build_seconds = seconds_of([&] { rival.peer = maker.make(voxels_); });
@@ -103,9 +106,11 @@ double Contest::draw_wide(const Camera& camera, std::uint64_t* hits) {
   return seconds_of([&] {
     RenderCounts counts;
     wide::Counts work;
-    if (renderer_->render(camera, tools::timed_shading(camera, built_->bounds()),
-                          gray_band(&pixels_, kHeightPx), &counts, &work) != Status::kOk) {
-      throw std::runtime_error("the wide renderer leaves this view to the core");
+    const Shading shading = tools::timed_shading(camera, built_->bounds());
+    const Band band = gray_band(&pixels_, kHeightPx);
+    if ((renderer_ == nullptr || renderer_->render(camera, shading, band, &counts, &work) != Status::kOk) &&
+        built_->render_band(camera, shading, band, &counts, {}) != Status::kOk) {
+      throw std::runtime_error("the core does not take the rays of this view");
     }
     *hits = counts.hits;
   });
@@ -164,7 +169,8 @@ Result Contest::run(bool orthographic, int frames) {
   Result result;
   result.scene = kind_;
   result.points = points_;
-  result.voxels = voxels_.size();
+  result.voxels = built_->voxels();
+  result.left_out = left_out_;
   result.orthographic = orthographic;
   std::vector<Times> times(2 + rivals_.size());
   std::vector<std::uint64_t> differing(rivals_.size(), 0);
@@ -213,7 +219,7 @@ Result Contest::run(bool orthographic, int frames) {
       differing[i] += shown[pixel] == wanted[pixel] ? 0U : 1U;
     }
   }
-  const std::uint64_t list_bytes = wide::VoxelLists::bytes(built_->compact());
+  const std::uint64_t list_bytes = renderer_ == nullptr ? 0 : wide::VoxelLists::bytes(built_->compact());
   result.entrants.push_back({"Thimble", times[0].cold_ms(), times[0].warm_ms(), built_->build_seconds(),
                              built_->tree_bytes() + list_bytes, wide_differing});
   result.entrants.push_back({"Thimble, ray by ray", times[1].cold_ms(), times[1].warm_ms(),

@@ -34,7 +34,8 @@ struct Result {
   std::uint64_t voxels = 0;
   bool orthographic = false;
   std::uint64_t hits = 0;
-  std::vector<Entrant> entrants;  ///< this renderer first, then the core ray by ray, then the peers
+  std::vector<Entrant> entrants;      ///< this renderer first, then the core ray by ray, then the peers
+  std::vector<std::string> left_out;  ///< peers that do not fit
 
   const Entrant* find(const std::string& name) const;
   /// The fastest of the peers that count, the core's own rays among them; null when there is none.
@@ -47,9 +48,9 @@ class Contest {
   static constexpr std::int32_t kHeightPx = tools::kTimedHeightPx;
   static constexpr std::uint64_t kPixels = std::uint64_t{kWidthPx} * kHeightPx;
 
-  /// `kind` is points or cluster. Peers are left out where their structures would take more than
-  /// `most_bytes`.
-  Contest(const std::string& kind, std::uint64_t points, std::uint64_t most_bytes);
+  /// `kind` is points or cluster, in a world of 2^depth a side. Peers are left out where their structures and the
+  /// voxels that they are made from would take more than `most_bytes`.
+  Contest(const std::string& kind, std::uint64_t points, int depth, std::uint64_t most_bytes);
 
   /// `frames` frames each that count, by turns.
   Result run(bool orthographic, int frames);
@@ -62,7 +63,8 @@ class Contest {
   std::uint64_t points_;
   std::unique_ptr<tools::BuiltScene> built_;
   std::unique_ptr<tools::WideRenderer> renderer_;
-  std::vector<Voxel> voxels_;  // in the tree's order
+  std::vector<Voxel> voxels_;  // in the tree's order; empty where no peer fits
+  std::vector<std::string> left_out_;
   struct Rival {
     std::unique_ptr<Peer> peer;
     double build_seconds = 0;

@@ -22,6 +22,7 @@ struct Choice {
   std::vector<std::uint64_t> points{1,         10,        100,       1'000,      10'000,    100'000,
                                     1'000'000, 3'000'000, 5'000'000, 10'000'000, 20'000'000};
   std::vector<std::string> scenes{"points", "cluster"};
+  int depth = 10;
   int frames = tools::kTimedFrames;
   std::uint64_t most_bytes = 6'000'000'000;
   std::string csv_path;
@@ -40,6 +41,9 @@ void print(const Result& result) {
     if (entrant.differing_px != 0) {
       std::printf(" (%llu px)", static_cast<unsigned long long>(entrant.differing_px));
     }
+  }
+  for (const std::string& name : result.left_out) {
+    std::printf("  %s does not fit", name.c_str());
   }
   const Entrant* const best = result.best_peer();
   if (best != nullptr) {
@@ -114,7 +118,7 @@ std::vector<const Result*> plotted_rows(const std::vector<Result>& results) {
 // A line for each engine; `value` says how high an entrant stands.
 tools::Plot plot_of(const std::vector<const Result*>& rows, double (*value)(const Entrant& entrant)) {
   tools::Plot plot;
-  plot.x_label = "points in the world of 1024 a side (" + rows.front()->scene + ")";
+  plot.x_label = "points (" + rows.front()->scene + ")";
   for (const char* name :
        {"Thimble", "raster in floats", "exact loop", "Embree", "NanoVDB", "Thimble, ray by ray"}) {
     tools::Series series{name, name == std::string("Thimble, ray by ray"), {}};
@@ -162,8 +166,9 @@ int run(int count, char** words) {
   CLI::App app("This renderer beside what could be used instead");
   app.add_option("--points", choice.points, "numbers of points")->delimiter(',');
   app.add_option("--scene", choice.scenes, "points, cluster")->delimiter(',');
+  app.add_option("--depth", choice.depth, "of the world, 2^depth a side")->check(CLI::Range(5, 12));
   app.add_option("--frames", choice.frames, "of each engine and row")->check(CLI::Range(1, 100));
-  app.add_option("--most-bytes", choice.most_bytes, "leave out peers that would take more");
+  app.add_option("--most-bytes", choice.most_bytes, "leave out peers that would take more, which do not fit");
   app.add_option("--csv", choice.csv_path, "results as CSV");
   app.add_option("--plot", choice.plot_path, "milliseconds against points as SVG");
   app.add_option("--plot-bytes", choice.bytes_plot_path, "memory against points as SVG");
@@ -174,7 +179,7 @@ int run(int count, char** words) {
   std::vector<Result> results;
   for (const std::string& scene : choice.scenes) {
     for (const std::uint64_t points : choice.points) {
-      Contest contest(scene, points, choice.most_bytes);
+      Contest contest(scene, points, choice.depth, choice.most_bytes);
       for (const bool orthographic : {false, true}) {
         results.push_back(contest.run(orthographic, choice.frames));
         print(results.back());
