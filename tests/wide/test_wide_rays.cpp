@@ -113,7 +113,7 @@ void add_ray(std::mt19937_64& random, const CompactTree& tree, const Ray& ray, R
   batch->change.push_back(change);
 }
 
-// Hard rays, and secondary ones.
+// Hard rays, and secondary ones: in a third of the batches all go into one octant, in a third one way.
 RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_t count) {
   const int side = 1 << tree.level();
   const auto within = [&](int low, int high) { return pick_int(random, low, high - 1); };
@@ -128,8 +128,20 @@ RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_
   for (std::uint8_t& one : batch.classes) {
     one = static_cast<std::uint8_t>(pick(random, 0, 3));
   }
+  const std::int64_t alike = pick(random, 0, 2);
+  const Vec3i first = to_core(cases.next().ray).direction;
+  const auto add = [&](Ray ray) {
+    for (int axis = 0; axis < 3 && alike == 1; ++axis) {
+      const std::int32_t size = std::abs(ray.direction[axis]);
+      ray.direction[axis] = first[axis] < 0 ? -std::max(size, 1) : size;
+    }
+    if (alike == 2 || ray.direction == Vec3i{0, 0, 0}) {
+      ray.direction = first;
+    }
+    add_ray(random, tree, ray, &batch);
+  };
   while (batch.rays.size() < count) {
-    add_ray(random, tree, to_core(cases.next().ray), &batch);
+    add(to_core(cases.next().ray));
     const Hit hit = batch.first.back();
     if (hit.kind != HitKind::kHit) {
       continue;
@@ -143,7 +155,7 @@ RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_
         next.direction = seen.direction;
         next.direction[hit.axis] = -next.direction[hit.axis];
       }
-      add_ray(random, tree, next, &batch);
+      add(next);
     }
   }
   return batch;

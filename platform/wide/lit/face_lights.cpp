@@ -51,12 +51,13 @@ void FaceLightsParts::lay_out(const FaceLightsShape& shape, ArrayArena* arena) {
   const size_t of_ways = shape.has_through ? count : 0;
   faces = arena->take<LitFace>(count);
   light = arena->take<lit::Color>(count);
-  rays = arena->take<Ray>(count * std::max(1U, shape.around));
+  rays = arena->take<Ray>(count);
   asking = arena->take<uint32_t>(count);
   any = arena->take<uint8_t>(count);
-  points = arena->take<RayPoint>(std::max(of_lamps, count * shape.around));
+  points = arena->take<RayPoint>(std::max(of_lamps, count));
   bright = arena->take<lit::Color>(count);
-  order = arena->take<uint32_t>(of_lamps);
+  order = arena->take<uint32_t>(count);
+  open = arena->take<uint32_t>(shape.around != 0 ? count : 0);
   numerator = arena->take<int32_t>(of_lamps);
   for (int axis = 0; axis < 3; ++axis) {
     at[axis] = arena->take<int32_t>(of_lamps);
@@ -150,62 +151,60 @@ LitCounts FaceLights::counts() const {
   return all;
 }
 
-// lit::occlude. Rays that can meet nothing are only counted.
+// What a ray of occlusion adds: 0 .. kOpen, by how far it goes.
+uint32_t FaceLights::share_of(const RayPoint& met) {
+  if (met.t_denominator == 0) {
+    return kOpen;
+  }
+  ++frame_.counts.hits[static_cast<int>(LitRayKind::kOcclusion)];
+  const uint32_t reach = frame_.scene.occlusion.reach;
+  const uint32_t along = std::max(1U, static_cast<uint32_t>(met.t_denominator) >> 8);
+  const uint32_t distance_q8 = static_cast<uint32_t>(met.t_numerator) * kOcclusionLength / along;
+  return distance_q8 < reach << 8 ? (distance_q8 << 4) / reach : kOpen;
+}
+
+// lit::occlude. Rays that can meet nothing are only counted. Those of one direction are traced together.
 void FaceLights::occlude() {
   const uint32_t around = shape_.around;
-  if (around == 0) {
-    return;
-  }
-  constexpr int kKind = static_cast<int>(LitRayKind::kOcclusion);
-  uint32_t asking = 0;
-  Ray* ray = parts_.rays;
-  for (uint32_t i = 0; i < count_; ++i) {
-    const LitFace& face = parts_.faces[i];
-    if (face.face >= kInside) {
-      continue;
-    }
-    frame_.counts.rays[kKind] += around;
-    const unsigned sent = open_.rays_before(face.at, face.face);
-    if (sent == 0) {
-      for (uint32_t& channel : parts_.light[i].c) {
-        channel = std::min<uint32_t>(channel, UINT16_MAX);
-      }
-      continue;
-    }
-    parts_.any[asking] = static_cast<uint8_t>(sent);
-    parts_.asking[asking++] = i;
-    for (uint32_t n = 0; n < around; ++n) {
-      if ((sent >> n % 4 & 1U) != 0) {
-        *ray++ = {face.at, occlusion_direction(static_cast<int>(n), face.face / 2, face.face % 2 == 0)};
-      }
-    }
-  }
-  const auto rays = static_cast<size_t>(ray - parts_.rays);
   const Occlusion& occlusion = frame_.scene.occlusion;
-  (void)first_entry_before(map_, {parts_.rays, rays}, RayPoint{occlusion.reach, kOcclusionLength},
-                           {parts_.points, rays}, has_clear_ ? of_occlusion_ : nullptr);
-  const uint32_t reach_q8 = uint32_t{occlusion.reach} << 8;
-  const RayPoint* met = parts_.points;
-  for (uint32_t i = 0; i < asking; ++i) {
-    uint32_t open = 0;
+  uint32_t begin = 0;
+  for (uint32_t face = 0; face < kInside && around != 0; ++face) {
+    const uint32_t end = face_ends_[face];
+    frame_.counts.rays[static_cast<int>(LitRayKind::kOcclusion)] += uint64_t{around} * (end - begin);
+    for (uint32_t i = begin; i < end; ++i) {
+      const uint32_t number = parts_.order[i];
+      parts_.open[number] = 0;
+      parts_.any[number] =
+          static_cast<uint8_t>(open_.rays_before(parts_.faces[number].at, static_cast<uint8_t>(face)));
+    }
     for (uint32_t n = 0; n < around; ++n) {
-      uint32_t share = kOpen;
-      if ((uint32_t{parts_.any[i]} >> n % 4 & 1U) != 0) {
-        if (met->t_denominator != 0) {
-          ++frame_.counts.hits[kKind];
-          const uint32_t along = std::max(1U, static_cast<uint32_t>(met->t_denominator) >> 8);
-          const uint32_t distance_q8 = static_cast<uint32_t>(met->t_numerator) * kOcclusionLength / along;
-          share = distance_q8 < reach_q8 ? (distance_q8 << 4) / occlusion.reach : kOpen;
+      const Vec3i direction =
+          occlusion_direction(static_cast<int>(n), static_cast<int>(face) / 2, face % 2 == 0);
+      uint32_t asking = 0;
+      for (uint32_t i = begin; i < end; ++i) {
+        const uint32_t number = parts_.order[i];
+        if ((uint32_t{parts_.any[number]} >> n % 4 & 1U) != 0) {
+          parts_.rays[asking] = {parts_.faces[number].at, direction};
+          parts_.asking[asking++] = number;
+        } else {
+          parts_.open[number] += kOpen;
         }
-        ++met;
       }
-      open += share;
+      (void)first_entry_before(map_, {parts_.rays, asking}, RayPoint{occlusion.reach, kOcclusionLength},
+                               {parts_.points, asking}, has_clear_ ? of_occlusion_ : nullptr);
+      for (uint32_t i = 0; i < asking; ++i) {
+        parts_.open[parts_.asking[i]] += share_of(parts_.points[i]);
+      }
     }
-    const uint32_t closed = kOpen - open / around;
-    const uint32_t factor = kOpen - closed * occlusion.strength / 255;
-    for (uint32_t& channel : parts_.light[parts_.asking[i]].c) {
-      channel = (std::min<uint32_t>(channel, UINT16_MAX) * factor) >> 12;
+    for (uint32_t i = begin; i < end; ++i) {
+      const uint32_t number = parts_.order[i];
+      const uint32_t closed = kOpen - parts_.open[number] / around;
+      const uint32_t factor = kOpen - closed * occlusion.strength / 255;
+      for (uint32_t& channel : parts_.light[number].c) {
+        channel = (std::min<uint32_t>(channel, UINT16_MAX) * factor) >> 12;
+      }
     }
+    begin = end;
   }
 }
 
@@ -237,7 +236,7 @@ void FaceLights::sort_by_face() {
     if (face.face < kInside) {
       const uint32_t to = next[face.face]++;
       parts_.order[to] = i;
-      for (int axis = 0; axis < 3; ++axis) {
+      for (int axis = 0; axis < 3 && shape_.has_lamps; ++axis) {
         parts_.at[axis][to] = face.at[axis].raw;
       }
     }
@@ -408,12 +407,12 @@ void FaceLights::shine(uint32_t count) {
   for (uint32_t i = 0; i < count; ++i) {
     parts_.light[i] = sides_[parts_.faces[i].face].ambient;
   }
+  if (shape_.around != 0 || shape_.has_lamps) {
+    sort_by_face();
+  }
   occlude();
   if ((frame_.effects & Effect::kDirectLight) == 0) {
     return;
-  }
-  if (shape_.has_lamps) {
-    sort_by_face();
   }
   if (shape_.has_water) {
     note_water();

@@ -40,8 +40,9 @@ struct FaceLightsParts {
   uint8_t* any;        ///< what the rays meet: 0, or a class of face_lights.cpp
   RayPoint* points;    ///< where on the rays the lamp is; where rays of occlusion enter something
   lit::Color* bright;  ///< the light that the rays bring if nothing is in the way
-  // For lamps: faces that look the same way stand side by side.
-  uint32_t* order;
+  uint32_t* order;     ///< faces that look the same way stand side by side
+  uint32_t* open;      ///< by face, for occlusion
+  // For lamps, in that order.
   int32_t* at[3];
   int32_t* direction[3];
   int32_t* numerator;
@@ -116,6 +117,7 @@ class FaceLights {
     lit::Color ambient;
   };
 
+  uint32_t share_of(const RayPoint& met);
   void occlude();
   void note_water();
   void sort_by_face();

@@ -44,22 +44,35 @@ enum Column : size_t {
   kOriginX,  // mirrored and biased
   kOriginY,
   kOriginZ,
+  kPlaceX,  // where the ray is, biased
+  kPlaceY,
+  kPlaceZ,
+  kEnd,         // the t from which on nothing counts
   kDirectionX,  // >= 0
   kDirectionY,
   kDirectionZ,
   kInverseX,
   kInverseY,
   kInverseZ,
-  kPlaceX,  // where the ray is, biased
-  kPlaceY,
-  kPlaceZ,
-  kEnd,  // the t from which on nothing counts
   kDoubles,
-  kTopFlip = kDoubles,  // xor with a mirrored cube's index gives the unmirrored one
-  kCellFlip,            // low 6 bits: the same for a leaf or voxel; from bit 32 on: the ray's number
-  kOctant,              // 4 times the octant
+  kCellFlip =
+      kDoubles,  // low 6 bits: xor with a leaf's or voxel's index, mirrored or not, gives the other; from bit 32 on:
+                 // the ray's number
+  kTopFlip,  // the same for a cube
+  kOctant,   // 4 times the octant
   kColumns,
 };
+
+// What all rays of a job have in common.
+enum class Alike : uint8_t { kNothing, kOctant, kDirection };
+
+// How many columns differ from ray to ray: the others are set once.
+constexpr size_t own_doubles(Alike alike) {
+  return alike == Alike::kDirection ? size_t{kDirectionX} : size_t{kDoubles};
+}
+constexpr size_t own_words(Alike alike) {
+  return alike == Alike::kNothing ? kColumns - kDoubles : kTopFlip - kDoubles;
+}
 
 // Rays under way.
 struct Lanes {
@@ -154,6 +167,7 @@ HWY_INLINE VF fill_lanes(VF old, VF from, [[maybe_unused]] MF mask, [[maybe_unus
 }
 
 // Fills the lanes of `empty` from the queue, as far as it reaches.
+template <Alike kAlike>
 HWY_INLINE void refill(Lanes* lanes, uint32_t empty, Queue* queue) {
   const F64 d;
   const U64 du;
@@ -169,12 +183,12 @@ HWY_INLINE void refill(Lanes* lanes, uint32_t empty, Queue* queue) {
   const uint8_t bytes[8] = {static_cast<uint8_t>(bits)};
   const MF mask = hn::LoadMaskBits(d, bytes);
   const MU mask_u = hn::LoadMaskBits(du, bytes);
-  for (size_t column = 0; column < kDoubles; ++column) {
+  for (size_t column = 0; column < own_doubles(kAlike); ++column) {
     double* to = lanes->doubles[column];
     hn::Store(fill_lanes(hn::Load(d, to), hn::LoadU(d, queue->doubles[column] + queue->next), mask, bits), d,
               to);
   }
-  for (size_t column = 0; column < kColumns - kDoubles; ++column) {
+  for (size_t column = 0; column < own_words(kAlike); ++column) {
     uint64_t* to = lanes->words[column];
     const VF old = hn::BitCast(d, hn::Load(du, to));
     const VF from = hn::BitCast(d, hn::LoadU(du, queue->words[column] + queue->next));
@@ -193,17 +207,23 @@ constexpr double kJustAfter = 1.0 + 0x1p-46;
 // The greatest numerator of a plane's t.
 constexpr double kMostNumerator = 8388608.0;
 
-// A group of new rays, one in each lane.
-struct NewRays {
-  VF origin[3];  // biased
-  VF direction[3];
+// Where new rays go, one in each lane.
+struct Ways {
+  MF down[3];
+  VF direction[3];  // >= 0
   VF inverse[3];
-  VF begin;
-  VF end;
   VU top_flip;
   VU cell_flip;
   VU octant;
-  MF taken;   // rays that the vectors take
+  MF taken;  // rays that the vectors take
+};
+
+// A group of new rays, one in each lane.
+struct NewRays {
+  Ways ways;
+  VF origin[3];  // biased
+  VF begin;
+  VF end;
   MF in_air;  // rays of `exits` that are in nothing solid
   MF inside;  // rays that come to the occupied box
 };
@@ -256,9 +276,10 @@ alignas(64) constexpr ColumnTable<6> kRayColumns;
 alignas(64) constexpr ColumnTable<2> kPointColumns;
 #endif
 
-// The six numbers of up to kLanes rays, one ray in each lane.
+// The first `kCount` of the six numbers of up to kLanes rays, one ray in each lane.
+template <size_t kCount>
 struct RayColumns {
-  VF of[6];
+  VF of[kCount];
   RayColumns(const Ray* rays, size_t count) {
     const auto* const numbers = reinterpret_cast<const int32_t*>(rays);
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
@@ -266,7 +287,7 @@ struct RayColumns {
       const __m512i low = _mm512_loadu_si512(numbers);
       const __m512i middle = _mm512_loadu_si512(numbers + 16);
       const __m512i high = _mm512_loadu_si512(numbers + 32);
-      for (size_t column = 0; column < 6; ++column) {
+      for (size_t column = 0; column < kCount; ++column) {
         const __m512i some =
             _mm512_permutex2var_epi32(low, _mm512_load_si512(kRayColumns.first[column]), middle);
         const __m512i all =
@@ -277,7 +298,7 @@ struct RayColumns {
     }
 #endif
     const Rows rows(numbers, 6, count);
-    for (size_t column = 0; column < 6; ++column) {
+    for (size_t column = 0; column < kCount; ++column) {
       of[column] = load_column(rows, column);
     }
   }
@@ -332,43 +353,61 @@ HWY_INLINE void add_layers(const Job& job, size_t first, size_t count, NewRays* 
   }
   const VF half = hn::Set(d, 0.5);
   rays->in_air = hn::Gt(hn::Load(d, in_air), half);
-  rays->taken = hn::And(rays->taken, hn::Gt(hn::Load(d, known), half));
-  rays->top_flip = hn::Xor(rays->top_flip, hn::Load(du, layers));
+  rays->ways.taken = hn::And(rays->ways.taken, hn::Gt(hn::Load(d, known), half));
+  rays->ways.top_flip = hn::Xor(rays->ways.top_flip, hn::Load(du, layers));
 }
 
-// Adds one axis: the mirrored origin and direction, and the planes of the occupied box.
-HWY_INLINE void add_axis(const Job& job, int axis, VF origin, VF direction, NewRays* rays, VF* low,
-                         VF* high) {
+HWY_INLINE VF whole_number(int64_t number) {
+  return hn::Set(F64(), static_cast<double>(number));
+}
+
+// Mirrors the rays' directions.
+HWY_INLINE Ways ways_of(const Job& job, const VF* directions) {
   const F64 d;
   const U64 du;
-  const MapCells& cells = *job.map->cells();
+  const int bits = job.map->cells()->level - 4;
+  Ways ways;
+  ways.top_flip = ways.cell_flip = ways.octant = hn::Zero(du);
+  VF sum = hn::Zero(d);
+  VF most = sum;
+  for (int axis = 0; axis < 3; ++axis) {
+    ways.down[axis] = hn::Lt(directions[axis], hn::Zero(d));
+    const VF direction = hn::Abs(directions[axis]);
+    sum = hn::Add(sum, direction);
+    most = hn::Max(most, direction);
+    ways.direction[axis] = direction;
+    ways.inverse[axis] = hn::IfThenElse(hn::Eq(direction, hn::Zero(d)), hn::Set(d, kNever),
+                                        hn::Div(hn::Set(d, 1.0), direction));
+    const MU down = hn::RebindMask(du, ways.down[axis]);
+    const auto flip = [&](uint64_t mask) { return hn::IfThenElseZero(down, hn::Set(du, mask)); };
+    ways.top_flip = hn::Or(ways.top_flip, flip(((uint64_t{1} << bits) - 1) << (bits * axis)));
+    ways.cell_flip = hn::Or(ways.cell_flip, flip(uint64_t{3} << (2 * axis)));
+    ways.octant = hn::Or(ways.octant, flip(uint64_t{4} << axis));
+  }
+  ways.taken = hn::And(hn::Gt(sum, hn::Zero(d)), hn::Le(most, whole_number(kMaxDirection)));
+  return ways;
+}
+
+// Adds one axis: the mirrored origin, and the planes of the occupied box.
+HWY_INLINE void add_axis(const Job& job, int axis, VF origin, NewRays* rays, VF* low, VF* high) {
+  const F64 d;
+  Ways& ways = rays->ways;
   const int level = job.map->tree().level();
   const VoxelBox box = job.exits == nullptr ? job.map->tree().bounds()
                                             : VoxelBox{{0, 0, 0}, {1 << level, 1 << level, 1 << level}};
-  const auto number = [&](int32_t whole) { return hn::Set(d, static_cast<double>(whole)); };
-  rays->taken = hn::And(rays->taken, hn::And(hn::Ge(origin, number(kMinOriginWorlds * (Q8::kOne << level))),
-                                             hn::Le(origin, number(kMaxOriginWorlds * (Q8::kOne << level)))));
-  const MF down = hn::Lt(direction, hn::Zero(d));
-  direction = hn::Abs(direction);
-  rays->taken = hn::And(rays->taken, hn::Le(direction, number(kMaxDirection)));
-  const int32_t side = int32_t{1} << cells.level;
-  origin = hn::IfThenElse(down, hn::Sub(number(side * Q8::kOne), origin), origin);
+  ways.taken =
+      hn::And(ways.taken, hn::And(hn::Ge(origin, whole_number(kMinOriginWorlds * (Q8::kOne << level))),
+                                  hn::Le(origin, whole_number(kMaxOriginWorlds * (Q8::kOne << level)))));
+  const MF down = ways.down[axis];
+  const int32_t side = int32_t{1} << job.map->cells()->level;
+  origin = hn::IfThenElse(down, hn::Sub(whole_number(side * Q8::kOne), origin), origin);
   origin = hn::Add(hn::Mul(origin, hn::Set(d, 1.0 / Q8::kOne)), hn::Set(d, kBias));
   rays->origin[axis] = origin;
-  rays->direction[axis] = direction;
-  rays->inverse[axis] =
-      hn::IfThenElse(hn::Eq(direction, hn::Zero(d)), hn::Set(d, kNever), hn::Div(hn::Set(d, 1.0), direction));
   const auto biased = [&](int32_t whole) { return hn::Set(d, kBias + whole); };
   *low = hn::IfThenElse(down, biased(side - box.high[axis]), biased(box.low[axis]));
   *high = hn::IfThenElse(down, biased(side - box.low[axis]), biased(box.high[axis]));
-  rays->begin = hn::Max(rays->begin, hn::Mul(hn::Sub(*low, origin), rays->inverse[axis]));
-  rays->end = hn::Min(rays->end, hn::Mul(hn::Sub(*high, origin), rays->inverse[axis]));
-  const MU down_u = hn::RebindMask(du, down);
-  const int bits = cells.level - 4;
-  const auto flip = [&](uint64_t mask) { return hn::IfThenElseZero(down_u, hn::Set(du, mask)); };
-  rays->top_flip = hn::Or(rays->top_flip, flip(((uint64_t{1} << bits) - 1) << (bits * axis)));
-  rays->cell_flip = hn::Or(rays->cell_flip, flip(uint64_t{3} << (2 * axis)));
-  rays->octant = hn::Or(rays->octant, flip(uint64_t{4} << axis));
+  rays->begin = hn::Max(rays->begin, hn::Mul(hn::Sub(*low, origin), ways.inverse[axis]));
+  rays->end = hn::Min(rays->end, hn::Mul(hn::Sub(*high, origin), ways.inverse[axis]));
 }
 
 // Adds the points at which rays begin or end.
@@ -390,34 +429,38 @@ HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* r
   const VF t = hn::Div(numerator, hn::Mul(divisor, hn::Set(d, 256.0)));
   const VF from = hn::IfThenElse(at_start, zero, t);
   if (job.exits != nullptr) {
-    rays->taken = hn::And(rays->taken, hn::Or(rays->in_air, hn::Ge(from, rays->begin)));
+    rays->ways.taken = hn::And(rays->ways.taken, hn::Or(rays->in_air, hn::Ge(from, rays->begin)));
   }
   rays->begin = hn::Max(rays->begin, from);
   // The proof holds only for points on a plane of one of the three axes.
   const MF of_plane =
-      hn::Or(hn::Eq(divisor, rays->direction[0]),
-             hn::Or(hn::Eq(divisor, rays->direction[1]), hn::Eq(divisor, rays->direction[2])));
+      hn::Or(hn::Eq(divisor, rays->ways.direction[0]),
+             hn::Or(hn::Eq(divisor, rays->ways.direction[1]), hn::Eq(divisor, rays->ways.direction[2])));
   const MF known = hn::And(of_plane, hn::Le(numerator, hn::Set(d, kMostNumerator)));
-  rays->taken = hn::And(rays->taken, hn::Or(at_start, known));
+  rays->ways.taken = hn::And(rays->ways.taken, hn::Or(at_start, known));
 }
 
-HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&place)[3]) {
+// `shared` is for rays of one direction.
+template <Alike kAlike>
+HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, const Ways& shared, VF (&place)[3]) {
   static_assert(sizeof(Ray) == 24 && offsetof(Ray, direction) == 12);
   const F64 d;
-  const RayColumns numbers(job.rays + first, count);
+  constexpr bool kShared = kAlike == Alike::kDirection;
+  const RayColumns<kShared ? 3 : 6> numbers(job.rays + first, count);
   NewRays rays;
+  if constexpr (kShared) {
+    rays.ways = shared;
+  } else {
+    rays.ways = ways_of(job, numbers.of + 3);
+  }
+  rays.ways.taken = hn::And(rays.ways.taken, hn::FirstN(d, count));
   rays.begin = hn::Zero(d);
   rays.end = hn::Set(d, 1e300);
-  rays.top_flip = rays.cell_flip = rays.octant = hn::Zero(U64());
-  rays.taken = hn::FirstN(d, count);
   VF low[3];
   VF high[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const size_t column = static_cast<size_t>(axis);
-    add_axis(job, axis, numbers.of[column], numbers.of[3 + column], &rays, &low[axis], &high[axis]);
+    add_axis(job, axis, numbers.of[axis], &rays, &low[axis], &high[axis]);
   }
-  const VF sum = hn::Add(hn::Add(rays.direction[0], rays.direction[1]), rays.direction[2]);
-  rays.taken = hn::And(rays.taken, hn::Gt(sum, hn::Zero(d)));
   rays.end = hn::Mul(rays.end, hn::Set(d, kJustBefore));
   if (job.exits != nullptr) {
     add_layers(job, first, count, &rays);
@@ -425,27 +468,28 @@ HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, VF (&pl
   if (job.bound != Bound::kNone) {
     add_bound(job, first, count, &rays);
   }
-  rays.inside = hn::And(rays.taken, hn::Lt(rays.begin, rays.end));
+  rays.inside = hn::And(rays.ways.taken, hn::Lt(rays.begin, rays.end));
   for (int axis = 0; axis < 3; ++axis) {
-    place[axis] = hn::MulAdd(rays.begin, rays.direction[axis], rays.origin[axis]);
+    place[axis] = hn::MulAdd(rays.begin, rays.ways.direction[axis], rays.origin[axis]);
     rays.inside =
         hn::And(rays.inside, hn::And(hn::Ge(place[axis], low[axis]), hn::Lt(place[axis], high[axis])));
   }
   if (job.exits != nullptr) {
-    rays.taken = hn::And(rays.taken, hn::Or(rays.in_air, rays.inside));
+    rays.ways.taken = hn::And(rays.ways.taken, hn::Or(rays.in_air, rays.inside));
   }
   return rays;
 }
 
 // Puts up to kLanes rays, from number `first` on, into the queue. Leaves out rays that never come to anything; the core
 // traces those that are beyond the limits.
-HWY_INLINE void enqueue(Job* job, size_t first, size_t count, Queue* queue) {
+template <Alike kAlike>
+HWY_INLINE void enqueue(Job* job, size_t first, size_t count, const Ways& shared, Queue* queue) {
   const F64 d;
   const U64 du;
   VF place[3];
-  const NewRays rays = load_rays(*job, first, count, place);
+  const NewRays rays = load_rays<kAlike>(*job, first, count, shared, place);
   const uint32_t all = (1U << count) - 1;
-  for (uint32_t rest = all & ~lane_bits(d, rays.taken); rest != 0; rest &= rest - 1) {
+  for (uint32_t rest = all & ~lane_bits(d, rays.ways.taken); rest != 0; rest &= rest - 1) {
     trace_by_core(job, first + static_cast<unsigned>(__builtin_ctz(rest)));
   }
   const uint32_t bits = lane_bits(d, rays.inside);
@@ -462,25 +506,30 @@ HWY_INLINE void enqueue(Job* job, size_t first, size_t count, Queue* queue) {
   };
   for (size_t axis = 0; axis < 3; ++axis) {
     put(static_cast<Column>(kOriginX + axis), rays.origin[axis]);
-    put(static_cast<Column>(kDirectionX + axis), rays.direction[axis]);
-    put(static_cast<Column>(kInverseX + axis), rays.inverse[axis]);
     put(static_cast<Column>(kPlaceX + axis), place[axis]);
+    if constexpr (kAlike != Alike::kDirection) {
+      put(static_cast<Column>(kDirectionX + axis), rays.ways.direction[axis]);
+      put(static_cast<Column>(kInverseX + axis), rays.ways.inverse[axis]);
+    }
   }
   put(kEnd, rays.end);
-  put_word(kTopFlip, rays.top_flip);
   const VU numbers = hn::ShiftLeft<32>(hn::Iota(du, first));
-  put_word(kCellFlip, hn::Or(rays.cell_flip, numbers));
-  put_word(kOctant, rays.octant);
+  put_word(kCellFlip, hn::Or(rays.ways.cell_flip, numbers));
+  if constexpr (kAlike == Alike::kNothing) {
+    put_word(kTopFlip, rays.ways.top_flip);
+    put_word(kOctant, rays.ways.octant);
+  }
   queue->count += static_cast<size_t>(__builtin_popcount(bits));
 }
 
 // Fills the queue from the job's rays; `*next` is the first ray that is not taken yet.
-inline void fill_queue(Job* job, size_t* next, Queue* queue) {
+template <Alike kAlike>
+inline void fill_queue(Job* job, const Ways& shared, size_t* next, Queue* queue) {
   const size_t left = queue->count - queue->next;  // less than a vector
-  for (size_t column = 0; column < kDoubles; ++column) {
+  for (size_t column = 0; column < own_doubles(kAlike); ++column) {
     std::copy_n(queue->doubles[column] + queue->next, left, queue->doubles[column]);
   }
-  for (size_t column = 0; column < kColumns - kDoubles; ++column) {
+  for (size_t column = 0; column < own_words(kAlike); ++column) {
     std::copy_n(queue->words[column] + queue->next, left, queue->words[column]);
   }
   queue->next = 0;
@@ -488,10 +537,35 @@ inline void fill_queue(Job* job, size_t* next, Queue* queue) {
   const size_t lanes = hn::Lanes(F64());
   while (*next < job->count && queue->count + lanes <= Queue::kSize) {
     const size_t count = std::min(lanes, job->count - *next);
-    enqueue(job, *next, count, queue);
+    enqueue<kAlike>(job, *next, count, shared, queue);
     *next += count;
   }
 }
+
+// The least and greatest components of the rays' directions.
+struct Spread {
+  Vec3i low;
+  Vec3i high;
+  explicit Spread(const Job& job) : low(job.rays[0].direction), high(low) {
+    for (size_t i = 1; i < job.count; ++i) {
+      const Vec3i& direction = job.rays[i].direction;
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], direction[axis]);
+        high[axis] = std::max(high[axis], direction[axis]);
+      }
+    }
+  }
+  Alike alike() const {
+    if (low == high) {
+      return Alike::kDirection;
+    }
+    bool is_one_octant = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      is_one_octant = is_one_octant && (low[axis] < 0) == (high[axis] < 0);
+    }
+    return is_one_octant ? Alike::kOctant : Alike::kNothing;
+  }
+};
 
 }  // namespace
 }  // namespace thimble::wide::HWY_NAMESPACE

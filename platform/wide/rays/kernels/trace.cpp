@@ -38,6 +38,49 @@ struct AheadTable {
 };
 alignas(64) constexpr AheadTable kAhead;
 
+// The cells of a cube of 4^3 cells that rays whose directions lie in a range of one octant can still come to, by their own
+// cell.
+struct AheadOfRays {
+  alignas(64) uint64_t of[64];
+  explicit AheadOfRays(const Spread& spread);
+};
+
+// A ray is d cells farther on an axis from (d - 1) to (d + 1) times the inverse of its speed on, wherever it begins in its
+// cell. So it comes to a cell only where what the three axes say has a t in common.
+AheadOfRays::AheadOfRays(const Spread& spread) : of{} {
+  double from[3][4];
+  double to[3][4];
+  unsigned flip = 0;
+  unsigned octant = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool down = spread.low[axis] < 0;
+    flip |= down ? 3U << (2 * axis) : 0;
+    octant |= down ? 1U << axis : 0;
+    const double slowest = std::abs(static_cast<double>(down ? spread.high[axis] : spread.low[axis]));
+    const double fastest = std::abs(static_cast<double>(down ? spread.low[axis] : spread.high[axis]));
+    for (int way = 0; way < 4; ++way) {
+      from[axis][way] = way < 2 ? 0 : fastest == 0 ? kNever : (way - 1) / fastest * kJustBefore;
+      to[axis][way] = slowest == 0 ? kNever : (way + 1) / slowest;
+    }
+  }
+  uint64_t cells = 0;  // for the cell where all of the cube lies ahead
+  for (unsigned cell = 0; cell < 64; ++cell) {
+    const unsigned ways[3] = {cell & 3U, cell >> 2 & 3U, cell >> 4};
+    double latest = 0;
+    double earliest = kNever;
+    for (int axis = 0; axis < 3; ++axis) {
+      latest = std::max(latest, from[axis][ways[axis]]);
+      earliest = std::min(earliest, to[axis][ways[axis]]);
+    }
+    cells |= uint64_t{latest <= earliest} << (cell ^ flip);
+  }
+  // What a shift takes into another row is not ahead.
+  for (unsigned cell = 0; cell < 64; ++cell) {
+    of[cell] =
+        (cell >= flip ? cells << (cell - flip) : cells >> (flip - cell)) & kAhead.of[octant * 64 + cell];
+  }
+}
+
 // Bits of a fixed-point coordinate below a voxel, a leaf and a cube.
 constexpr int kVoxel = kFraction;
 constexpr int kLeaf = kFraction + 2;
@@ -47,8 +90,9 @@ constexpr int kCube = kFraction + 4;
 struct View {
   const uint32_t* top;
   const uint64_t* chunks;
-  uint64_t header;  // words of a chunk before its leaves
-  int bits;         // bits of a cube's index on each axis
+  uint64_t header;          // words of a chunk before its leaves
+  int bits;                 // bits of a cube's index on each axis
+  const uint64_t* of_rays;  // of AheadOfRays
 };
 
 // Makes lanes of the words load(0), load(1), ... A gather of x86 takes several times as many micro-operations.
@@ -97,9 +141,21 @@ HWY_INLINE VU cell_index(const VU (&place)[3], VU flip) {
 }
 
 // The cells of a cube of 4^3 that a ray in `cell` can still come to.
-HWY_INLINE VU cells_ahead(VU cell, VU octant) {
+template <Alike kAlike>
+HWY_INLINE VU cells_ahead(VU cell, [[maybe_unused]] VU octant, const uint64_t* of_rays) {
   const U64 d;
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  if constexpr (kAlike != Alike::kNothing) {
+    const auto among_16 = [&](size_t first) {
+      const VU low = hn::Load(d, of_rays + first);
+      const VU high = hn::Load(d, of_rays + first + 8);
+      return VU{_mm512_permutex2var_epi64(low.raw, cell.raw, high.raw)};
+    };
+    const MU odd = hn::TestBit(cell, hn::Set(d, 16));
+    const VU low = hn::IfThenElse(odd, among_16(16), among_16(0));
+    const VU high = hn::IfThenElse(odd, among_16(48), among_16(32));
+    return hn::IfThenElse(hn::TestBit(cell, hn::Set(d, 32)), high, low);
+  }
   const VU way = hn::Set(d, 4);
   const VU x = hn::Or(hn::And(cell, hn::Set(d, 3)), hn::And(octant, way));
   const VU y =
@@ -111,6 +167,9 @@ HWY_INLINE VU cells_ahead(VU cell, VU octant) {
   return hn::And(look_up(kAhead.on_axis[0], x),
                  hn::And(look_up(kAhead.on_axis[1], y), look_up(kAhead.on_axis[2], z)));
 #else
+  if constexpr (kAlike != Alike::kNothing) {
+    return hn::GatherIndex(d, of_rays, hn::BitCast(I64(), cell));
+  }
   return hn::GatherIndex(d, kAhead.of, hn::BitCast(I64(), hn::Or(hn::ShiftLeft<4>(octant), cell)));
 #endif
 }
@@ -150,6 +209,7 @@ HWY_INLINE void see_chunk(const View& view, Sight* sight) {
   sight->mask = gather(view.chunks, sight->chunk, sight->is_chunk);
 }
 
+template <Alike kAlike>
 HWY_INLINE void see_leaf(const View& view, const Lanes& lanes, Sight* sight) {
   const U64 d;
   const VU one = hn::Set(d, 1);
@@ -167,7 +227,8 @@ HWY_INLINE void see_leaf(const View& view, const Lanes& lanes, Sight* sight) {
                                            static_cast<unsigned>(__builtin_popcountll(before[lane]));
                                        return static_cast<long long>(view.chunks[at[lane] + leaves]);
                                      }));
-  const VU ahead = hn::And(mask, cells_ahead(leaf, hn::Load(d, lanes.words[kOctant - kDoubles])));
+  const VU octant = hn::Load(d, lanes.words[kOctant - kDoubles]);
+  const VU ahead = hn::And(mask, cells_ahead<kAlike>(leaf, octant, view.of_rays));
   // Whether no other leaf lies ahead than the one that the ray is in (which may be empty ahead, too).
   const MU is_last = hn::Eq(hn::AndNot(leaf_bit, ahead), hn::Zero(d));
   sight->unit = hn::IfThenElse(is_last, hn::Set(d, uint64_t{1} << kCube), hn::Set(d, uint64_t{1} << kLeaf));
@@ -181,11 +242,12 @@ struct Box {
   MU solid;
 };
 
-HWY_INLINE Box see_voxel(const Lanes& lanes, const Sight& sight) {
+template <Alike kAlike>
+HWY_INLINE Box see_voxel(const View& view, const Lanes& lanes, const Sight& sight) {
   const U64 d;
   const VU octant = hn::Load(d, lanes.words[kOctant - kDoubles]);
   const VU voxel = cell_index<0>(sight.place, hn::Load(d, lanes.words[kCellFlip - kDoubles]));
-  const VU ahead = hn::And(sight.voxels, cells_ahead(voxel, octant));
+  const VU ahead = hn::And(sight.voxels, cells_ahead<kAlike>(voxel, octant, view.of_rays));
   const VU unit = hn::IfThenElse(hn::Eq(ahead, hn::Zero(d)), sight.unit, hn::Set(d, uint64_t{1} << kVoxel));
   const VU reach = hn::ShiftLeft<kCube>(hn::And(hn::Shr(sight.word, octant), hn::Set(d, 15)));
   Box box;
@@ -238,11 +300,12 @@ HWY_INLINE void put_misses(Job* job, const Lanes& lanes, uint32_t misses) {
 }
 
 // Takes each lane on by one box. Lanes that are done store their answers.
-HWY_INLINE void advance(Job* job, const Sight& sight, Lanes* lanes) {
+template <Alike kAlike>
+HWY_INLINE void advance(Job* job, const View& view, const Sight& sight, Lanes* lanes) {
   const F64 d;
   const U64 du;
   hn::Store(hn::Add(hn::Load(du, lanes->visits), hn::Set(du, 1)), du, lanes->visits);
-  const Box box = see_voxel(*lanes, sight);
+  const Box box = see_voxel<kAlike>(view, *lanes, sight);
   const VF t =
       hn::Min(leaves_at(*lanes, 0, sight.place[0], box),
               hn::Min(leaves_at(*lanes, 1, sight.place[1], box), leaves_at(*lanes, 2, sight.place[2], box)));
@@ -266,12 +329,24 @@ constexpr int kMostIdle = kLanes < 8 ? 1 : 2;
 // How many groups of lanes are under way at a time.
 constexpr size_t kGroups = kLanes < 4 ? 4 : 32 / kLanes;
 
-void trace_job(Job* job) {
+template <Alike kAlike>
+void trace_alike(Job* job, const uint64_t* of_rays) {
+  const F64 d;
+  const U64 du;
   const MapCells& cells = *job->map->cells();
-  const View view{cells.top, cells.chunks, cells.header(), cells.level - 4};
+  const View view{cells.top, cells.chunks, cells.header(), cells.level - 4, of_rays};
   constexpr uint32_t kAll = static_cast<uint32_t>((uint64_t{1} << kLanes) - 1);
   Queue queue;
   Lanes groups[kGroups] = {};
+  const Ways shared = ways_of(*job, RayColumns<6>(job->rays, 1).of + 3);
+  for (Lanes& lanes : groups) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      hn::Store(shared.direction[axis], d, lanes.doubles[kDirectionX + axis]);
+      hn::Store(shared.inverse[axis], d, lanes.doubles[kInverseX + axis]);
+    }
+    hn::Store(shared.top_flip, du, lanes.words[kTopFlip - kDoubles]);
+    hn::Store(shared.octant, du, lanes.words[kOctant - kDoubles]);
+  }
   size_t next = 0;
   for (;;) {
     uint32_t alive = 0;
@@ -279,9 +354,9 @@ void trace_job(Job* job) {
       const uint32_t idle = kAll & ~lanes.alive;
       if (__builtin_popcount(idle) >= kMostIdle || lanes.alive == 0) {
         if (queue.count - queue.next < kLanes && next < job->count) {
-          fill_queue(job, &next, &queue);
+          fill_queue<kAlike>(job, shared, &next, &queue);
         }
-        refill(&lanes, idle, &queue);
+        refill<kAlike>(&lanes, idle, &queue);
       }
       alive |= lanes.alive;
     }
@@ -299,12 +374,24 @@ void trace_job(Job* job) {
       see_chunk(view, &sights[group]);
     }
     for (size_t group = 0; group < kGroups; ++group) {
-      see_leaf(view, groups[group], &sights[group]);
+      see_leaf<kAlike>(view, groups[group], &sights[group]);
     }
     for (size_t group = 0; group < kGroups; ++group) {
-      advance(job, sights[group], &groups[group]);
+      advance<kAlike>(job, view, sights[group], &groups[group]);
     }
   }
+}
+
+void trace_job(Job* job) {
+  const Spread spread(*job);
+  // Rays of `exits` each look through a layer.
+  const Alike alike = job->exits != nullptr ? Alike::kNothing : spread.alike();
+  if (alike == Alike::kNothing) {
+    trace_alike<Alike::kNothing>(job, nullptr);
+    return;
+  }
+  const AheadOfRays ahead(spread);
+  (alike == Alike::kOctant ? trace_alike<Alike::kOctant> : trace_alike<Alike::kDirection>)(job, ahead.of);
 }
 
 }  // namespace
