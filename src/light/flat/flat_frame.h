@@ -439,6 +439,7 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
   // A face's key has 25 bits, of level 9 and 10 32: its place in the table says the lower ones, the entry keeps the others
   // beside the material.
   using Seen = Choose<kDeep, uint64_t, uint32_t>;
+  static_assert(kMaxDeepBricks <= uint32_t{1} << 23);
   [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
     const uint32_t key = voxel << 3 | face;
     const Seen rest = key / kFaces<kSet>;
