@@ -96,11 +96,13 @@ void edit_at_random(std::mt19937_64& random, const Vec3i& near, SunnyWorld* sunn
 
 TEST_CASE(
     "edited light: a roof put up, with and without following -> its shadow, as a tree built anew has it") {
-  OwnedPool pool(5);
-  REQUIRE(pool.octree.insert_box({{0, 0, 0}, {32, 32, 2}}, 1) == Status::kOk);
-  const HeapBytes tree = compact_of(pool.octree);
-  for (const bool follows : {false, true}) {
-    CAPTURE(follows);
+  for (const int turn : {0, 1, 2, 3}) {
+    CAPTURE(turn);
+    const bool follows = turn % 2 == 1;
+    const int level = turn < 2 ? 5 : 9;
+    OwnedPool pool(level);
+    REQUIRE(pool.octree.insert_box({{0, 0, 0}, {32, 32, 2}}, 1) == Status::kOk);
+    const HeapBytes tree = compact_of(pool.octree);
     SunnyWorld sunny(open_or_throw(tree), {-3, 2, 9});
     Camera camera;
     REQUIRE(camera.set(PerspectiveView{{Q8::from_raw(-2000), Q8::from_raw(-2500), Q8::from_raw(6000)},
@@ -110,7 +112,7 @@ TEST_CASE(
                                        64,
                                        48,
                                        0},
-                       5) == Status::kOk);
+                       level) == Status::kOk);
     REQUIRE(sunny.sun.belongs_to(sunny.world.map(), sunny.light.place));
     const auto open = sunny.draw(sunny.world.tree(), &sunny.world.map(), camera);
     REQUIRE(sunny.world.edit({{10, 10, 16}, {22, 22, 18}}, EditShape::kBox, 1, &sunny.journal) ==
