@@ -210,8 +210,6 @@ struct Run {
   /// Whether all that is in the picture lies in front of the run, so that its boxes are not tested at
   /// covered pixels.
   bool behind;
-  /// Roughly how many pixels wide a voxel is on the picture.
-  float voxel_px;
   /// Whether also each entry lies in front of those after it, wherever a ray hits both. Only with `numbers`.
   bool sorted;
 };

@@ -311,7 +311,6 @@ Run TileDrawer::run_of(const Block& block) const {
   run.unit = !lists_.has_blocks();
   run.place = block.place;
   run.behind = by_blocks_;
-  run.voxel_px = voxel_px(block);
   run.side = uint32_t{1} << block.level;
   const uint32_t cube = kCubeSide - 1;
   for (int axis = 0; axis < 3; ++axis) {

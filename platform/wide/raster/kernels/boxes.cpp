@@ -15,8 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace thimble::wide::HWY_NAMESPACE {
 namespace {
 
-// Draws a run in no order. Boxes with no open pixel are dropped first; the others wait in the batch until
-// there are enough to fill vectors.
+// Draws a run in no order. Boxes wait in the batch until there are enough to fill vectors.
 //
 // As long as only whole runs wait, all that is in the picture when they are paired lies before them, so covered pixels
 // can be left out. Where part of a run was drawn already, `all_behind` is cleared.
@@ -43,10 +42,7 @@ void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, B
     written = false;
   }
   batch->counts.boxes += run.count;
-  // Boxes of more than `near` pixels a side are not looked up in the table.
-  const uint32_t near = run.voxel_px < 1.6F ? 2 : run.voxel_px < 3.5F ? 4 : 8;
-  const OpenPixels open_pixels(depths, run.behind ? run.place.where : Rectangle{0, 0, 64, 0}, near);
-  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.place.where;
+  const Rectangle clip = run.behind ? open_bounds(depths, run.place.where) : run.place.where;
   if (clip.x0 >= clip.x1) {
     return;
   }
@@ -69,10 +65,6 @@ void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, B
     }
     const auto x = small_number(boxes.low_x);
     const auto y = small_number(boxes.low_y);
-    if (run.behind && open_pixels.is_small()) {
-      const auto is_open = hn::RebindMask(d, hn::TestBit(open_pixels.near(x, y), hn::Set(du, 1U)));
-      seen = hn::And(seen, hn::Or(is_open, hn::Ge(widest, hn::Set(d, static_cast<float>(near)))));
-    }
     const auto place = hn::Or(hn::ShiftLeft<16>(y), x);
     if (kUnit && !run.behind) {
       // A box of one pixel is already a pair.
@@ -108,8 +100,7 @@ void draw_sorted_of(const WideFrame& frame, const Run& run, const Depths& depths
   test_boxes<kPerspective, kUnit>(frame, depths, &written, batch);
   write_hits(depths, batch);
   batch->counts.boxes += run.count;
-  const OpenPixels open_pixels(depths, run.place.where);
-  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.place.where;
+  const Rectangle clip = open_bounds(depths, run.place.where);
   const Reach reach(frame, clip);
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(hn::Lanes(d))) {
     const Projected boxes = project<kPerspective, kUnit>(frame, run, clip, reach, *batch, at);
@@ -131,8 +122,7 @@ uint32_t cull_run_of(const WideFrame& frame, const Run& run, const Depths& depth
   test_boxes<kPerspective, kUnit>(frame, depths, &written, batch);
   write_hits(depths, batch);
   batch->counts.boxes += run.count;
-  const OpenPixels open_pixels(depths, run.place.where);
-  const Rectangle clip = open_pixels.is_small() ? open_pixels.bounds() : run.place.where;
+  const Rectangle clip = open_bounds(depths, run.place.where);
   const Reach reach(frame, clip);
   uint32_t count = 0;
   for (uint32_t at = 0; at < run.count; at += static_cast<uint32_t>(lanes)) {
@@ -147,7 +137,7 @@ uint32_t cull_run_of(const WideFrame& frame, const Run& run, const Depths& depth
     const auto int_x = hn::BitCast(du, hn::ConvertTo(di, boxes.low_x));
     const auto int_y = hn::BitCast(du, hn::ConvertTo(di, boxes.low_y));
     for (uint32_t down = 0; !hn::AllFalse(d, in_row); ++down) {
-      const auto open = open_pixels.at(in_row, int_x, hn::Add(int_y, hn::Set(du, down)));
+      const auto open = open_at(depths, in_row, int_x, hn::Add(int_y, hn::Set(du, down)), frame.tile.y0);
       const auto found = hn::And(in_row, any_open(open, boxes.wide_x));
       chosen = hn::Or(chosen, found);
       in_row = hn::AndNot(found, hn::And(in_row, hn::Gt(boxes.wide_y, hn::Set(d, static_cast<float>(down)))));

@@ -261,43 +261,8 @@ class Unclear {
   uint32_t lanes_[Pairs::kSize];
 };
 
-// Keeps only the pairs that were hit and those that are unclear; the search for greys, which comes next, finds the
-// latter unclear again. Only with greys.
-template <bool kPerspective>
-HWY_NOINLINE void drop_missed(const WideFrame& frame, const float (&origin)[3], const Depths& depths,
-                              bool* written, Batch* batch) {
-  Pairs* const pairs = &batch->waiting;
-  const F32 d;
-  const U32 du;
-  const size_t lanes = hn::Lanes(d);
-  size_t count = 0;
-  for (size_t at = 0; at < pairs->count; at += lanes) {
-    const auto live = hn::FirstN(d, pairs->count - at < lanes ? pairs->count - at : lanes);
-    const Unpacked<true> unpacked(*pairs, at);
-    const Aims aims = unpacked.template aims<kPerspective>(frame, origin);
-    const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
-    const auto place = hn::Load(du, pairs->place + at);
-    const auto may_be_met = hn::Or(hn::AndNot(verdict.unclear, verdict.hit), aims.unclear);
-    const auto chosen = hn::RebindMask(du, hn::And(live, may_be_met));
-    const auto unclear = hn::AndNot(aims.unclear, hn::And(live, verdict.unclear));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, unclear))) {
-      append<true>(unclear, unpacked.entry, unpacked.entry, place, &batch->unclear);
-      if (batch->unclear.count + lanes > Pairs::kSize) {
-        test_unclear(frame, depths, written, batch);
-      }
-    }
-    hn::StoreU(squeeze(unpacked.entry, chosen), du, pairs->entry + count);
-    hn::StoreU(squeeze(place, chosen), du, pairs->place + count);
-    count += hn::CountTrue(du, chosen);
-  }
-  pairs->count = count;
-}
-
 // Tests the waiting pairs in floats, and puts aside those that floats do not decide. Sets `written` when something was
-// written into the picture.
-//
-// For a perspective camera the pairs that were not hit are dropped first, so that greys are found only for hits. A
-// parallel camera's rays hit nearly all of their boxes, and its greys take no division: there one pass does both.
+// written into the picture. Greys are found for pairs that are missed, too.
 template <bool kPerspective, bool kUnit, Keep kKeep>
 HWY_NOINLINE void test_waiting_of(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
   constexpr bool kGray = kKeep != Keep::kNumbers;
@@ -308,22 +273,14 @@ HWY_NOINLINE void test_waiting_of(const WideFrame& frame, const Depths& depths, 
   batch->counts.candidates += pairs.count;
   float origin[3];
   origin_of(frame, *batch, origin);
-  constexpr bool kTwice = kGray && kPerspective;
-  if (kTwice) {
-    drop_missed<kPerspective>(frame, origin, depths, written, batch);
-  }
   Unclear all_unclear;
   for (size_t at = 0; at < pairs.count; at += lanes) {
     const auto live = hn::FirstN(d, pairs.count - at < lanes ? pairs.count - at : lanes);
     const Unpacked<kUnit> unpacked(pairs, at);
     const Aims aims = unpacked.template aims<kPerspective>(frame, origin);
-    auto unclear = aims.unclear;
-    auto hit = live;
-    if (!kTwice) {
-      const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
-      unclear = hn::Or(unclear, verdict.unclear);
-      hit = hn::And(hit, verdict.hit);
-    }
+    const Verdict verdict = judge<kPerspective>(frame, aims, unpacked.half);
+    auto unclear = hn::Or(aims.unclear, verdict.unclear);
+    const auto hit = hn::And(live, verdict.hit);
     hn::Vec<U32> number;
     if (kGray) {
       auto no_gray = hn::Lt(hn::Zero(d), hn::Zero(d));

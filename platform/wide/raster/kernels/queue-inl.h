@@ -37,89 +37,32 @@ HWY_INLINE hn::Vec<U32> open_at(const Depths& depths, hn::Mask<F32> mask, hn::Ve
   return hn::Not(hn::Or(hn::Shr(covered, column), from_beside));
 }
 
-// The open pixels of a run's rectangle. A small rectangle, of at most 32 by 32 pixels, is copied when this is made, and
-// looked up in registers (AVX-512) or in the copy, not all over the picture. For a larger one the picture is read.
-class OpenPixels {
- public:
-  // `reach`: 0, 2, 4 or 8, for near().
-  OpenPixels(const Depths& depths, const Rectangle& where, uint32_t reach = 0) : depths_(depths) {
-    first_row_ = where.y0;
-    small_ = where.x1 - where.x0 <= 32 && where.y1 - where.y0 <= 32;
-    if (!small_) {
-      return;
-    }
-    x0_ = static_cast<uint32_t>(where.x0);
-    y0_ = static_cast<uint32_t>(where.y0);
-    const size_t first = depths.word(where.x0, where.y0);
-    const uint32_t* const left = depths.covered + first;
-    // Where the rectangle lies in one strip, the right words are the left ones again.
-    const bool is_cut = (x0_ & 31U) + static_cast<uint32_t>(where.x1 - where.x0) > 32;
-    const uint32_t* const right = is_cut ? left + depths.rows : left;
-    const int32_t rows = where.y1 - where.y0;
-    const uint32_t inside = UINT32_MAX >> (32 - (where.x1 - where.x0));
-    uint32_t columns = 0;
-    uint32_t open_rows = 0;
-    for (int32_t row = 0; row < rows; ++row) {
-      const uint64_t bits = uint64_t{right[row]} << 32 | left[row];
-      rows_[row] = ~static_cast<uint32_t>(bits >> (x0_ & 31U)) & inside;
-      columns |= rows_[row];
-      open_rows |= (rows_[row] != 0 ? 1U : 0U) << row;
-    }
-    // Joins each pixel with its neighbours to the right and below, twice as many each time.
-    for (uint32_t width = 1; width < reach; width *= 2) {
-      const uint32_t* from = width == 1 ? rows_ : near_;
-      for (int32_t row = 0; row < rows; ++row) {
-        const int32_t below = row + static_cast<int32_t>(width);
-        const uint32_t both = from[row] | (below < rows ? from[below] : 0);
-        near_[row] = both | both >> width;
-      }
-    }
-    if (columns != 0) {
-      bounds_ = {where.x0 + __builtin_ctz(columns), where.y0 + __builtin_ctz(open_rows),
-                 where.x0 + 32 - __builtin_clz(columns), where.y0 + 32 - __builtin_clz(open_rows)};
-    }
+// Returns a rectangle that holds all open pixels of one of at most 32 by 32 pixels, empty where none is open; a larger
+// one as it is.
+inline Rectangle open_bounds(const Depths& depths, const Rectangle& where) {
+  const int32_t width = where.x1 - where.x0;
+  const int32_t rows = where.y1 - where.y0;
+  if (width > 32 || rows > 32) {
+    return where;
   }
-
-  bool is_small() const { return small_; }
-  // A rectangle that holds all open pixels of a small rectangle; empty when none is open.
-  const Rectangle& bounds() const { return bounds_; }
-
-  // Returns what open_at() returns now or, for a small rectangle, returned when this was made.
-  HWY_INLINE hn::Vec<U32> at(hn::Mask<F32> mask, hn::Vec<U32> x, hn::Vec<U32> y) const {
-    if (small_) {
-      return look_up(rows_, x, y);
-    }
-    return open_at(depths_, mask, x, y, first_row_);
+  const uint32_t shift = static_cast<uint32_t>(where.x0) & 31U;
+  const uint32_t* const left = depths.covered + depths.word(where.x0, where.y0);
+  // Where the rectangle lies in one strip, the right words are the left ones again.
+  const uint32_t* const right = shift + static_cast<uint32_t>(width) > 32 ? left + depths.rows : left;
+  const uint32_t inside = UINT32_MAX >> (32 - width);
+  uint32_t columns = 0;
+  uint32_t open_rows = 0;
+  for (int32_t row = 0; row < rows; ++row) {
+    const uint64_t bits = uint64_t{right[row]} << 32 | left[row];
+    const uint32_t open = ~static_cast<uint32_t>(bits >> shift) & inside;
+    columns |= open;
+    open_rows |= (open != 0 ? 1U : 0U) << row;
   }
-  // Says in the lowest bit whether any of the `reach` by `reach` pixels from (x, y) on is open. Only for a small
-  // rectangle.
-  HWY_INLINE hn::Vec<U32> near(hn::Vec<U32> x, hn::Vec<U32> y) const { return look_up(near_, x, y); }
-
- private:
-  HWY_INLINE hn::Vec<U32> look_up(const uint32_t (&rows)[32], hn::Vec<U32> x, hn::Vec<U32> y) const {
-    const U32 d;
-    const auto row = hn::And(hn::Sub(y, hn::Set(d, y0_)), hn::Set(d, 31U));
-    const auto column = hn::And(hn::Sub(x, hn::Set(d, x0_)), hn::Set(d, 31U));
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-    const auto index = hn::IndicesFromVec(d, hn::And(row, hn::Set(d, 15U)));
-    const auto low = hn::TableLookupLanes(hn::Load(d, rows), index);
-    const auto high = hn::TableLookupLanes(hn::Load(d, rows + 16), index);
-    const auto bits = hn::IfThenElse(hn::Gt(row, hn::Set(d, 15U)), high, low);
-#else
-    const auto bits = hn::GatherIndex(d, rows, hn::BitCast(I32(), row));
-#endif
-    return hn::Shr(bits, column);
-  }
-
-  const Depths& depths_;
-  bool small_ = false;
-  Rectangle bounds_{0, 0, 0, 0};
-  uint32_t x0_ = 0;
-  uint32_t y0_ = 0;
-  int32_t first_row_ = 0;
-  alignas(64) uint32_t rows_[32];
-  alignas(64) uint32_t near_[32];
-};
+  return columns == 0
+             ? Rectangle{0, 0, 0, 0}
+             : Rectangle{where.x0 + __builtin_ctz(columns), where.y0 + __builtin_ctz(open_rows),
+                         where.x0 + 32 - __builtin_clz(columns), where.y0 + 32 - __builtin_clz(open_rows)};
+}
 
 // Whether one of the first `wide` + 1 pixels is open.
 HWY_INLINE hn::Mask<F32> any_open(hn::Vec<U32> open, hn::Vec<F32> wide) {
