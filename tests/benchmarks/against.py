@@ -26,7 +26,7 @@ WORK = tempfile.mkdtemp()
 atexit.register(shutil.rmtree, WORK)
 SIX = ["outside", "near", "grazing", "along", "parallel", "parallel oblique"]
 DRAGON = DATA + "/mesh/dragon_vrip_res2.ply.gz"
-SOLID = [f"filled:{DRAGON}@10", "terrain:10", "globe:9", "city:10", "city:9"]
+SOLID = ["terrain:10", "globe:9", "city:10", "city:9"]
 LIGHT = "sun toward -3 -5 6\nsky\nocclusion rays 4\n"
 LIT = {
     "dragon 1024": f"depth 10\nmodel {DRAGON} depth 10\n{LIGHT}",
@@ -101,7 +101,7 @@ def print_solid(before, after, turns):
             if key in old:
                 print(f"{name:28} {view:18} {old[key]:8.2f} {new[key]:8.2f} {new[key] / old[key]:6.2f}", flush=True)
         print(f"{name}: {len(wrong)} of {len(new)} pictures differ from the core's", flush=True)
-    crowded, uniform = "plummer:20000000", "points:20000000"
+    crowded, uniform = "cluster:20000000", "points:20000000"
     path = world_file(after, crowded)
     (times,), wrong = least_of(turns, [after], lambda build: engine_rows(build, [path, uniform]))
     print(f"\n{crowded} over {uniform}, ms, {len(wrong)} pictures differ")

@@ -15,7 +15,6 @@
 #include "support/counts.h"
 #include "support/frames.h"
 #include "support/lit_cases.h"
-#include "support/solid_worlds.h"
 #include "support/trial_worlds.h"
 
 namespace thimble::tests {
@@ -65,10 +64,8 @@ std::vector<Subject>& real_worlds() {
   static std::vector<Subject> worlds = [] {
     std::vector<Subject> made;
     add_files(&made);
-    for (const auto& bytes : {city(8), thick_terrain(9), full_ball(7)}) {
-      made.emplace_back(scene_of({bytes.data(), bytes.size()}, "solid"));
-    }
-    for (const char* const name : {"spheres,depth=7", "cluster:20000,depth=8,seed=3", "water,depth=6"}) {
+    for (const char* const name : {"city:8", "terrain:9", "globe:7", "spheres,depth=7",
+                                   "cluster:20000,depth=8,seed=3", "water,depth=6"}) {
       const TrialWorld world(name);
       made.emplace_back(scene_of({world.tree().bytes(), world.tree().size_bytes()}, name));
     }

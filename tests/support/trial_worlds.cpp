@@ -1,9 +1,9 @@
 #include "support/trial_worlds.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <functional>
 #include <optional>
 #include <random>
 #include <stdexcept>
@@ -12,7 +12,6 @@
 #include "readers/oct.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
-#include "support/solid_worlds.h"
 #include "thimble/trace/ray.h"
 #include "thimble/tree/octree.h"
 
@@ -21,20 +20,57 @@ namespace {
 
 using tools::Real3;
 
-// Fills worlds of any size; grows its pool by doubling when it is full.
-class Builder {
+// A bit a voxel, in Morton order: so each block of a tree is a run of bits.
+class Grid {
  public:
-  using Fill = std::function<bool(Builder&)>;
+  explicit Grid(int level)
+      : level_(level), words_(std::max<std::size_t>(1, (std::size_t{1} << 3 * level) / 64)) {}
 
-  static std::vector<std::uint8_t> build(int level, const Fill& fill) {
+  std::int32_t side() const { return std::int32_t{1} << level_; }
+  // The same numbers for every grid.
+  std::mt19937_64& random() { return random_; }
+
+  void add(std::int32_t x, std::int32_t y, std::int32_t z) {
+    const std::uint64_t at = morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                         static_cast<std::uint32_t>(z));
+    words_[at / 64] |= std::uint64_t{1} << at % 64;
+  }
+  // The voxels of the box for which `is_solid(x, y, z)`.
+  template <class IsSolid>
+  void add_some(const Vec3i& low, const Vec3i& high, const IsSolid& is_solid) {
+    for (std::int32_t z = low.z; z < high.z; ++z) {
+      for (std::int32_t y = low.y; y < high.y; ++y) {
+        for (std::int32_t x = low.x; x < high.x; ++x) {
+          if (is_solid(x, y, z)) {
+            add(x, y, z);
+          }
+        }
+      }
+    }
+  }
+  void add_box(const Vec3i& low, const Vec3i& high) {
+    add_some(low, high, [](auto, auto, auto) { return true; });
+  }
+  void add_dust(std::int32_t count, const Vec3i& low, const Vec3i& high) {
+    for (std::int32_t i = 0; i < count; ++i) {
+      Vec3i at{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto room = static_cast<std::uint64_t>(high[axis] - low[axis]);
+        at[axis] = low[axis] + static_cast<std::int32_t>(random_() % room);
+      }
+      add(at.x, at.y, at.z);
+    }
+  }
+
+  std::vector<std::uint8_t> compact() const {
     for (std::size_t bytes = std::size_t{1} << 20; bytes <= std::size_t{1} << 30; bytes *= 4) {
-      Builder builder(level, bytes);
-      if (fill(builder)) {
-        std::vector<std::uint8_t> compact(compact_bytes(compact_shape(builder.octree_)));
-        std::size_t written = 0;
-        if (CompactTree::make(builder.octree_, Bytes(compact.data(), compact.size()), nullptr, &written) !=
-            Status::kOk) {
-          throw std::logic_error("the octree does not become compact");
+      std::vector<std::uint8_t> pool(bytes);
+      Octree octree;
+      if (Octree::make(level_, Bytes(pool.data(), pool.size()), &octree) == Status::kOk &&
+          insert(&octree, {0, 0, 0}, level_)) {
+        std::vector<std::uint8_t> compact(compact_bytes(compact_shape(octree)));
+        if (CompactTree::make(octree, Bytes(compact.data(), compact.size()), nullptr) != Status::kOk) {
+          break;
         }
         return compact;
       }
@@ -42,91 +78,64 @@ class Builder {
     throw std::logic_error("a trial world is too large");
   }
 
-  std::int32_t side() const { return std::int32_t{1} << level_; }
-  int level() const { return level_; }
-  // The same numbers in every turn.
-  std::mt19937_64& random() { return random_; }
-
-  // False when the pool is full.
-  bool add(std::int32_t x, std::int32_t y, std::int32_t z) {
-    return octree_.insert({x, y, z}, 1) == Status::kOk;
-  }
-
-  // The voxels low .. high - 1 within a block, as the largest blocks.
-  bool add_box(const Vec3i& low, const Vec3i& high) {
-    return octree_.insert_box({low, high}, 1) == Status::kOk;
-  }
-
  private:
-  Builder(int level, std::size_t bytes) : level_(level), pool_(bytes), random_(1) {
-    if (Octree::make(level, Bytes(pool_.data(), pool_.size()), &octree_) != Status::kOk) {
-      throw std::logic_error("no such level");
+  bool insert(Octree* octree, const Vec3i& corner, int level) const {
+    const std::uint64_t first =
+        morton_code(static_cast<std::uint32_t>(corner.x), static_cast<std::uint32_t>(corner.y),
+                    static_cast<std::uint32_t>(corner.z));
+    const std::uint64_t count = std::uint64_t{1} << 3 * level;
+    const std::uint64_t wanted = count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+    bool any = false;
+    bool all = true;
+    for (std::uint64_t at = first; at < first + count && (all || !any); at += 64) {
+      const std::uint64_t bits = words_[at / 64] >> at % 64 & wanted;
+      any = any || bits != 0;
+      all = all && bits == wanted;
     }
+    if (all || !any) {
+      return !any || octree->insert_block(corner, level, 1) == Status::kOk;
+    }
+    const std::int32_t half = std::int32_t{1} << (level - 1);
+    for (int octant = 0; octant < 8; ++octant) {
+      const Vec3i part{octant & 1, octant >> 1 & 1, octant >> 2};
+      if (!insert(octree, {corner.x + part.x * half, corner.y + part.y * half, corner.z + part.z * half},
+                  level - 1)) {
+        return false;
+      }
+    }
+    return true;
   }
 
   int level_;
-  std::vector<std::uint8_t> pool_;
-  Octree octree_;
-  std::mt19937_64 random_;
+  std::vector<std::uint64_t> words_;
+  std::mt19937_64 random_{1};
 };
 
-// The voxels of the box for which `is_solid(x, y, z)`.
-template <class IsSolid>
-bool add_some(Builder& builder, const Vec3i& low, const Vec3i& high, const IsSolid& is_solid) {
-  for (std::int32_t z = low.z; z < high.z; ++z) {
-    for (std::int32_t y = low.y; y < high.y; ++y) {
-      for (std::int32_t x = low.x; x < high.x; ++x) {
-        if (is_solid(x, y, z) && !builder.add(x, y, z)) {
-          return false;
-        }
-      }
-    }
-  }
-  return true;
+void fill_solid(Grid& grid) {
+  grid.add_box({0, 0, 0}, {grid.side(), grid.side(), grid.side()});
 }
 
-bool add_dust(Builder& builder, std::int32_t count, const Vec3i& low, const Vec3i& high) {
-  for (std::int32_t i = 0; i < count; ++i) {
-    Vec3i at{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto room = static_cast<std::uint64_t>(high[axis] - low[axis]);
-      at[axis] = low[axis] + static_cast<std::int32_t>(builder.random()() % room);
-    }
-    if (!builder.add(at.x, at.y, at.z)) {
-      return false;
-    }
-  }
-  return true;
+void fill_inset(Grid& grid) {
+  const std::int32_t end = grid.side() - 1;
+  grid.add_box({1, 1, 1}, {end, end, end});
 }
 
-bool fill_solid(Builder& builder) {
-  const std::int32_t side = builder.side();
-  return builder.add_box({0, 0, 0}, {side, side, side});
+void fill_noise(Grid& grid) {
+  const std::int32_t side = grid.side();
+  grid.add_some({0, 0, 0}, {side, side, side}, [&](auto, auto, auto) { return (grid.random()() & 1U) != 0; });
 }
 
-bool fill_inset(Builder& builder) {
-  const std::int32_t end = builder.side() - 1;
-  return builder.add_box({1, 1, 1}, {end, end, end});
+void fill_checker(Grid& grid) {
+  const std::int32_t side = grid.side();
+  grid.add_some({0, 0, 0}, {side, side, side}, [](auto x, auto y, auto z) { return ((x + y + z) & 1) != 0; });
 }
 
-bool fill_noise(Builder& builder) {
-  const std::int32_t side = builder.side();
-  return add_some(builder, {0, 0, 0}, {side, side, side},
-                  [&](auto, auto, auto) { return (builder.random()() & 1U) != 0; });
-}
-
-bool fill_checker(Builder& builder) {
-  const std::int32_t side = builder.side();
-  return add_some(builder, {0, 0, 0}, {side, side, side},
-                  [](auto x, auto y, auto z) { return ((x + y + z) & 1) != 0; });
-}
-
-bool fill_sponge(Builder& builder) {
+void fill_sponge(Grid& grid) {
   std::int32_t side = 1;
-  while (side * 3 <= builder.side()) {
+  while (side * 3 <= grid.side()) {
     side *= 3;
   }
-  return add_some(builder, {0, 0, 0}, {side, side, side}, [](std::int32_t x, std::int32_t y, std::int32_t z) {
+  grid.add_some({0, 0, 0}, {side, side, side}, [](std::int32_t x, std::int32_t y, std::int32_t z) {
     for (; x != 0 || y != 0 || z != 0; x /= 3, y /= 3, z /= 3) {
       const int middles = (x % 3 == 1 ? 1 : 0) + (y % 3 == 1 ? 1 : 0) + (z % 3 == 1 ? 1 : 0);
       if (middles >= 2) {
@@ -137,81 +146,143 @@ bool fill_sponge(Builder& builder) {
   });
 }
 
-bool fill_voxel(Builder& builder) {
-  const std::int32_t middle = builder.side() / 2;
-  return builder.add(middle, middle, middle);
+void fill_voxel(Grid& grid) {
+  const std::int32_t middle = grid.side() / 2;
+  grid.add(middle, middle, middle);
 }
 
-bool fill_wall(Builder& builder) {
-  const std::int32_t side = builder.side();
-  return builder.add_box({0, side / 3, 0}, {side, side / 3 + 1, side});
+void fill_wall(Grid& grid) {
+  const std::int32_t side = grid.side();
+  grid.add_box({0, side / 3, 0}, {side, side / 3 + 1, side});
 }
 
-bool fill_slant(Builder& builder) {
-  const std::int32_t side = builder.side();
-  for (std::int32_t z = 0; z < side; ++z) {
-    for (std::int32_t y = 0; y < side; ++y) {
-      const std::int32_t x = 3 * side / 2 - y - z;
-      if ((x >= 0 && x < side && !builder.add(x, y, z)) ||
-          (x >= 1 && x <= side && !builder.add(x - 1, y, z))) {
-        return false;
-      }
-    }
-  }
-  return true;
+void fill_slant(Grid& grid) {
+  const std::int32_t side = grid.side();
+  grid.add_some({0, 0, 0}, {side, side, side}, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+    const std::int32_t behind = 3 * side / 2 - y - z - x;
+    return behind == 0 || behind == 1;
+  });
 }
 
-bool fill_columns(Builder& builder) {
-  const std::int32_t side = builder.side();
-  for (std::int32_t y = 3; y < side; y += 8) {
-    for (std::int32_t x = 5; x < side; x += 8) {
-      if (!builder.add_box({x, y, 0}, {x + 1, y + 1, side})) {
-        return false;
-      }
-    }
-  }
-  return true;
+void fill_columns(Grid& grid) {
+  const std::int32_t side = grid.side();
+  grid.add_some({0, 0, 0}, {side, side, side},
+                [](std::int32_t x, std::int32_t y, std::int32_t) { return x % 8 == 5 && y % 8 == 3; });
 }
 
-bool fill_islands(Builder& builder) {
-  const std::int32_t side = builder.side();
+void fill_islands(Grid& grid) {
+  const std::int32_t side = grid.side();
   const std::int32_t part = side / 16;
-  const auto is_solid = [&](auto, auto, auto) { return (builder.random()() & 1U) != 0; };
-  return add_some(builder, {0, 0, 0}, {part, part, part}, is_solid) &&
-         add_some(builder, {side - part, side - part, side - part}, {side, side, side}, is_solid) &&
-         add_dust(builder, side * 8, {0, 0, 0}, {side, side, side});
+  const auto is_solid = [&](auto, auto, auto) { return (grid.random()() & 1U) != 0; };
+  grid.add_some({0, 0, 0}, {part, part, part}, is_solid);
+  grid.add_some({side - part, side - part, side - part}, {side, side, side}, is_solid);
+  grid.add_dust(side * 8, {0, 0, 0}, {side, side, side});
 }
 
-bool fill_screen(Builder& builder) {
-  const std::int32_t side = builder.side();
-  return builder.add_box({0, 0, 0}, {side, side / 16, side}) &&
-         add_dust(builder, side * side, {0, side / 4, 0}, {side, side, side});
+void fill_screen(Grid& grid) {
+  const std::int32_t side = grid.side();
+  grid.add_box({0, 0, 0}, {side, side / 16, side});
+  grid.add_dust(side * side, {0, side / 4, 0}, {side, side, side});
 }
 
-bool fill_ball(Builder& builder) {
-  const std::int32_t side = builder.side();
+void fill_ball(Grid& grid) {
+  const std::int32_t side = grid.side();
   const std::int32_t radius = side / 2 - 1;
   const auto square = [&](std::int32_t a) { return (a - side / 2) * (a - side / 2); };
   for (std::int32_t z = 0; z < side; ++z) {
     for (std::int32_t y = 0; y < side; ++y) {
-      const double left = static_cast<double>(radius) * radius - square(y) - square(z);
-      if (left < 0) {
-        continue;
-      }
-      const auto reach = static_cast<std::int32_t>(std::sqrt(left));
-      if (!builder.add(side / 2 - reach, y, z) || !builder.add(side / 2 + reach, y, z)) {
-        return false;
+      const std::int32_t left = radius * radius - square(y) - square(z);
+      if (left >= 0) {
+        const auto reach = static_cast<std::int32_t>(std::sqrt(left));
+        grid.add(side / 2 - reach, y, z);
+        grid.add(side / 2 + reach, y, z);
       }
     }
   }
-  return true;
+}
+
+void fill_globe(Grid& grid) {
+  const std::int32_t side = grid.side();
+  const auto square = [&](std::int32_t at) {  // of the voxel's middle, in halves
+    const std::int64_t from = 2 * std::int64_t{at} + 1 - side;
+    return from * from;
+  };
+  grid.add_some({0, 0, 0}, {side, side, side}, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+    return square(x) + square(y) + square(z) < std::int64_t{side} * side;
+  });
+}
+
+// A number of 0 .. 1 for a lattice point.
+double noise_at(std::int32_t x, std::int32_t y) {
+  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9E3779B1U ^ static_cast<std::uint32_t>(y) * 0x85EBCA77U;
+  h = (h ^ h >> 15) * 0x2C1B3C6DU;
+  h = (h ^ h >> 12) * 0x297A2D39U;
+  return static_cast<double>(h ^ h >> 15) / 4294967296.0;
+}
+double smooth_noise(double x, double y) {
+  const auto left = static_cast<std::int32_t>(std::floor(x));
+  const auto top = static_cast<std::int32_t>(std::floor(y));
+  const auto ease = [](double t) { return t * t * (3 - 2 * t); };
+  const double u = ease(x - left);
+  const double v = ease(y - top);
+  const double above = noise_at(left, top) * (1 - u) + noise_at(left + 1, top) * u;
+  const double below = noise_at(left, top + 1) * (1 - u) + noise_at(left + 1, top + 1) * u;
+  return above * (1 - v) + below * v;
+}
+
+// Hills on ground: 200 voxels of it in a world of 1024, less in smaller ones.
+void fill_terrain(Grid& grid) {
+  const std::int32_t side = grid.side();
+  const double unit = side / 1024.0;
+  for (std::int32_t y = 0; y < side; ++y) {
+    for (std::int32_t x = 0; x < side; ++x) {
+      double height = 200;
+      double part = 160;
+      double step = 1.0 / (256 * unit);
+      for (int octave = 0; octave < 6; ++octave, part /= 2.1, step *= 2) {
+        height += part * smooth_noise(x * step + 17 * octave, y * step);
+      }
+      grid.add_box({x, y, 0}, {x + 1, y + 1, std::clamp(static_cast<std::int32_t>(height * unit), 0, side)});
+    }
+  }
+}
+
+// Blocks of houses along streets, with ledges and recessed windows, on thin ground.
+void fill_city(Grid& grid) {
+  const std::int32_t side = grid.side();
+  const std::int32_t ground = side / 128;
+  constexpr std::int32_t kPlot = 48;
+  constexpr std::int32_t kStreet = 10;
+  for (std::int32_t y = 0; y < side; ++y) {
+    for (std::int32_t x = 0; x < side; ++x) {
+      const std::int32_t in_x = x % kPlot;
+      const std::int32_t in_y = y % kPlot;
+      const double chance = noise_at(x / kPlot, y / kPlot);
+      const bool is_house = in_x >= kStreet && in_y >= kStreet && chance > 0.12;
+      const auto roof = static_cast<std::int32_t>((0.06 + 0.4 * chance * chance * chance) * side);
+      // Walls are a voxel behind the plot's edge, but for ledges at every storey; windows lie two voxels deep.
+      const std::int32_t edge =
+          std::min({in_x - kStreet, in_y - kStreet, kPlot - 1 - in_x, kPlot - 1 - in_y});
+      const std::int32_t along = in_x - kStreet == edge || kPlot - 1 - in_x == edge ? in_y : in_x;
+      for (std::int32_t z = 0; z < side; ++z) {
+        const std::int32_t storey = z % 12;
+        const bool is_window = edge < 3 && storey >= 4 && storey < 9 && along % 6 >= 2 && along % 6 < 5;
+        const bool is_wall = is_house && z < roof && (edge >= 1 || storey == 0) && !is_window;
+        if (z < ground || is_wall) {
+          grid.add(x, y, z);
+        } else if (z >= roof) {
+          break;
+        }
+      }
+    }
+  }
 }
 
 struct Kind {
   const char* name;
-  bool (*fill)(Builder&);
+  void (*fill)(Grid&);
 };
-constexpr std::array<Kind, 12> kKinds{{{"solid", fill_solid},
+constexpr std::array<Kind, 15> kKinds{{{"solid", fill_solid},
                                        {"inset", fill_inset},
                                        {"noise", fill_noise},
                                        {"checker", fill_checker},
@@ -222,7 +293,10 @@ constexpr std::array<Kind, 12> kKinds{{{"solid", fill_solid},
                                        {"columns", fill_columns},
                                        {"islands", fill_islands},
                                        {"screen", fill_screen},
-                                       {"ball", fill_ball}}};
+                                       {"ball", fill_ball},
+                                       {"globe", fill_globe},
+                                       {"terrain", fill_terrain},
+                                       {"city", fill_city}}};
 
 tools::SceneArguments arguments_of(const std::string& name) {
   tools::SceneArguments arguments;
@@ -270,43 +344,25 @@ double make_lists(const CompactTree& tree, wide::ListKind kind, std::vector<std:
   return static_cast<double>((counted - begin) + (now() - ready)) / CLOCKS_PER_SEC;
 }
 
-}  // namespace
-
-// Makes one of solid_worlds.h, if it is one.
-void TrialWorld::make_solid(const std::string& name) {
+// The bytes of a tree of one of the kinds above; none for another name.
+std::vector<std::uint8_t> filled_world(const std::string& name) {
   const std::size_t colon = name.find(':');
-  const std::string kind = name.substr(0, colon);
-  const std::string what = colon == std::string::npos ? "" : name.substr(colon + 1);
-  if (kind == "globe") {
-    bytes_ = full_ball(std::stoi(what));
-  } else if (kind == "terrain") {
-    bytes_ = thick_terrain(std::stoi(what));
-  } else if (kind == "city") {
-    bytes_ = city(std::stoi(what));
-  } else if (kind == "plummer") {
-    bytes_ = plummer_spheres(std::stoull(what));
-  } else if (kind == "filled") {
-    const tools::BuiltScene hollow(*tools::open_scene(arguments_of(what)), tools::BuildOptions{});
-    bytes_ = filled(hollow.compact());
-  } else {
-    return;
-  }
-  if (CompactTree::open(ConstBytes(bytes_.data(), bytes_.size()), &tree_) != Status::kOk) {
-    throw std::logic_error("a solid world does not open");
-  }
-}
-
-TrialWorld::TrialWorld(const std::string& name) : name_(name) {
   for (const Kind& kind : kKinds) {
-    const std::string prefix = std::string(kind.name) + ":";
-    if (name.rfind(prefix, 0) == 0) {
-      bytes_ = Builder::build(std::stoi(name.substr(prefix.size())), kind.fill);
-      if (CompactTree::open(ConstBytes(bytes_.data(), bytes_.size()), &tree_) != Status::kOk) {
-        throw std::logic_error("a trial world does not open");
-      }
+    if (colon != std::string::npos && name.substr(0, colon) == kind.name) {
+      Grid grid(std::stoi(name.substr(colon + 1)));
+      kind.fill(grid);
+      return grid.compact();
     }
   }
-  make_solid(name);
+  return {};
+}
+
+}  // namespace
+
+TrialWorld::TrialWorld(const std::string& name) : name_(name), bytes_(filled_world(name)) {
+  if (!bytes_.empty() && CompactTree::open(ConstBytes(bytes_.data(), bytes_.size()), &tree_) != Status::kOk) {
+    throw std::logic_error("a trial world does not open");
+  }
   if (bytes_.empty()) {
     built_ =
         std::make_unique<tools::BuiltScene>(*tools::open_scene(arguments_of(name)), tools::BuildOptions{});

@@ -25,12 +25,8 @@ class TrialWorld {
   ///     wall:L     one voxel thick, along y            slant:L    a diagonal plane, two voxels thick
   ///     columns:L  one voxel wide, every eighth        islands:L  noise in two far corners, dust between
   ///     screen:L   a solid wall before single voxels   ball:L     single voxels in a ball's hull
-  ///
-  /// and those of solid_worlds.h, at least of level 6:
-  ///
   ///     globe:L    a ball, full                        terrain:L  hills on thick ground
-  ///     city:L     houses, full                        filled:F   a file, its inside full
-  ///     plummer:N  N points in clusters
+  ///     city:L     houses, full
   explicit TrialWorld(const std::string& name);
 
   const std::string& name() const { return name_; }
@@ -45,8 +41,6 @@ class TrialWorld {
   double box_list_seconds() const { return box_list_seconds_; }
 
  private:
-  void make_solid(const std::string& name);
-
   std::string name_;
   std::unique_ptr<tools::BuiltScene> built_;  // or `bytes_`
   std::vector<std::uint8_t> bytes_;

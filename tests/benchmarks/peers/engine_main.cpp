@@ -167,12 +167,11 @@ std::vector<std::string> large_world_names(std::uint64_t most_points) {
   std::vector<std::string> names{"globe:9", "terrain:10", "city:9", "city:10"};
   for (const std::uint64_t count : std::initializer_list<std::uint64_t>{1'000'000, 20'000'000}) {
     if (count <= most_points) {
-      names.push_back("plummer:" + std::to_string(count));
+      names.push_back("cluster:" + std::to_string(count));
       names.push_back("points:" + std::to_string(count));
     }
   }
   if (const char* data = std::getenv("THIMBLE_DATA")) {
-    names.push_back("filled:" + std::string(data) + "/mesh/dragon_vrip_res2.ply.gz@10");
     for (const char* file :
          {"mesh/armadillo.off", "mesh/bunny00.off", "mesh/camel.off", "mesh/ChineseDragon-10kv.off",
           "mesh/elephant.off", "mesh/fandisk.off", "mesh/lion-head.off", "mesh/triceratops.off",
