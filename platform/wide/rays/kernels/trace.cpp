@@ -323,8 +323,10 @@ HWY_INLINE void advance(Job* job, const View& view, const Sight& sight, Lanes* l
   }
 }
 
-// So many lanes of a group may be idle before they are filled again.
-constexpr int kMostIdle = kLanes < 8 ? 1 : 2;
+// A group is filled again when so many of its lanes are idle: few, where that moves few columns.
+constexpr int least_idle(Alike alike) {
+  return kLanes < 8 || alike != Alike::kNothing ? 1 : 2;
+}
 
 // How many groups of lanes are under way at a time.
 constexpr size_t kGroups = kLanes < 4 ? 4 : 32 / kLanes;
@@ -352,7 +354,7 @@ void trace_alike(Job* job, const uint64_t* of_rays) {
     uint32_t alive = 0;
     for (Lanes& lanes : groups) {
       const uint32_t idle = kAll & ~lanes.alive;
-      if (__builtin_popcount(idle) >= kMostIdle || lanes.alive == 0) {
+      if (__builtin_popcount(idle) >= least_idle(kAlike) || lanes.alive == 0) {
         if (queue.count - queue.next < kLanes && next < job->count) {
           fill_queue<kAlike>(job, shared, &next, &queue);
         }
