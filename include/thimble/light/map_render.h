@@ -27,8 +27,8 @@ namespace thimble {
 class EditedWorld;
 
 /// The bricks of a map from which nothing is in the way to a distant light, a bit each, so that most shadow rays end
-/// after a few voxels. Above level 8 a byte for each ray that leaves a grid of bricks' sides across the light: in which layer of
-/// bricks it meets something last. The bytes and the map outlive it.
+/// after a few voxels. Above level 8 a byte for each cell of a plane across the light's rays, as wide as a brick: behind which
+/// layer of bricks they meet nothing. The bytes and the map outlive it.
 ///
 ///     SunBricks sun;
 ///     const Bytes bytes = arena.take(SunBricks::bytes(map));
@@ -58,8 +58,9 @@ class SunBricks {
   /// Withdraws what the edits since it was made or last followed may have made wrong, then proves up to `bricks` more
   /// bricks, those that were not proven yet and those behind an edit. Returns whether any are left. Until it is called an
   /// edited world's bits belong to no map, so that a frame does without them. Withdrawing clears at most each bit once:
-  /// some ten instructions a brick behind what `world.changed()` holds, above level 8 a byte before or behind it. Bits that are behind by more than that, or those of
-  /// another world, are withdrawn altogether, or left alone.
+  /// some ten instructions a brick behind what `world.changed()` holds; above level 8 it raises a byte for each brick's side
+  /// that the light sees of that. Bits that are behind by more than that, or those of another world, are withdrawn altogether, or
+  /// left alone.
   bool follow(const EditedWorld& world, uint32_t bricks);
 
   /// Whether these bits are those of this map as it is now, which has not been opened anew, and of a distant light there.

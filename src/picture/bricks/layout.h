@@ -68,7 +68,7 @@ using bits::Word;
 
 // The directory and the bricks are read as halfwords and words: they lie at multiples of 4. As bits::little does, but
 // in place: a call, though it is inlined, would give the loops of the rays other registers.
-uint32_t half_at(const uint8_t* bytes, int32_t offset) {
+[[maybe_unused]] uint32_t half_at(const uint8_t* bytes, int32_t offset) {
   // Through void: compilers for small chips warn of a cast that promises an alignment.
   const Half half = *static_cast<const Half*>(static_cast<const void*>(bytes + offset));
   return bits::kBigEndian ? __builtin_bswap16(half) : half;
