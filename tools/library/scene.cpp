@@ -236,7 +236,8 @@ std::vector<std::uint8_t> Scene::bake(const Options& options) const {
     command->scene.arguments = parts_->arguments;  // whose smaller depths are tried where it does not fit
     use_display(command->scene.board, &command->view);
     BakingOptions baking;
-    return tools::bake(command.get(), *parts_->source, &baking).bytes;
+    const Baked baked = tools::bake(command.get(), *parts_->source, &baking);
+    return std::vector<std::uint8_t>(baked.bytes.begin(), baked.bytes.end());
   });
 }
 
