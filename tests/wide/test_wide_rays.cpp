@@ -113,7 +113,8 @@ void add_ray(std::mt19937_64& random, const CompactTree& tree, const Ray& ray, R
   batch->change.push_back(change);
 }
 
-// Hard rays, and secondary ones: in a third of the batches all go into one octant, in a third one way.
+// Hard rays, and secondary ones: in a third of the batches all go into one octant, mostly at one speed along an
+// axis; in a third one way.
 RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_t count) {
   const int side = 1 << tree.level();
   const auto within = [&](int low, int high) { return pick_int(random, low, high - 1); };
@@ -130,10 +131,11 @@ RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_
   }
   const std::int64_t alike = pick(random, 0, 2);
   const Vec3i first = to_core(cases.next().ray).direction;
+  const int common = pick_int(random, 0, 3);
   const auto add = [&](Ray ray) {
     for (int axis = 0; axis < 3 && alike == 1; ++axis) {
       const std::int32_t size = std::abs(ray.direction[axis]);
-      ray.direction[axis] = first[axis] < 0 ? -std::max(size, 1) : size;
+      ray.direction[axis] = axis == common ? first[axis] : first[axis] < 0 ? -std::max(size, 1) : size;
     }
     if (alike == 2 || ray.direction == Vec3i{0, 0, 0}) {
       ray.direction = first;
