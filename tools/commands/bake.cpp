@@ -116,10 +116,10 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   define("LAMPS", std::to_string(lamps));
   define("HAS_BRICK_MAP", scene.section(SectionKind::kBrickMap).empty() ? "0" : "1");
   text +=
-      "\n/* Aligned, so that a chip that wants whole words reads them at once. Constant, so that it stays in "
+      "\n/* Aligned as brick maps and chips that read whole words want it. Constant, so that it stays in "
       "flash. */\n"
       "#if defined(__cplusplus)\nalignas(8)\n"
-      "#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L\n_Alignas(4)\n"
+      "#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L\n_Alignas(8)\n"
       "#elif defined(__GNUC__)\n__attribute__((aligned(8)))\n#endif\n"
       "static const uint8_t " +
       name + "[" + prefix + "BYTES] = {\n";
