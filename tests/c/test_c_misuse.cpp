@@ -26,18 +26,17 @@ struct Things {
     REQUIRE(thimble_scene_shading(&scene, &shading) == THIMBLE_OK);
     REQUIRE(thimble_scene_light(&scene, &light) == THIMBLE_OK);
     REQUIRE(thimble_scene_bricks(&scene, &bricks) == THIMBLE_OK);
-    pool = ExactBytes(thimble_octree_bytes(400));
-    REQUIRE(thimble_octree_make(&octree, 4, pool.bytes().data, pool.bytes().size) == THIMBLE_OK);
+    pool = HeapBytes(thimble_octree_bytes(400));
+    REQUIRE(thimble_octree_make(&octree, 4, pool.span().data, pool.span().size) == THIMBLE_OK);
     thimble_particle_config_default(&config);
     config.width = 60;
     config.height = 40;
     config.capacity = 12;
-    balls = ExactBytes(thimble_particles_bytes(&config));
-    REQUIRE(thimble_particles_make(&particles, &config, balls.bytes().data, balls.bytes().size) ==
-            THIMBLE_OK);
-    frame_bytes = ExactBytes(thimble_frame_bytes(THIMBLE_FORMAT_GRAY4, 24, 16));
+    balls = HeapBytes(thimble_particles_bytes(&config));
+    REQUIRE(thimble_particles_make(&particles, &config, balls.span().data, balls.span().size) == THIMBLE_OK);
+    frame_bytes = HeapBytes(thimble_frame_bytes(THIMBLE_FORMAT_GRAY4, 24, 16));
     REQUIRE(thimble_frame_make(&frame, &tree, &camera, &shading, THIMBLE_FORMAT_GRAY4,
-                               frame_bytes.bytes().data, frame_bytes.bytes().size) == THIMBLE_OK);
+                               frame_bytes.span().data, frame_bytes.span().size) == THIMBLE_OK);
   }
 
   ConstBytes baked;
@@ -52,7 +51,7 @@ struct Things {
   thimble_view_t view = {};
   thimble_shading_t shading = {};
   thimble_particle_config_t config = {};
-  ExactBytes pool, balls, frame_bytes;
+  HeapBytes pool, balls, frame_bytes;
 };
 
 // Hands out one thing or what is no such thing: null, a handle that holds nothing, one of another kind, one that
@@ -153,11 +152,11 @@ thimble_shading_t odd_shading(OddValues& odd, const thimble_shading_t& good) {
   return shading;
 }
 
-thimble_band_t odd_band(OddValues& odd, ExactBytes* bytes) {
-  *bytes = ExactBytes(odd.bits() % 3000);
+thimble_band_t odd_band(OddValues& odd, HeapBytes* bytes) {
+  *bytes = HeapBytes(odd.bits() % 3000);
   thimble_band_t band = {};
-  band.pixels = odd.one_in(9) ? nullptr : bytes->bytes().data;
-  band.size_bytes = odd.one_in(9) ? 0 : bytes->bytes().size;
+  band.pixels = odd.one_in(9) ? nullptr : bytes->span().data;
+  band.size_bytes = odd.one_in(9) ? 0 : bytes->span().size;
   band.stride_bytes = odd.one_in(2) ? 0 : odd.one_in(2) ? odd.bits() % 100 : odd.any<std::size_t>();
   band.format = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(0, kPixelFormats);
   band.first_row = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 2) * 8;
@@ -209,7 +208,7 @@ TEST_CASE("misuse: C face, pictures and rays with anything in place of any argum
     (void)thimble_shading_light(odd.data(&things.shading), toward.x, toward.y, toward.z);
     (void)odd.spoiled();
     const thimble_shading_t shading = odd_shading(values, things.shading);
-    ExactBytes pixels;
+    HeapBytes pixels;
     const thimble_band_t band = odd_band(values, &pixels);
     const auto draws = [&](auto&& draw) {
       const thimble_camera_t* const camera = odd.handle(&things.camera);
@@ -247,11 +246,11 @@ TEST_CASE("misuse: C face, pictures and rays with anything in place of any argum
     const std::int32_t frame_format =
         values.one_in(2) ? values.any<std::int32_t>() : values.between_32(0, kPixelFormats - 1);
     (void)thimble_frame_bytes(frame_format, values.any<std::int32_t>(), values.any<std::int32_t>());
-    ExactBytes memory(values.bits() % 3000);
+    HeapBytes memory(values.bits() % 3000);
     thimble_frame_t frame = {};
     const std::int32_t begun = thimble_frame_make(
         odd.target(&frame), odd.handle(&things.tree), odd.handle(&things.camera), odd.data(&shading),
-        frame_format, values.one_in(9) ? nullptr : memory.bytes().data, memory.bytes().size);
+        frame_format, values.one_in(9) ? nullptr : memory.span().data, memory.span().size);
     check(begun, odd);
     check(thimble_frame_refine(odd.handle(begun == THIMBLE_OK ? &frame : &things.frame),
                                odd.handle(&things.tree), values.one_in(2) ? limit : limit % 5000),
@@ -270,12 +269,11 @@ TEST_CASE("misuse: C face, scenes of damaged bytes and anything for a handle -> 
   misuse(72, 2500, [&](OddValues& values) {
     Things things(world);
     Odd odd(values, 10);
-    const ExactBytes bytes = damaged(values, values.one_in(3) ? deep : world.bytes());
+    const HeapBytes bytes = damaged(values, values.one_in(3) ? deep : world.bytes());
     thimble_scene_t scene = {};
-    (void)thimble_scene_validate(values.one_in(9) ? nullptr : bytes.bytes().data, bytes.bytes().size,
-                                 nullptr);
+    (void)thimble_scene_validate(values.one_in(9) ? nullptr : bytes.span().data, bytes.span().size, nullptr);
     const std::int32_t status =
-        thimble_scene_open(&scene, values.one_in(9) ? nullptr : bytes.bytes().data, bytes.bytes().size);
+        thimble_scene_open(&scene, values.one_in(9) ? nullptr : bytes.span().data, bytes.span().size);
     CHECK((status == THIMBLE_OK || status == THIMBLE_DAMAGED || status == THIMBLE_BAD_ARGUMENT));
     if (status != THIMBLE_OK) {
       CHECK(scene.opaque[0] == 0);
@@ -338,14 +336,14 @@ TEST_CASE("misuse: C face, edited worlds with any numbers -> a status, and the w
     const std::size_t least = thimble_world_bytes(&things.tree);
     REQUIRE(least != 0);
     (void)thimble_world_bytes(odd.handle(&things.tree));
-    ExactBytes room(least + 64 + values.bits() % 4000 / 8 * 8);
-    ExactBytes entries(values.bits() % 900);
+    HeapBytes room(least + 64 + values.bits() % 4000 / 8 * 8);
+    HeapBytes entries(values.bits() % 900);
     thimble_world_t edited = {};
     thimble_journal_t journal = {};
-    REQUIRE(thimble_world_make(&edited, &things.tree, room.bytes().data, room.bytes().size) == THIMBLE_OK);
-    REQUIRE(thimble_journal_make(&journal, entries.bytes().data, entries.bytes().size) == THIMBLE_OK);
+    REQUIRE(thimble_world_make(&edited, &things.tree, room.span().data, room.span().size) == THIMBLE_OK);
+    REQUIRE(thimble_journal_make(&journal, entries.span().data, entries.span().size) == THIMBLE_OK);
     CHECK(thimble_world_make(&edited, &things.tree, nullptr, 100) == THIMBLE_BAD_ARGUMENT);
-    CHECK(thimble_world_make(&edited, &things.tree, room.bytes().data, least - 1) == THIMBLE_OUT_OF_MEMORY);
+    CHECK(thimble_world_make(&edited, &things.tree, room.span().data, least - 1) == THIMBLE_OUT_OF_MEMORY);
     (void)odd.spoiled();
     const auto number = [&] {
       return values.one_in(4) ? values.any<std::int32_t>() : values.between_32(-1, 16);
@@ -373,9 +371,9 @@ TEST_CASE("misuse: C face, edited worlds with any numbers -> a status, and the w
     }
     std::size_t size = 0;
     REQUIRE(thimble_world_pack(&edited, nullptr, 0, &size) == THIMBLE_OUT_OF_MEMORY);
-    ExactBytes packed(size);
-    REQUIRE(thimble_world_pack(&edited, packed.bytes().data, size, nullptr) == THIMBLE_OK);
-    REQUIRE(CompactTree::validate(packed.bytes()) == nullptr);
+    HeapBytes packed(size);
+    REQUIRE(thimble_world_pack(&edited, packed.span().data, size, nullptr) == THIMBLE_OK);
+    REQUIRE(CompactTree::validate(packed.span()) == nullptr);
   });
 }
 
@@ -385,9 +383,9 @@ TEST_CASE("misuse: C face, octrees and particles with any numbers -> a status, a
     Things things(world);
     Odd odd(values, 25);
     (void)thimble_octree_bytes(values.any<std::uint32_t>());
-    ExactBytes pool(values.bits() % 4000);
+    HeapBytes pool(values.bits() % 4000);
     (void)thimble_octree_make(&things.octree, values.one_in(2) ? values.any<std::int32_t>() : 4,
-                              values.one_in(9) ? nullptr : pool.bytes().data, pool.bytes().size);
+                              values.one_in(9) ? nullptr : pool.span().data, pool.span().size);
     thimble_octree_info_t info;
     REQUIRE(thimble_octree_get_info(&things.octree, &info) == THIMBLE_OK);
     const auto number = [&] {
@@ -405,9 +403,9 @@ TEST_CASE("misuse: C face, octrees and particles with any numbers -> a status, a
     }
     check(thimble_octree_set_coarsen(odd.handle(&things.octree), values.any<std::int32_t>()), odd);
     check(thimble_octree_get_info(odd.handle(&things.octree), odd.data(&info)), odd);
-    ExactBytes tree(odd_size(values, thimble_tree_bytes(&things.octree)));
-    check(thimble_tree_make(odd.target(&things.tree), odd.handle(&things.octree), tree.bytes().data,
-                            tree.bytes().size),
+    HeapBytes tree(odd_size(values, thimble_tree_bytes(&things.octree)));
+    check(thimble_tree_make(odd.target(&things.tree), odd.handle(&things.octree), tree.span().data,
+                            tree.span().size),
           odd);
     CHECK(thimble_tree_make(&things.tree, &things.octree, nullptr, 100) == THIMBLE_BAD_ARGUMENT);
     check(thimble_octree_clear(odd.handle(&things.octree)), odd);
@@ -426,14 +424,14 @@ TEST_CASE("misuse: C face, octrees and particles with any numbers -> a status, a
     field(&config.subpixel_bits);
     config.capacity = values.one_in(5) ? values.any<std::uint32_t>() : config.capacity;
     config.restitution_q16 = values.one_in(5) ? values.any<std::uint32_t>() : config.restitution_q16;
-    ExactBytes memory(odd_size(values, thimble_particles_bytes(&config)));
+    HeapBytes memory(odd_size(values, thimble_particles_bytes(&config)));
     check(thimble_particles_make(odd.target(&things.particles), odd.data(&config),
-                                 values.one_in(9) ? nullptr : memory.bytes().data,
-                                 values.one_in(2) ? memory.bytes().size : 0),
+                                 values.one_in(9) ? nullptr : memory.span().data,
+                                 values.one_in(2) ? memory.span().size : 0),
           odd);
-    ExactBytes again(thimble_particles_bytes(&things.config));
-    REQUIRE(thimble_particles_make(&things.particles, &things.config, again.bytes().data,
-                                   again.bytes().size) == THIMBLE_OK);
+    HeapBytes again(thimble_particles_bytes(&things.config));
+    REQUIRE(thimble_particles_make(&things.particles, &things.config, again.span().data, again.span().size) ==
+            THIMBLE_OK);
     for (int i = 0; i < 12; ++i) {
       const auto cell = [&] {
         return values.one_in(3) ? values.any<std::int32_t>() : values.between_32(-9, 70);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/lit_world.h"
+#include "support/map_cells.h"
 #include "support/scene_under_test.h"
 #include "thimble/light/host/optics.h"
 #include "thimble/light/map_render.h"
@@ -122,19 +123,14 @@ struct SunWorld {
         }
       }
     }
-    bytes = compact_of(octree);
-    room = HeapBytes(most_brick_map_bytes(5));
-    REQUIRE(BrickMap::make(open_or_throw(bytes), room.span(), &map) == Status::kOk);
+    bytes = map_of(open_or_throw(compact_of(octree)));
+    REQUIRE(BrickMap::open(bytes.view(), &map) == Status::kOk);
     for (int axis = 0; axis < 3; ++axis) {
       side[axis] = map.box().high[axis] - map.box().low[axis];
     }
   }
-  bool has(const Vec3i& at) const {
-    const std::size_t entry = 2 * static_cast<std::size_t>((at.z * side.y + at.y) * side.x + at.x);
-    return (map.directory()[entry] | map.directory()[entry + 1]) != 0;
-  }
-  HeapBytes bytes{0};
-  HeapBytes room{0};
+  bool has(const Vec3i& at) const { return brick_at(map, at) != 0; }
+  HeapBytes bytes;
   BrickMap map;
   Vec3i side;
 };

@@ -15,11 +15,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <memory>
 #include <random>
 #include <type_traits>
 #include <vector>
 
+#include "support/scene_under_test.h"
 #include "thimble/base/memory.h"
 #include "thimble/base/vec.h"
 
@@ -90,24 +90,6 @@ class OddValues {
   std::mt19937_64 engine_;
 };
 
-/// Bytes on the heap, exactly as many as said, so that a sanitizer sees the first one beyond; none is null.
-class ExactBytes {
- public:
-  ExactBytes() = default;
-  explicit ExactBytes(std::size_t size)
-      : data_(size == 0 ? nullptr : new std::uint8_t[size]()), size_(size) {}
-  explicit ExactBytes(ConstBytes from) : ExactBytes(from.size) {
-    std::copy(from.begin(), from.end(), data_.get());
-  }
-
-  Bytes bytes() { return {data_.get(), size_}; }
-  ConstBytes bytes() const { return {data_.get(), size_}; }
-
- private:
-  std::unique_ptr<std::uint8_t[]> data_;
-  std::size_t size_ = 0;
-};
-
 /// A size at, about or below what is needed, never above a mebibyte: a need may be terabytes.
 inline std::size_t odd_size(OddValues& odd, std::size_t needed) {
   constexpr std::size_t kMost = std::size_t{1} << 20;
@@ -117,13 +99,13 @@ inline std::size_t odd_size(OddValues& odd, std::size_t needed) {
 }
 
 /// Some bytes changed, or cut off.
-inline ExactBytes damaged(OddValues& odd, ConstBytes sound) {
+inline HeapBytes damaged(OddValues& odd, ConstBytes sound) {
   const std::size_t size = odd.one_in(4) ? odd.bits() % (sound.size + 1) : sound.size;
-  ExactBytes bytes(sound.subspan(0, size));
+  HeapBytes bytes(sound.subspan(0, size));
   for (std::uint64_t count = odd.bits() % 8; count > 0 && size > 0; --count) {
     // Headers, at the front, decide most.
     const std::size_t at = odd.one_in(2) ? odd.bits() % size : odd.bits() % std::min<std::size_t>(size, 96);
-    bytes.bytes()[at] = odd.any<std::uint8_t>();
+    bytes.span()[at] = odd.any<std::uint8_t>();
   }
   return bytes;
 }

@@ -41,7 +41,7 @@ ParticleConfig particles_of(OddValues& odd, const Number& number) {
 
 /// One world in each of the structures; the compact and shared bytes may be damaged afterwards.
 struct OddWorld {
-  ExactBytes pool, grid_bytes, compact_bytes, shared_bytes;
+  HeapBytes pool, grid_bytes, compact_bytes, shared_bytes;
   Octree octree;
   DenseGrid grid;
   CompactTree compact;
@@ -49,10 +49,10 @@ struct OddWorld {
 
   explicit OddWorld(OddValues& odd, int level) {
     const std::int32_t side = std::int32_t{1} << level;
-    pool = ExactBytes(Octree::octree_bytes(6000));
-    REQUIRE(Octree::make(level, pool.bytes(), &octree) == Status::kOk);
-    grid_bytes = ExactBytes(dense_grid_bytes({side, side, side}));
-    REQUIRE(DenseGrid::make({side, side, side}, grid_bytes.bytes(), &grid) == Status::kOk);
+    pool = HeapBytes(Octree::octree_bytes(6000));
+    REQUIRE(Octree::make(level, pool.span(), &octree) == Status::kOk);
+    grid_bytes = HeapBytes(dense_grid_bytes({side, side, side}));
+    REQUIRE(DenseGrid::make({side, side, side}, grid_bytes.span(), &grid) == Status::kOk);
     const bool one_material = odd.one_in(2);
     for (std::uint64_t count = odd.bits() % 80; count > 0; --count) {
       const Vec3i at = odd.vector_between(0, side - 1);
@@ -65,26 +65,19 @@ struct OddWorld {
     if (odd.one_in(3) && !octree.empty()) {
       (void)octree.coarsen_to(1 + octree.nodes_used() / 2);
     }
-    std::size_t size = 0;
-    (void)CompactTree::make(octree, Bytes(), nullptr, &size);
-    compact_bytes = ExactBytes(size);
-    REQUIRE(CompactTree::make(octree, compact_bytes.bytes(), &compact) == Status::kOk);
-    const CompactShape shape = compact_shape(octree);
-    ExactBytes room(shared_tree_bytes(shape));
-    ExactBytes work(shared_work_bytes(shape.nodes));
-    SharedBuild build;
-    REQUIRE(SharedTree::make(compact, room.bytes(), work.bytes(), &shared, &build) == Status::kOk);
-    shared_bytes = ExactBytes(ConstBytes(room.bytes()).subspan(0, build.bytes));
-    REQUIRE(SharedTree::open(shared_bytes.bytes(), &shared) == Status::kOk);
+    compact_bytes = compact_of(octree);
+    compact = open_or_throw(compact_bytes);
+    shared_bytes = shared_of(compact);
+    REQUIRE(SharedTree::open(shared_bytes.span(), &shared) == Status::kOk);
   }
 
   /// Writes over what the two views read behind their headers, which stay.
   void damage(OddValues& odd) {
     for (int i = 0; i < 6; ++i) {
-      for (ExactBytes* bytes : {&compact_bytes, &shared_bytes}) {
-        const std::size_t size = bytes->bytes().size;
+      for (HeapBytes* bytes : {&compact_bytes, &shared_bytes}) {
+        const std::size_t size = bytes->span().size;
         if (size > kSharedHeaderBytes) {
-          bytes->bytes()[kSharedHeaderBytes + odd.bits() % (size - kSharedHeaderBytes)] =
+          bytes->span()[kSharedHeaderBytes + odd.bits() % (size - kSharedHeaderBytes)] =
               odd.any<std::uint8_t>();
         }
       }
@@ -148,16 +141,15 @@ inline void damage_deep_map(OddValues& odd, Bytes map) {
 
 /// A world of level 9 or 10 with little in it, and its brick map in as many bytes as it has.
 struct OddDeepWorld {
-  ExactBytes compact_bytes, map_bytes;
+  HeapBytes compact_bytes, map_bytes;
   CompactTree compact;
   BrickMap map;
 
   explicit OddDeepWorld(OddValues& odd) {
     const int level = odd.between_32(kMaxBrickMapLevel + 1, kMaxDeepMapLevel);
     const std::int32_t side = std::int32_t{1} << level;
-    ExactBytes pool(Octree::octree_bytes(3000));
-    Octree octree;
-    REQUIRE(Octree::make(level, pool.bytes(), &octree) == Status::kOk);
+    OwnedPool pool(level, 3000);
+    Octree& octree = pool.octree;
     // Mostly within a few pages at the world's lowest corner, so that the table is small.
     const std::int32_t part = odd.one_in(6) ? side : odd.between_32(4, 40);
     const Vec3i from = odd.one_in(4) ? odd.vector_between(0, side - part) : Vec3i{};
@@ -179,13 +171,10 @@ struct OddDeepWorld {
     if (odd.one_in(3) && !octree.empty()) {
       (void)octree.coarsen_to(1 + octree.nodes_used() / 2);
     }
-    compact_bytes = ExactBytes(thimble::compact_bytes(compact_shape(octree)));
-    REQUIRE(CompactTree::make(octree, compact_bytes.bytes(), &compact) == Status::kOk);
-    ExactBytes room(most_brick_map_bytes(compact));
-    std::size_t size = 0;
-    REQUIRE(BrickMap::make(compact, room.bytes(), nullptr, &size) == Status::kOk);
-    map_bytes = ExactBytes(ConstBytes(room.bytes()).subspan(0, size));
-    REQUIRE(BrickMap::open(map_bytes.bytes(), &map) == Status::kOk);
+    compact_bytes = compact_of(octree);
+    compact = open_or_throw(compact_bytes);
+    map_bytes = map_of(compact);
+    REQUIRE(BrickMap::open(map_bytes.span(), &map) == Status::kOk);
   }
 
   /// A camera by what is solid that looks at it from outside or from within.
@@ -278,7 +267,7 @@ inline Shading odd_shading(OddValues& odd, Span<const Rgb8> palette) {
 }
 
 /// A band of any numbers over `pixels`, which it sizes about as needed.
-inline Band odd_band(OddValues& odd, const Camera& camera, ExactBytes* pixels) {
+inline Band odd_band(OddValues& odd, const Camera& camera, HeapBytes* pixels) {
   Band band;
   band.format = static_cast<PixelFormat>(odd.bits() % 5);
   const bool sane = !odd.one_in(3);
@@ -289,8 +278,8 @@ inline Band odd_band(OddValues& odd, const Camera& camera, ExactBytes* pixels) {
   const std::size_t stride = band.stride_bytes == 0 ? row : band.stride_bytes;
   const std::size_t rows = band.rows > 0 ? static_cast<std::size_t>(band.rows) : 0;
   const std::size_t needed = rows == 0 || stride > 100000 || rows > 10000 ? 64 : stride * (rows - 1) + row;
-  *pixels = ExactBytes(odd_size(odd, needed));
-  band.pixels = pixels->bytes();
+  *pixels = HeapBytes(odd_size(odd, needed));
+  band.pixels = pixels->span();
   return band;
 }
 

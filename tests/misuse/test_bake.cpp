@@ -34,7 +34,7 @@ void open_and_draw(OddValues& odd, ConstBytes bytes) {
     camera = odd_camera(odd, level);
   }
   Shading shading = odd_shading(odd, scene.palette());
-  ExactBytes pixels;
+  HeapBytes pixels;
   const Band band = odd_band(odd, camera, &pixels);
   const TraceOptions options{2000, Width::kAuto};
   (void)render_band(scene.tree(), camera, shading, band, nullptr, options);
@@ -62,9 +62,7 @@ TEST_CASE(
     const CompactTree& tree = deep ? deep->compact : world.compact;
     const int level = tree.level();
     Rgb8 palette[8] = {{1, 2, 3}, {200, 10, 10}};
-    ExactBytes map_bytes(most_brick_map_bytes(tree));
-    std::size_t map_size = 0;
-    (void)BrickMap::make(tree, map_bytes.bytes(), nullptr, &map_size);
+    const HeapBytes map_bytes = map_of(tree);
     const Surface surfaces[] = {{{9, 9, 9}, SurfaceKind::kGlass}, {{200, 200, 0}, SurfaceKind::kMetal}};
     const Light lights[] = {Light{}};
     BakedLighting lighting;
@@ -72,8 +70,8 @@ TEST_CASE(
     lighting.scene.lights = Span<const Light>(lights);
     lighting.scene.has_shadows = odd.one_in(2);
     lighting.effects = odd.one_in(4) ? odd.any<EffectSet>() : effects_of(lighting.scene);
-    ExactBytes lighting_section(lighting_bytes(lighting.scene));
-    (void)BakedLighting::make(lighting, level, lighting_section.bytes());
+    HeapBytes lighting_section(lighting_bytes(lighting.scene));
+    (void)BakedLighting::make(lighting, level, lighting_section.span());
     SceneCamera camera;
     const Ray view = good_ray(odd, level);
     camera.eye = view.origin;
@@ -82,7 +80,7 @@ TEST_CASE(
     camera.span = Q14::from_raw(odd.one_in(4) ? odd.any<std::int32_t>() : 1 << 20);
     camera.fov_degrees = odd.one_in(4) ? Q16::from_raw(odd.any<std::int32_t>()) : camera.fov_degrees;
     camera.direction_bits = odd.one_in(4) ? odd.any<std::uint8_t>() : std::uint8_t{0};
-    ExactBytes name(odd.bits() % 300);
+    HeapBytes name(odd.bits() % 300);
 
     BakedParts parts;
     if (!odd.one_in(12)) {
@@ -91,24 +89,24 @@ TEST_CASE(
     parts.palette = Span<const Rgb8>(palette, odd.bits() % 9);
     parts.camera = odd.one_in(2) ? &camera : nullptr;
     if (odd.one_in(2)) {
-      parts.brick_map = map_bytes.bytes().subspan(0, map_size);
+      parts.brick_map = map_bytes.view();
     }
     if (odd.one_in(2)) {
-      parts.lighting = lighting_section.bytes();
+      parts.lighting = lighting_section.span();
     }
-    parts.name = name.bytes();
+    parts.name = name.span();
     if (odd.one_in(6)) {
-      (odd.one_in(2) ? parts.lighting : parts.brick_map) = name.bytes();
+      (odd.one_in(2) ? parts.lighting : parts.brick_map) = name.span();
     }
-    ExactBytes out(odd_size(odd, baked_bytes(parts) == SIZE_MAX ? 4096 : baked_bytes(parts)));
+    HeapBytes out(odd_size(odd, baked_bytes(parts) == SIZE_MAX ? 4096 : baked_bytes(parts)));
     BakedScene scene;
-    if (BakedScene::make(parts, out.bytes(), odd.one_in(4) ? nullptr : &scene) != Status::kOk) {
+    if (BakedScene::make(parts, out.span(), odd.one_in(4) ? nullptr : &scene) != Status::kOk) {
       return;
     }
-    open_and_draw(odd, out.bytes());
+    open_and_draw(odd, out.span());
     for (int i = 0; i < 6; ++i) {
-      const ExactBytes bad = damaged(odd, out.bytes());
-      open_and_draw(odd, bad.bytes());
+      const HeapBytes bad = damaged(odd, out.span());
+      open_and_draw(odd, bad.span());
     }
   });
 }

@@ -49,16 +49,15 @@ bool all_flips() {
 
 // A floor, a pane of glass, a mirror, a lamp, fog; merged blocks; a lamp and a sun; water in a corner.
 struct FlippedWorld {
-  ExactBytes tree_bytes;
-  ExactBytes map_bytes;
-  ExactBytes lighting;
-  ExactBytes scene;
-  ExactBytes shared;
+  HeapBytes tree_bytes;
+  HeapBytes map_bytes;
+  HeapBytes lighting;
+  HeapBytes scene;
+  HeapBytes shared;
 
   FlippedWorld() {
-    ExactBytes pool(Octree::octree_bytes(2000));
-    Octree octree;
-    REQUIRE(Octree::make(kFlipLevel, pool.bytes(), &octree) == Status::kOk);
+    OwnedPool pool(kFlipLevel);
+    Octree& octree = pool.octree;
     REQUIRE(octree.insert_box({{0, 0, 0}, {8, 8, 1}}, 0) == Status::kOk);
     REQUIRE(octree.insert_box({{4, 4, 2}, {6, 6, 4}}, 1) == Status::kOk);
     REQUIRE(octree.insert_box({{1, 5, 1}, {3, 7, 4}}, 2) == Status::kOk);
@@ -66,22 +65,11 @@ struct FlippedWorld {
     REQUIRE(octree.insert({1, 6, 5}, 3) == Status::kOk);
     REQUIRE(octree.insert({5, 6, 6}, 2) == Status::kOk);
     REQUIRE(octree.coarsen_to(octree.nodes_used() - 3) == Status::kOk);
-    const CompactShape shape = compact_shape(octree);
-    tree_bytes = ExactBytes(compact_bytes(shape));
-    CompactTree tree;
-    REQUIRE(CompactTree::make(octree, tree_bytes.bytes(), &tree) == Status::kOk);
+    tree_bytes = compact_of(octree);
+    const CompactTree tree = open_or_throw(tree_bytes);
     REQUIRE(tree.merged());
-
-    ExactBytes map_room(most_brick_map_bytes(kFlipLevel));
-    std::size_t size = 0;
-    REQUIRE(BrickMap::make(tree, map_room.bytes(), nullptr, &size) == Status::kOk);
-    map_bytes = ExactBytes(ConstBytes(map_room.bytes()).subspan(0, size));
-
-    ExactBytes room(shared_tree_bytes(shape));
-    ExactBytes work(shared_work_bytes(shape.nodes));
-    SharedBuild build;
-    REQUIRE(SharedTree::make(tree, room.bytes(), work.bytes(), nullptr, &build) == Status::kOk);
-    shared = ExactBytes(ConstBytes(room.bytes()).subspan(0, build.bytes));
+    map_bytes = map_of(tree);
+    shared = shared_of(tree);
     bake();
   }
 
@@ -89,7 +77,7 @@ struct FlippedWorld {
   void bake() {
     const std::vector<std::uint8_t> lit = lighting_of_all_effects(kFlipLevel);
     REQUIRE(!lit.empty());
-    lighting = ExactBytes(ConstBytes{lit.data(), lit.size()});
+    lighting = HeapBytes(ConstBytes{lit.data(), lit.size()});
 
     constexpr Rgb8 kPalette[] = {{180, 170, 160}, {200, 240, 230}, {230, 220, 200}, {255, 200, 90}};
     SceneCamera camera;
@@ -98,15 +86,15 @@ struct FlippedWorld {
     camera.fov_degrees = Q16::saturate(50);
     constexpr std::uint8_t kName[] = {'f', 'l', 'i', 'p', 's'};
     BakedParts parts;
-    parts.tree = tree_bytes.bytes();
+    parts.tree = tree_bytes.span();
     parts.palette = Span<const Rgb8>(kPalette);
     parts.camera = &camera;
-    parts.brick_map = map_bytes.bytes();
-    parts.lighting = lighting.bytes();
+    parts.brick_map = map_bytes.span();
+    parts.lighting = lighting.span();
     parts.name = {kName, sizeof kName};
-    scene = ExactBytes(baked_bytes(parts));
-    REQUIRE(BakedScene::make(parts, scene.bytes(), nullptr) == Status::kOk);
-    REQUIRE(BakedScene::validate(scene.bytes()) == nullptr);
+    scene = HeapBytes(baked_bytes(parts));
+    REQUIRE(BakedScene::make(parts, scene.span(), nullptr) == Status::kOk);
+    REQUIRE(BakedScene::validate(scene.view()) == nullptr);
   }
 };
 
@@ -114,14 +102,14 @@ struct FlippedWorld {
 struct SmallPicture {
   Camera camera;
   Shading shading;
-  ExactBytes pixels;
+  HeapBytes pixels;
   Band band;
 
   SmallPicture(const Camera& from, Span<const Rgb8> palette)
       : camera(from), pixels(band_bytes(PixelFormat::kRgb888, from.width_px(), from.height_px())) {
     shading.mode = ShadeMode::kColor;
     shading.palette = palette;
-    band.pixels = pixels.bytes();
+    band.pixels = pixels.span();
     band.rows = camera.height_px();
   }
 };
@@ -131,24 +119,34 @@ bool is_told(Status status) {
          status == Status::kOutOfRange || status == Status::kOutOfMemory || status == Status::kTooFine;
 }
 
-Camera camera_of(const BakedScene& scene, std::int32_t width_px, std::int32_t height_px) {
-  const int level = scene.tree().level();
+constexpr std::int32_t kWidthPx = 9;
+constexpr std::int32_t kHeightPx = 7;
+
+Camera outside(int level) {
+  const Q8 half = Q8::saturate(-(std::int32_t{1} << level) / 2);
   Camera camera;
-  if (scene.has_camera() && set_camera(scene.camera(), width_px, height_px, level, &camera) == Status::kOk) {
-    return camera;
-  }
-  PerspectiveView view;
-  const std::int32_t side = std::int32_t{1} << level;
-  view.eye = {Q8::saturate(-side / 2), Q8::saturate(-side / 2), Q8::saturate(side)};
-  view.forward = {3, 3, -2};
-  view.width_px = width_px;
-  view.height_px = height_px;
-  REQUIRE(camera.set(view, level) == Status::kOk);
+  REQUIRE(camera.set(PerspectiveView{{half, half, Q8::saturate(std::int32_t{1} << level)},
+                                     {3, 3, -2},
+                                     {},
+                                     PerspectiveView{}.fov_degrees,
+                                     kWidthPx,
+                                     kHeightPx,
+                                     0},
+                     level) == Status::kOk);
   return camera;
 }
 
+Camera camera_of(const BakedScene& scene) {
+  const int level = scene.tree().level();
+  Camera camera;
+  if (scene.has_camera() && set_camera(scene.camera(), kWidthPx, kHeightPx, level, &camera) == Status::kOk) {
+    return camera;
+  }
+  return outside(level);
+}
+
 void draw_by_core(const BakedScene& scene) {
-  SmallPicture picture(camera_of(scene, 9, 7), scene.palette());
+  SmallPicture picture(camera_of(scene), scene.palette());
   const CompactTree& tree = scene.tree();
   const auto drawn = [&](Status status) { REQUIRE(is_told(status)); };
   for (const Width width : {Width::k32, Width::k64}) {
@@ -158,33 +156,33 @@ void draw_by_core(const BakedScene& scene) {
   drawn(render_band_32(tree, picture.camera, picture.shading, picture.band));
   picture.shading.mode = ShadeMode::kColor;
 
-  ExactBytes aligned(scene.section(SectionKind::kBrickMap));
+  HeapBytes aligned(scene.section(SectionKind::kBrickMap));
   BrickMap map;
-  if (BrickMap::open(aligned.bytes(), &map) == Status::kOk) {
+  if (BrickMap::open(aligned.span(), &map) == Status::kOk) {
     drawn(render_band(tree, map, picture.camera, picture.shading, picture.band));
     drawn(render_band_32(tree, map, picture.camera, picture.shading, picture.band));
   }
-  ExactBytes table(node_colors_bytes(tree));
+  HeapBytes table(node_colors_bytes(tree));
   NodeColors colors;
   Cutoff cutoff;
-  drawn(NodeColors::make(tree, scene.palette(), {}, table.bytes(), &colors));
+  drawn(NodeColors::make(tree, scene.palette(), {}, table.span(), &colors));
   REQUIRE(cutoff.set(picture.camera, Q16::saturate(2)) == Status::kOk);
   drawn(render_band_cut(tree, picture.camera, picture.shading, cutoff, colors, picture.band));
 
-  ExactBytes memory(
+  HeapBytes memory(
       anytime_bytes(picture.camera.width_px(), picture.camera.height_px(), PixelFormat::kRgb888));
   AnytimeFrame frame;
-  drawn(AnytimeFrame::make(tree, picture.camera, picture.shading, PixelFormat::kRgb888, memory.bytes(),
-                           &frame));
+  drawn(
+      AnytimeFrame::make(tree, picture.camera, picture.shading, PixelFormat::kRgb888, memory.span(), &frame));
   for (int turn = 0; turn < 3 && !frame.done(); ++turn) {
     drawn(frame.refine(tree, 400));
   }
 
   if (tree.node_count() < 1000) {
-    ExactBytes work(shared_work_bytes(tree.node_count()));
-    ExactBytes room(std::size_t{1} << 13);
+    HeapBytes work(shared_work_bytes(tree.node_count()));
+    HeapBytes room(std::size_t{1} << 13);
     SharedTree shared;
-    if (SharedTree::make(tree, room.bytes(), work.bytes(), &shared) == Status::kOk) {
+    if (SharedTree::make(tree, room.span(), work.span(), &shared) == Status::kOk) {
       drawn(render_band(shared, picture.camera, picture.shading, picture.band));
     }
   }
@@ -192,17 +190,17 @@ void draw_by_core(const BakedScene& scene) {
 
 void draw_wide_and_lit(const BakedScene& scene) {
   constexpr std::size_t kMost = std::size_t{1} << 20;  // a damaged level asks for more
-  SmallPicture picture(camera_of(scene, 9, 7), scene.palette());
+  SmallPicture picture(camera_of(scene), scene.palette());
   const CompactTree& tree = scene.tree();
   const std::size_t list_size = wide::VoxelLists::bytes(tree);
   if (list_size <= kMost) {
-    ExactBytes memory(list_size);
-    Arena arena(memory.bytes());
+    HeapBytes memory(list_size);
+    Arena arena(memory.span());
     wide::VoxelLists lists;
     if (wide::VoxelLists::make(tree, &arena, &lists) == Status::kOk) {
-      ExactBytes work(wide::workspace_bytes(picture.camera.width_px(), picture.camera.height_px()));
+      HeapBytes work(wide::workspace_bytes(picture.camera.width_px(), picture.camera.height_px()));
       REQUIRE(
-          is_told(wide::render(lists, picture.camera, picture.shading, picture.band, work.bytes(), nullptr)));
+          is_told(wide::render(lists, picture.camera, picture.shading, picture.band, work.span(), nullptr)));
     }
   }
   BakedLighting lighting;
@@ -214,14 +212,14 @@ void draw_wide_and_lit(const BakedScene& scene) {
                                   picture.band, nullptr, options)));
   wide::RayMap map(tree);
   const std::size_t map_size = wide::RayMap::bytes(tree);
-  ExactBytes memory(std::min(map_size, kMost));
-  Arena arena(memory.bytes());
+  HeapBytes memory(std::min(map_size, kMost));
+  Arena arena(memory.span());
   if (map_size <= kMost) {
     (void)wide::RayMap::make(tree, &arena, &map);
   }
-  ExactBytes work(wide::least_lit_workspace_bytes(lighting.effects, lighting.scene));
+  HeapBytes work(wide::least_lit_workspace_bytes(lighting.effects, lighting.scene));
   REQUIRE(is_told(wide::render_lit(lighting.effects, map, picture.camera, picture.shading, lighting.scene,
-                                   picture.band, work.bytes(), nullptr, nullptr, options)));
+                                   picture.band, work.span(), nullptr, nullptr, options)));
 }
 
 // Calls `use(bytes, is_repaired, number)` with each flip of `sound` that this run takes.
@@ -230,14 +228,14 @@ void flip_each(ConstBytes sound, std::size_t step, void (*repair)(Bytes), const 
   for (std::size_t number = 0; number < 2 * 8 * sound.size; number += all_flips() ? 1 : step) {
     const std::size_t bit = number / 2;
     CAPTURE(bit);
-    ExactBytes flipped(sound);
-    std::uint8_t& byte = flipped.bytes()[bit / 8];
+    HeapBytes flipped(sound);
+    std::uint8_t& byte = flipped.span()[bit / 8];
     byte = static_cast<std::uint8_t>(byte ^ 1U << bit % 8);
     const bool is_repaired = number % 2 == 1;
     if (is_repaired) {
-      repair(flipped.bytes());
+      repair(flipped.span());
     }
-    use(flipped.bytes(), is_repaired, number);
+    use(flipped.span(), is_repaired, number);
   }
 }
 
@@ -272,7 +270,7 @@ void flip_scene(ConstBytes sound) {
 
 TEST_CASE("bit flips: a baked scene with light, water and bricks -> refused, or read and drawn inside it") {
   const FlippedWorld world;
-  flip_scene(world.scene.bytes());
+  flip_scene(world.scene.view());
 }
 
 TEST_CASE("bit flips: a baked scene of level 9 with its bricks -> refused, or read and drawn inside it") {
@@ -283,12 +281,12 @@ TEST_CASE("bit flips: a baked scene of level 9 with its bricks -> refused, or re
 
 TEST_CASE("bit flips: a shared tree -> refused, or traced and drawn inside it") {
   const FlippedWorld world;
-  const ConstBytes sound = world.shared.bytes();
-  ExactBytes work(shared_check_bytes(sound.size));
+  const ConstBytes sound = world.shared.span();
+  HeapBytes work(shared_check_bytes(sound.size));
   const auto repair = [](Bytes bytes) { repair_checksum(bytes); };
   int drawn = 0;
   flip_each(sound, 1, repair, [&](ConstBytes bytes, bool is_repaired, std::size_t) {
-    const char* const fault = SharedTree::validate(bytes, work.bytes());
+    const char* const fault = SharedTree::validate(bytes, work.span());
     if (!is_repaired) {
       REQUIRE(fault != nullptr);
     }
@@ -297,15 +295,7 @@ TEST_CASE("bit flips: a shared tree -> refused, or traced and drawn inside it") 
       REQUIRE(fault != nullptr);
       return;
     }
-    PerspectiveView view;
-    const std::int32_t side = std::int32_t{1} << tree.level();
-    view.eye = {Q8::saturate(-side / 2), Q8::saturate(-side / 2), Q8::saturate(side)};
-    view.forward = {3, 3, -2};
-    view.width_px = 9;
-    view.height_px = 7;
-    Camera camera;
-    REQUIRE(camera.set(view, tree.level()) == Status::kOk);
-    SmallPicture picture(camera, {});
+    SmallPicture picture(outside(tree.level()), {});
     for (const Width width : {Width::k32, Width::k64}) {
       RenderCounts counts;
       REQUIRE(is_told(
@@ -334,7 +324,7 @@ TEST_CASE("bit flips: thimble info -> a description, or a sentence and status 1"
     described += result.status == 0 ? 1 : 0;
     refused += result.status == 1 ? 1 : 0;
   };
-  flip_each(world.scene.bytes(), kFewCommands, repair_baked_checksums, describe);
+  flip_each(world.scene.view(), kFewCommands, repair_baked_checksums, describe);
   flip_each({deep.data(), deep.size()}, kFewCommands, repair_baked_checksums, describe);
   CHECK(described > 0);
   CHECK(refused > 0);

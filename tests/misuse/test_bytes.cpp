@@ -25,13 +25,13 @@ constexpr std::size_t kMost = std::size_t{1} << 20;
 // More than a mebibyte is not tried.
 template <class Make>
 void hold_to(std::size_t needed, const Make& make) {
-  ExactBytes room(std::min(needed, kMost));
-  const Status status = make(room.bytes());
+  HeapBytes room(std::min(needed, kMost));
+  const Status status = make(room.span());
   REQUIRE((status == Status::kOutOfRange) == (needed == 0));
   if (needed != 0) {
     REQUIRE((status == Status::kOk) == (needed <= kMost));
-    ExactBytes less(std::min(needed, kMost) - 1);
-    REQUIRE(make(less.bytes()) == Status::kOutOfMemory);
+    HeapBytes less(std::min(needed, kMost) - 1);
+    REQUIRE(make(less.span()) == Status::kOutOfMemory);
   }
 }
 
@@ -67,8 +67,8 @@ TEST_CASE(
     const std::int32_t width = number(1, 300);
     if (width != 0) {  // a row of no pixels takes no bytes
       hold_to(samples_bytes(width, across), [across, width](Bytes bytes) {
-        ExactBytes row(row_bytes(PixelFormat::kRgb888, kMaxPicturePx));
-        return average_samples(bytes, across, width, 0, PixelFormat::kRgb888, row.bytes());
+        HeapBytes row(row_bytes(PixelFormat::kRgb888, kMaxPicturePx));
+        return average_samples(bytes, across, width, 0, PixelFormat::kRgb888, row.span());
       });
     }
   });
@@ -77,13 +77,10 @@ TEST_CASE(
 TEST_CASE(
     "bytes: worlds that are edited, with any room -> 0 exactly where make refuses it, else just enough") {
   misuse(61, 400, [](OddValues& odd) {
-    ExactBytes pool(Octree::octree_bytes(64));
-    Octree octree;
-    REQUIRE(Octree::make(odd.between_32(kMinLevel, kMaxLevel), pool.bytes(), &octree) == Status::kOk);
-    REQUIRE(octree.insert({1, 1, 1}, 3) == Status::kOk);
-    ExactBytes packed(512);
-    CompactTree tree;
-    REQUIRE(CompactTree::make(octree, packed.bytes(), &tree) == Status::kOk);
+    OwnedPool pool(odd.between_32(kMinLevel, kMaxLevel), 64);
+    REQUIRE(pool.octree.insert({1, 1, 1}, 3) == Status::kOk);
+    const HeapBytes packed = compact_of(pool.octree);
+    const CompactTree tree = open_or_throw(packed);
     const auto most = [&odd](std::uint32_t sound) {
       return odd.one_in(4) ? odd.any<std::uint32_t>() : static_cast<std::uint32_t>(odd.between(12, sound));
     };

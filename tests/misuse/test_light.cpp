@@ -54,7 +54,7 @@ Light odd_light(OddValues& odd, int level) {
 struct OddScene {
   Surface surfaces[6];
   Light lights[4];
-  ExactBytes water_bytes_;
+  HeapBytes water_bytes_;
   Water water;
   LitScene scene;
 
@@ -81,8 +81,8 @@ struct OddScene {
     const std::int32_t side = std::int32_t{1} << level;
     if (odd.one_in(2)) {
       const WaterConfig config{side, side, 256 * (side / 2), 0, 256 * side, 28, 24, {}};
-      water_bytes_ = ExactBytes(thimble::water_bytes(side, side));
-      REQUIRE(Water::make(config, water_bytes_.bytes(), &water) == Status::kOk);
+      water_bytes_ = HeapBytes(thimble::water_bytes(side, side));
+      REQUIRE(Water::make(config, water_bytes_.span(), &water) == Status::kOk);
       (void)water.touch(128 * side, 128 * side, 512, 300);
       water.step();
       scene.has_water = true;
@@ -134,15 +134,15 @@ TEST_CASE("misuse: water of any numbers -> refused or done, its volume kept, its
     config.wave_speed_q6 = sane ? odd.between_32(kMinWaveSpeedQ6, kMaxWaveSpeedQ6) : odd.any<std::int32_t>();
     config.damping_q12 = sane ? odd.between_32(0, 2048) : odd.any<std::int32_t>();
     const std::size_t columns = sane ? static_cast<std::size_t>(config.width * config.depth) : 64;
-    ExactBytes blocked(odd.one_in(2) ? 0 : odd_size(odd, (columns + 7) / 8));
-    for (std::uint8_t& byte : blocked.bytes()) {
+    HeapBytes blocked(odd.one_in(2) ? 0 : odd_size(odd, (columns + 7) / 8));
+    for (std::uint8_t& byte : blocked.span()) {
       byte = odd.one_in(3) ? odd.any<std::uint8_t>() : std::uint8_t{0};
     }
-    config.blocked = blocked.bytes();
-    ExactBytes bytes(odd_size(odd, water_bytes(config.width, config.depth)));
+    config.blocked = blocked.span();
+    HeapBytes bytes(odd_size(odd, water_bytes(config.width, config.depth)));
     Water water;
     water.step();
-    if (Water::make(config, bytes.bytes(), &water) != Status::kOk) {
+    if (Water::make(config, bytes.span(), &water) != Status::kOk) {
       CHECK(water.width() == 0);
       return;
     }
@@ -184,7 +184,7 @@ TEST_CASE("misuse: lit bands of any scene, set and band over sound and damaged t
     const OddScene lit(odd, level);
     const Camera camera = odd_camera(odd, level);
     const Shading shading = odd_shading(odd, Span<const Rgb8>(palette));
-    ExactBytes pixels;
+    HeapBytes pixels;
     const Band band = odd_band(odd, camera, &pixels);
     LitCounts counts;
     const LitOptions options{odd.one_in(2) ? UINT32_MAX : odd.any<std::uint32_t>(), odd.one_in(2)};
@@ -200,18 +200,18 @@ TEST_CASE("misuse: light by maps, up to level 8 and beyond -> refused, or drawn 
     const bool is_deep = odd.one_in(2);
     OddWorld small(odd, odd.between_32(kMinBrickMapLevel, 5));
     const OddDeepWorld deep(odd);
-    ExactBytes room(most_brick_map_bytes(small.compact));
+    HeapBytes room(most_brick_map_bytes(small.compact));
     BrickMap small_map;
-    REQUIRE(BrickMap::make(small.compact, room.bytes(), &small_map) == Status::kOk);
+    REQUIRE(BrickMap::make(small.compact, room.span(), &small_map) == Status::kOk);
     const CompactTree& tree = is_deep ? deep.compact : small.compact;
     const BrickMap& map = odd.one_in(8) ? BrickMap() : is_deep ? deep.map : small_map;
     const OddScene lit(odd, std::min(tree.level(), 6));
-    ExactBytes bits(odd_size(odd, SunBricks::bytes(map)));
+    HeapBytes bits(odd_size(odd, SunBricks::bytes(map)));
     SunBricks sun;
     const Vec3i towards = odd.one_in(8) ? Vec3i{} : some_vector(odd, kMaxLightComponent);
-    const Status status = SunBricks::make(map, towards, bits.bytes(), &sun);
+    const Status status = SunBricks::make(map, towards, bits.span(), &sun);
     CHECK((status == Status::kOutOfMemory) ==
-          (bits.bytes().size < SunBricks::bytes(map) && towards != Vec3i{}));
+          (bits.span().size < SunBricks::bytes(map) && towards != Vec3i{}));
     if (status == Status::kOk) {
       (void)sun.prove(odd.any<std::uint32_t>());
       EditedWorld world;  // another one, or none
@@ -219,7 +219,7 @@ TEST_CASE("misuse: light by maps, up to level 8 and beyond -> refused, or drawn 
     }
     const Camera camera = is_deep && odd.one_in(2) ? deep.near(odd) : odd_camera(odd, tree.level());
     const Shading shading = odd_shading(odd, Span<const Rgb8>(palette));
-    ExactBytes pixels;
+    HeapBytes pixels;
     const Band band = odd_band(odd, camera, &pixels);
     LitCounts counts;
     const LitOptions options{odd.one_in(2) ? UINT32_MAX : odd.any<std::uint32_t>(), odd.one_in(2)};
@@ -236,13 +236,13 @@ TEST_CASE("misuse: damaged lighting sections -> refused, or numbers within their
     BakedLighting lighting;
     lighting.scene = lit.scene;
     lighting.effects = effects_of(lit.scene);
-    ExactBytes bytes(odd_size(odd, lighting_bytes(lit.scene)));
-    (void)BakedLighting::make(lighting, level, bytes.bytes());
-    const ExactBytes bad = damaged(odd, bytes.bytes());
+    HeapBytes bytes(odd_size(odd, lighting_bytes(lit.scene)));
+    (void)BakedLighting::make(lighting, level, bytes.span());
+    const HeapBytes bad = damaged(odd, bytes.span());
     std::uint32_t place = 0;
-    const char* const wrong = BakedLighting::validate(bad.bytes(), level, odd.one_in(2) ? &place : nullptr);
+    const char* const wrong = BakedLighting::validate(bad.span(), level, odd.one_in(2) ? &place : nullptr);
     BakedLighting opened;
-    const Status status = BakedLighting::open(bad.bytes(), level, &opened);
+    const Status status = BakedLighting::open(bad.span(), level, &opened);
     if (wrong == nullptr && status == Status::kOk) {
       CHECK(opened.scene.lights.size <= kMaxLights);
       CHECK(opened.scene.bounces <= kMaxBounces);

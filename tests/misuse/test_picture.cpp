@@ -24,22 +24,22 @@ const Span<const Rgb8> kColors(kPalette);
 // Draws by `draw`; what is refused leaves the pixels alone.
 template <class Draw>
 void draw_band(OddValues& odd, const Camera& camera, Draw draw) {
-  ExactBytes pixels;
+  HeapBytes pixels;
   const Band band = odd_band(odd, camera, &pixels);
   const std::uint8_t filled = odd.any<std::uint8_t>();
-  std::fill(pixels.bytes().begin(), pixels.bytes().end(), filled);
+  std::fill(pixels.span().begin(), pixels.span().end(), filled);
   if (draw(band) != Status::kOk) {
-    CHECK(std::all_of(pixels.bytes().begin(), pixels.bytes().end(),
+    CHECK(std::all_of(pixels.span().begin(), pixels.span().end(),
                       [&](std::uint8_t byte) { return byte == filled; }));
   }
 }
 
 void refine(OddValues& odd, const CompactTree& tree, const Camera& camera, const Shading& shading) {
   const auto format = static_cast<PixelFormat>(odd.bits() % 5);
-  ExactBytes memory(odd_size(odd, anytime_bytes(camera.width_px(), camera.height_px(), format)));
+  HeapBytes memory(odd_size(odd, anytime_bytes(camera.width_px(), camera.height_px(), format)));
   AnytimeFrame frame;
   (void)frame.refine(tree, odd.any<std::uint32_t>());
-  if (AnytimeFrame::make(tree, camera, shading, format, memory.bytes(), &frame) == Status::kOk) {
+  if (AnytimeFrame::make(tree, camera, shading, format, memory.span(), &frame) == Status::kOk) {
     for (int i = 0; i < 4; ++i) {
       (void)frame.refine(tree, odd.one_in(2) ? odd.any<std::uint32_t>() : 500,
                          static_cast<Width>(odd.bits() % 3));
@@ -57,9 +57,9 @@ TEST_CASE(
   misuse(20, 350, [](OddValues& odd) {
     const int level = odd.between_32(kMinLevel, 6);
     OddWorld world(odd, level);
-    ExactBytes map_bytes(most_brick_map_bytes(std::max(level, kMinBrickMapLevel)));
+    HeapBytes map_bytes(most_brick_map_bytes(std::max(level, kMinBrickMapLevel)));
     BrickMap map;
-    (void)BrickMap::make(world.compact, map_bytes.bytes(), &map);
+    (void)BrickMap::make(world.compact, map_bytes.span(), &map);
     if (odd.one_in(2)) {
       world.damage(odd);
     }
@@ -95,9 +95,9 @@ TEST_CASE(
       (void)cutoff.set(camera, odd.one_in(2) ? Q16::from_raw(odd.any<std::int32_t>())
                                              : Q16::from_raw(odd.between_32(0, kMaxCutoff.raw)));
       (void)cutoff.set_level(odd.one_in(2) ? odd.any<std::int32_t>() : odd.between_32(0, kMaxLevel));
-      ExactBytes color_bytes(odd_size(odd, node_colors_bytes(world.compact)));
+      HeapBytes color_bytes(odd_size(odd, node_colors_bytes(world.compact)));
       NodeColors colors;
-      (void)NodeColors::make(world.compact, kColors, {9, 9, 9}, color_bytes.bytes(), &colors);
+      (void)NodeColors::make(world.compact, kColors, {9, 9, 9}, color_bytes.span(), &colors);
       draw_band(odd, camera, [&](const Band& band) {
         return render_band_cut(world.compact, camera, shading, cutoff, colors, band, counted, options);
       });
@@ -113,20 +113,15 @@ TEST_CASE("misuse: any map under a tree -> refused, or drawn within the band") {
   misuse(21, 400, [](OddValues& odd) {
     const int level = odd.between_32(kMinBrickMapLevel, 6);
     OddWorld world(odd, level);
-    ExactBytes map_bytes(most_brick_map_bytes(level));
-    BrickMap map;
-    std::size_t size = 0;
-    if (BrickMap::make(world.compact, map_bytes.bytes(), &map, &size) != Status::kOk) {
-      return;
-    }
+    const HeapBytes bad = map_of(world.compact);
+    const std::size_t size = bad.view().size;
     // Behind the checksum of its tree everything may be wrong.
-    ExactBytes bad(ConstBytes(map_bytes.bytes()).subspan(0, size));
     for (int i = 0; i < 8; ++i) {
-      bad.bytes()[odd.one_in(2) && size > 32 ? 32 + odd.bits() % (size - 32) : odd.bits() % size] =
+      bad.span()[odd.one_in(2) && size > 32 ? 32 + odd.bits() % (size - 32) : odd.bits() % size] =
           odd.any<std::uint8_t>();
     }
     BrickMap opened;
-    if (BrickMap::open(bad.bytes(), &opened) != Status::kOk) {
+    if (BrickMap::open(bad.span(), &opened) != Status::kOk) {
       return;
     }
     for (int i = 0; i < 4; ++i) {
@@ -149,11 +144,11 @@ TEST_CASE(
     RenderCounts* const counted = odd.one_in(2) ? &counts : nullptr;
     draw_band(odd, camera, [&](const Band& band) {
       const Status status = render_band(world.compact, world.map, camera, shading, band, counted);
-      ExactBytes own(ConstBytes(band.pixels));
+      HeapBytes own(ConstBytes(band.pixels));
       Band same = band;
-      same.pixels = own.bytes();
+      same.pixels = own.span();
       CHECK(render_band(world.compact, camera, shading, same) == status);
-      CHECK(std::equal(own.bytes().begin(), own.bytes().end(), band.pixels.begin()));
+      CHECK(std::equal(own.span().begin(), own.span().end(), band.pixels.begin()));
       return status;
     });
     draw_band(odd, camera, [&](const Band& band) {
@@ -168,15 +163,15 @@ TEST_CASE(
       });
     };
     // All but its tree's checksum may be wrong.
-    ExactBytes bad(world.map_bytes.bytes());
-    damage_deep_map(odd, bad.bytes());
+    HeapBytes bad(world.map_bytes.span());
+    damage_deep_map(odd, bad.span());
     BrickMap map;
-    if (BrickMap::open(bad.bytes(), &map) == Status::kOk) {
+    if (BrickMap::open(bad.span(), &map) == Status::kOk) {
       draw(map);
       for (int i = 0; i < 4; ++i) {
         const Camera view = world.near(odd);
-        ExactBytes pixels(band_bytes(PixelFormat::kGray8, view.width_px(), view.height_px()));
-        const Band band{pixels.bytes(), PixelFormat::kGray8, 0, 0, view.height_px()};
+        HeapBytes pixels(band_bytes(PixelFormat::kGray8, view.width_px(), view.height_px()));
+        const Band band{pixels.span(), PixelFormat::kGray8, 0, 0, view.height_px()};
         CHECK((view.width_px() == 0 || render_band(world.compact, map, view, shading, band) ==
                                            (map.belongs_to(world.compact) ? Status::kOk : Status::kDamaged)));
       }
@@ -187,9 +182,9 @@ TEST_CASE(
     const OddDeepWorld other(odd);
     draw(other.map);
     for (int i = 0; i < 6; ++i) {
-      const std::size_t size = world.compact_bytes.bytes().size;
+      const std::size_t size = world.compact_bytes.span().size;
       if (size > kCompactHeaderBytes) {
-        world.compact_bytes.bytes()[kCompactHeaderBytes + odd.bits() % (size - kCompactHeaderBytes)] =
+        world.compact_bytes.span()[kCompactHeaderBytes + odd.bits() % (size - kCompactHeaderBytes)] =
             odd.any<std::uint8_t>();
       }
     }
@@ -204,19 +199,19 @@ TEST_CASE("misuse: samples, colours and pixels of any numbers -> refused, or wit
     const std::int32_t width = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 70);
     const auto format = static_cast<PixelFormat>(odd.bits() % 5);
     const bool small = across >= 0 && across <= 16 && width >= 0 && width <= 1000;
-    ExactBytes fine(odd_size(odd, small ? samples_bytes(width, across) : 64));
-    ExactBytes row(odd_size(odd, small ? row_bytes(format, width) : 64));
-    (void)average_samples(fine.bytes(), across, width, odd.any<std::int32_t>(), format, row.bytes());
+    HeapBytes fine(odd_size(odd, small ? samples_bytes(width, across) : 64));
+    HeapBytes row(odd_size(odd, small ? row_bytes(format, width) : 64));
+    (void)average_samples(fine.span(), across, width, odd.any<std::int32_t>(), format, row.span());
 
     const int channels = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 5);
     const std::size_t line =
         small && channels > 0 && channels < 5 ? static_cast<std::size_t>(width * channels) : 8;
-    ExactBytes above(odd.one_in(3) ? 0 : odd_size(odd, line));
-    ExactBytes below(odd.one_in(3) ? 0 : odd_size(odd, line));
-    ExactBytes middle(odd_size(odd, line));
-    ExactBytes strengths(odd_size(odd, small ? static_cast<std::size_t>(width) : 8));
-    (void)edge_strengths(above.bytes(), middle.bytes(), below.bytes(), channels, width, strengths.bytes());
-    (void)place_edge_samples(strengths.bytes(), width, strengths.bytes());
+    HeapBytes above(odd.one_in(3) ? 0 : odd_size(odd, line));
+    HeapBytes below(odd.one_in(3) ? 0 : odd_size(odd, line));
+    HeapBytes middle(odd_size(odd, line));
+    HeapBytes strengths(odd_size(odd, small ? static_cast<std::size_t>(width) : 8));
+    (void)edge_strengths(above.span(), middle.span(), below.span(), channels, width, strengths.span());
+    (void)place_edge_samples(strengths.span(), width, strengths.span());
 
     Hit hit;
     hit.kind = static_cast<HitKind>(odd.bits() % 3);

@@ -138,9 +138,9 @@ TEST_CASE("misuse: bit fields of any size -> refused or done, inside their bytes
   misuse(40, 1200, [](OddValues& odd) {
     const std::int32_t width = odd.one_in(4) ? odd.any<std::int32_t>() : odd.between_32(0, 130);
     const std::int32_t height = odd.one_in(4) ? odd.any<std::int32_t>() : odd.between_32(0, 130);
-    ExactBytes bytes(odd_size(odd, bitfield_bytes(width, height)));
+    HeapBytes bytes(odd_size(odd, bitfield_bytes(width, height)));
     BitField field;
-    const Status status = BitField::make(width, height, bytes.bytes(), &field);
+    const Status status = BitField::make(width, height, bytes.span(), &field);
     CHECK((status == Status::kOutOfRange) ==
           (width < 0 || height < 0 || width > kMaxFieldSide || height > kMaxFieldSide));
     for (int i = 0; i < 20; ++i) {
@@ -156,9 +156,9 @@ TEST_CASE("misuse: particle worlds of any numbers -> refused or done, inside the
       return sane || odd.one_in(2) ? odd.between_32(low, high) : odd.any<std::int32_t>();
     };
     const ParticleConfig config = particles_of(odd, number);
-    ExactBytes bytes(odd_size(odd, particles_bytes(config)));
+    HeapBytes bytes(odd_size(odd, particles_bytes(config)));
     ParticleWorld world;
-    const Status status = ParticleWorld::make(config, bytes.bytes(), &world);
+    const Status status = ParticleWorld::make(config, bytes.span(), &world);
     if (status != Status::kOk) {
       CHECK(world.id_limit() == 0);
     }

@@ -140,11 +140,11 @@ void change(OddValues& odd, Octree& octree) {
 TEST_CASE("misuse: dense grid -> refused or done, inside its bytes") {
   misuse(1, 4000, [](OddValues& odd) {
     const Vec3i size = odd.one_in(3) ? odd.any_vector() : odd.vector_between(-1, 40);
-    ExactBytes bytes(odd_size(odd, dense_grid_bytes(size)));
+    HeapBytes bytes(odd_size(odd, dense_grid_bytes(size)));
     DenseGrid grid;
-    const Status status = DenseGrid::make(size, bytes.bytes(), &grid);
+    const Status status = DenseGrid::make(size, bytes.span(), &grid);
     CHECK((status == Status::kOk) ==
-          (dense_grid_bytes(size) != 0 && bytes.bytes().size >= dense_grid_bytes(size)));
+          (dense_grid_bytes(size) != 0 && bytes.span().size >= dense_grid_bytes(size)));
     for (int i = 0; i < 8; ++i) {
       const Vec3i at = odd.one_in(2) ? odd.any_vector() : odd.vector_between(-1, 40);
       const Status set = grid.set(at, odd.one_in(2));
@@ -158,9 +158,9 @@ TEST_CASE("misuse: octree -> refused or done, inside its pool, and its compact t
   misuse(2, 1500, [](OddValues& odd) {
     const int level = odd.one_in(4) ? odd.any<std::int32_t>() : odd.between_32(kMinLevel, kMaxLevel);
     const std::size_t nodes = odd.one_in(4) ? 0 : odd.bits() % 400;
-    ExactBytes pool(odd_size(odd, Octree::octree_bytes(nodes)));
+    HeapBytes pool(odd_size(odd, Octree::octree_bytes(nodes)));
     Octree octree;
-    const Status status = Octree::make(level, pool.bytes(), &octree);
+    const Status status = Octree::make(level, pool.span(), &octree);
     CHECK((status == Status::kOk) == (level >= kMinLevel && level <= kMaxLevel));
     for (int i = 0; i < 60; ++i) {
       change(odd, octree);
@@ -174,17 +174,17 @@ TEST_CASE("misuse: octree -> refused or done, inside its pool, and its compact t
     }
     const int shift = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(kMinRankShift, kMaxRankShift);
     std::size_t size = 0;
-    ExactBytes none;
+    HeapBytes none;
     CompactTree tree;
-    if (CompactTree::make(octree, none.bytes(), nullptr, &size, shift) == Status::kOutOfRange) {
+    if (CompactTree::make(octree, none.span(), nullptr, &size, shift) == Status::kOutOfRange) {
       CHECK((shift < kMinRankShift || shift > kMaxRankShift));
       return;
     }
-    ExactBytes out(odd_size(odd, size));
-    const Status made = CompactTree::make(octree, out.bytes(), &tree, &size, shift);
-    CHECK((made == Status::kOk) == (out.bytes().size >= size));
+    HeapBytes out(odd_size(odd, size));
+    const Status made = CompactTree::make(octree, out.span(), &tree, &size, shift);
+    CHECK((made == Status::kOk) == (out.span().size >= size));
     if (made == Status::kOk) {
-      CHECK(CompactTree::validate(out.bytes()) == nullptr);
+      CHECK(CompactTree::validate(out.span()) == nullptr);
       CHECK(tree.voxel_count() == octree.voxels());
       ask_nodes(odd, tree);
     }
@@ -193,14 +193,14 @@ TEST_CASE("misuse: octree -> refused or done, inside its pool, and its compact t
 
 TEST_CASE("misuse: a pool that something else wrote over -> no read or write outside it") {
   misuse(3, 600, [](OddValues& odd) {
-    ExactBytes pool(Octree::octree_bytes(1 + odd.bits() % 200));
+    HeapBytes pool(Octree::octree_bytes(1 + odd.bits() % 200));
     Octree octree;
-    REQUIRE(Octree::make(odd.between_32(kMinLevel, 6), pool.bytes(), &octree) == Status::kOk);
+    REQUIRE(Octree::make(odd.between_32(kMinLevel, 6), pool.span(), &octree) == Status::kOk);
     for (int i = 0; i < 40; ++i) {
       change(odd, octree);
     }
     for (int i = 0; i < 8; ++i) {
-      pool.bytes()[odd.bits() % pool.bytes().size] = odd.any<std::uint8_t>();
+      pool.span()[odd.bits() % pool.span().size] = odd.any<std::uint8_t>();
     }
     // Reading alone is promised to stay inside (law 4 is about what is baked; a pool belongs to its program).
     for (int i = 0; i < 50; ++i) {
@@ -221,18 +221,18 @@ TEST_CASE("misuse: keys and parts to compact trees -> refused or done, inside th
     CHECK(std::is_sorted(keys.begin(), keys.end()));
     keys.resize(unique_keys(Span<std::uint32_t>(keys.data(), keys.size())));
     std::size_t size = 0;
-    ExactBytes none;
+    HeapBytes none;
     const int shift = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(kMinRankShift, kMaxRankShift);
     const Span<const std::uint32_t> span(keys.data(), keys.size());
-    if (CompactTree::make(span, level, odd.any<std::uint8_t>(), none.bytes(), nullptr, &size, shift) !=
+    if (CompactTree::make(span, level, odd.any<std::uint8_t>(), none.span(), nullptr, &size, shift) !=
         Status::kOutOfMemory) {
       return;
     }
-    ExactBytes out(odd_size(odd, size));
+    HeapBytes out(odd_size(odd, size));
     CompactTree tree;
     const Status made =
-        CompactTree::make(span, level, odd.any<std::uint8_t>(), out.bytes(), &tree, &size, shift);
-    CHECK((made == Status::kOk) == (out.bytes().size >= size));
+        CompactTree::make(span, level, odd.any<std::uint8_t>(), out.span(), &tree, &size, shift);
+    CHECK((made == Status::kOk) == (out.span().size >= size));
     if (made != Status::kOk) {
       return;
     }
@@ -241,78 +241,66 @@ TEST_CASE("misuse: keys and parts to compact trees -> refused or done, inside th
     if (!parts.empty() && odd.one_in(3)) {
       parts[odd.bits() % parts.size()] = CompactTree();
     }
-    ExactBytes joined(odd_size(odd, size * parts.size() + 4096));
+    HeapBytes joined(odd_size(odd, size * parts.size() + 4096));
     CompactTree whole;
-    if (CompactTree::make(Span<const CompactTree>(parts.data(), parts.size()), joined.bytes(), &whole,
+    if (CompactTree::make(Span<const CompactTree>(parts.data(), parts.size()), joined.span(), &whole,
                           &size) == Status::kOk) {
-      CHECK(CompactTree::validate(joined.bytes()) == nullptr);
+      CHECK(CompactTree::validate(joined.span()) == nullptr);
     }
   });
 }
 
 TEST_CASE("misuse: damaged compact, shared and brick bytes -> opened or refused, never read beyond") {
-  ExactBytes pool(Octree::octree_bytes(4000));
-  Octree octree;
-  REQUIRE(Octree::make(5, pool.bytes(), &octree) == Status::kOk);
+  OwnedPool pool(5);
+  Octree& octree = pool.octree;
   OddValues odd_scene(5);
   for (int i = 0; i < 300; ++i) {
     REQUIRE(octree.insert(odd_scene.vector_between(0, 31), static_cast<std::uint8_t>(i % 3)) == Status::kOk);
   }
   REQUIRE(octree.insert_block({16, 0, 8}, 3, 2) == Status::kOk);
-  std::size_t size = 0;
-  ExactBytes none;
-  REQUIRE(CompactTree::make(octree, none.bytes(), nullptr, &size) == Status::kOutOfMemory);
-  ExactBytes compact(size);
-  CompactTree tree;
-  REQUIRE(CompactTree::make(octree, compact.bytes(), &tree) == Status::kOk);
+  const HeapBytes compact = compact_of(octree);
+  const CompactTree tree = open_or_throw(compact);
   const CompactShape shape = compact_shape(octree);
-  ExactBytes shared_bytes(shared_tree_bytes(shape));
-  ExactBytes work(shared_work_bytes(shape.nodes));
-  SharedTree shared;
-  SharedBuild build;
-  REQUIRE(SharedTree::make(tree, shared_bytes.bytes(), work.bytes(), &shared, &build) == Status::kOk);
-  ExactBytes map_bytes(most_brick_map_bytes(5));
-  BrickMap map;
-  std::size_t map_size = 0;
-  REQUIRE(BrickMap::make(tree, map_bytes.bytes(), &map, &map_size) == Status::kOk);
+  const HeapBytes shared_bytes = shared_of(tree);
+  const HeapBytes map_bytes = map_of(tree);
 
   misuse(6, 4000, [&](OddValues& odd) {
-    const ExactBytes bad = damaged(odd, compact.bytes().subspan(0, size));
+    const HeapBytes bad = damaged(odd, compact.view());
     std::uint32_t place = 0;
-    (void)CompactTree::validate(bad.bytes(), odd.one_in(2) ? &place : nullptr);
+    (void)CompactTree::validate(bad.span(), odd.one_in(2) ? &place : nullptr);
     CompactTree opened;
-    if (CompactTree::open(bad.bytes(), &opened) == Status::kOk) {
+    if (CompactTree::open(bad.span(), &opened) == Status::kOk) {
       ask_nodes(odd, opened);
       // Whatever is made of it stays inside its bytes too.
-      ExactBytes out(odd_size(odd, shared_tree_bytes(shape)));
-      ExactBytes scratch(odd_size(odd, shared_work_bytes(opened.node_count())));
+      HeapBytes out(odd_size(odd, shared_tree_bytes(shape)));
+      HeapBytes scratch(odd_size(odd, shared_work_bytes(opened.node_count())));
       SharedTree second;
-      if (SharedTree::make(opened, out.bytes(), scratch.bytes(), &second) == Status::kOk) {
+      if (SharedTree::make(opened, out.span(), scratch.span(), &second) == Status::kOk) {
         ask_nodes(odd, second);
       }
-      ExactBytes bricks(
+      HeapBytes bricks(
           odd_size(odd, opened.level() <= kMaxBrickMapLevel && opened.level() >= kMinBrickMapLevel
                             ? most_brick_map_bytes(opened.level())
                             : 64));
       BrickMap made;
-      if (BrickMap::make(opened, bricks.bytes(), &made) == Status::kOk) {
+      if (BrickMap::make(opened, bricks.span(), &made) == Status::kOk) {
         CHECK(made.belongs_to(opened));
       }
     }
-    const ExactBytes bad_shared = damaged(odd, shared_bytes.bytes().subspan(0, build.bytes));
-    ExactBytes check(odd_size(odd, shared_check_bytes(bad_shared.bytes().size)));
-    (void)SharedTree::validate(bad_shared.bytes(), check.bytes(), odd.one_in(2) ? &place : nullptr);
+    const HeapBytes bad_shared = damaged(odd, shared_bytes.view());
+    HeapBytes check(odd_size(odd, shared_check_bytes(bad_shared.span().size)));
+    (void)SharedTree::validate(bad_shared.span(), check.span(), odd.one_in(2) ? &place : nullptr);
     SharedTree opened_shared;
-    if (SharedTree::open(bad_shared.bytes(), &opened_shared) == Status::kOk) {
+    if (SharedTree::open(bad_shared.span(), &opened_shared) == Status::kOk) {
       ask_nodes(odd, opened_shared);
     }
-    const ExactBytes bad_map = damaged(odd, map_bytes.bytes().subspan(0, map_size));
-    (void)BrickMap::validate(bad_map.bytes());
+    const HeapBytes bad_map = damaged(odd, map_bytes.view());
+    (void)BrickMap::validate(bad_map.span());
     BrickMap opened_map;
-    if (BrickMap::open(bad_map.bytes(), &opened_map) == Status::kOk) {
+    if (BrickMap::open(bad_map.span(), &opened_map) == Status::kOk) {
       ask_map(odd, opened_map, tree);
     }
-    (void)crc32(bad.bytes(), odd.any<std::uint32_t>());
+    (void)crc32(bad.span(), odd.any<std::uint32_t>());
     (void)morton_voxel(odd.any<std::uint64_t>());
     (void)morton_code(odd.any<std::uint32_t>(), odd.any<std::uint32_t>(), odd.any<std::uint32_t>());
   });
@@ -328,18 +316,18 @@ void edit_at_random(OddValues& odd, const CompactTree& tree) {
   if (wanted > std::size_t{1} << 24) {
     return;
   }
-  ExactBytes bytes(odd.one_in(8) ? odd_size(odd, wanted) : wanted);
+  HeapBytes bytes(odd.one_in(8) ? odd_size(odd, wanted) : wanted);
   EditedWorld world;
-  if (EditedWorld::make(tree, room, bytes.bytes(), &world) != Status::kOk) {
+  if (EditedWorld::make(tree, room, bytes.span(), &world) != Status::kOk) {
     CHECK(world.empty());
     return;
   }
   const Vec3i towards{odd.between_32(-9, 9), odd.between_32(-9, 9), odd.between_32(1, 9)};
-  ExactBytes bits(SunBricks::bytes(world.map()));
+  HeapBytes bits(SunBricks::bytes(world.map()));
   SunBricks sun;
-  (void)SunBricks::make(world.map(), towards, bits.bytes(), &sun);
-  ExactBytes entries(odd.bits() % 3000);
-  EditJournal journal(entries.bytes());
+  (void)SunBricks::make(world.map(), towards, bits.span(), &sun);
+  HeapBytes entries(odd.bits() % 3000);
+  EditJournal journal(entries.span());
   const auto number = [&] {
     return odd.one_in(9) ? odd.any<std::int32_t>() : odd.between_32(0, (1 << tree.level()) - 1);
   };
@@ -368,17 +356,17 @@ void edit_at_random(OddValues& odd, const CompactTree& tree) {
   while (sun.follow(world, 5000)) {
   }
   if (sun.belongs_to(world.map(), towards)) {
-    ExactBytes fresh_bits(bits.bytes().size);
+    HeapBytes fresh_bits(bits.span().size);
     SunBricks fresh;
-    REQUIRE(SunBricks::make(world.map(), towards, fresh_bits.bytes(), &fresh) == Status::kOk);
+    REQUIRE(SunBricks::make(world.map(), towards, fresh_bits.span(), &fresh) == Status::kOk);
     (void)fresh.prove();
-    CHECK(std::memcmp(bits.bytes().data, fresh_bits.bytes().data, bits.bytes().size) == 0);
+    CHECK(std::memcmp(bits.span().data, fresh_bits.span().data, bits.span().size) == 0);
   }
   std::size_t size = 0;
   REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
-  ExactBytes packed(size);
-  REQUIRE(world.pack(packed.bytes()) == Status::kOk);
-  CHECK(CompactTree::validate(packed.bytes()) == nullptr);
+  HeapBytes packed(size);
+  REQUIRE(world.pack(packed.span()) == Status::kOk);
+  CHECK(CompactTree::validate(packed.span()) == nullptr);
 }
 
 TEST_CASE(
@@ -387,11 +375,11 @@ TEST_CASE(
   int opened_damaged = 0;
   misuse(7, 400, [&](OddValues& odd) {
     const OddDeepWorld world(odd);
-    const std::size_t size = world.map_bytes.bytes().size;
+    const std::size_t size = world.map_bytes.span().size;
     // Room to the byte.
-    ExactBytes room(odd_size(odd, size));
+    HeapBytes room(odd_size(odd, size));
     const bool is_odd = odd.one_in(8);
-    const Bytes out = room.bytes().subspan(is_odd ? 1 : 0);
+    const Bytes out = room.span().subspan(is_odd ? 1 : 0);
     BrickMap map;
     std::size_t written = 77;
     const Status status = BrickMap::make(world.compact, out, odd.one_in(4) ? nullptr : &map, &written);
@@ -400,42 +388,42 @@ TEST_CASE(
                                             : Status::kOk));
     CHECK(written == (status == Status::kOk ? size : 77));
     if (status == Status::kOk) {
-      CHECK(std::equal(out.begin(), out.begin() + size, world.map_bytes.bytes().begin()));
+      CHECK(std::equal(out.begin(), out.begin() + size, world.map_bytes.span().begin()));
       ask_map(odd, world.map, world.compact);
     } else {
       CHECK(map.directory() == nullptr);
     }
     EditedWorld edited;
-    CHECK(EditedWorld::make(world.compact, EditRoom{100, 100, 100}, room.bytes(), &edited) != Status::kOk);
+    CHECK(EditedWorld::make(world.compact, EditRoom{100, 100, 100}, room.span(), &edited) != Status::kOk);
 
-    const ExactBytes bad_tree = damaged(odd, world.compact_bytes.bytes());
+    const HeapBytes bad_tree = damaged(odd, world.compact_bytes.span());
     CompactTree opened_tree;
     if (odd.one_in(3)) {
       edit_at_random(odd, world.compact);
     }
     const OddWorld small(odd, odd.between_32(kMinBrickMapLevel, 5));
     edit_at_random(odd, small.compact);
-    if (CompactTree::open(bad_tree.bytes(), &opened_tree) == Status::kOk) {
+    if (CompactTree::open(bad_tree.span(), &opened_tree) == Status::kOk) {
       edit_at_random(odd, opened_tree);
       const std::size_t most = most_brick_map_bytes(opened_tree);
-      ExactBytes bricks(odd_size(odd, most));
-      const Status of_damaged = BrickMap::make(opened_tree, bricks.bytes(), &map);
-      CHECK((of_damaged == Status::kOk || of_damaged == Status::kOutOfRange || bricks.bytes().size < most));
+      HeapBytes bricks(odd_size(odd, most));
+      const Status of_damaged = BrickMap::make(opened_tree, bricks.span(), &map);
+      CHECK((of_damaged == Status::kOk || of_damaged == Status::kOutOfRange || bricks.span().size < most));
       if (of_damaged == Status::kOk) {
         CHECK(map.belongs_to(opened_tree));
-        CHECK(BrickMap::validate(bricks.bytes()) == nullptr);
+        CHECK(BrickMap::validate(bricks.span()) == nullptr);
         ask_map(odd, map, opened_tree);
         ++made_of_damaged;
       }
     }
-    ExactBytes bad_map = damaged(odd, world.map_bytes.bytes());
+    HeapBytes bad_map = damaged(odd, world.map_bytes.span());
     if (odd.one_in(2)) {
-      bad_map = ExactBytes(ConstBytes(world.map_bytes.bytes()));
-      damage_deep_map(odd, bad_map.bytes());
+      bad_map = HeapBytes(world.map_bytes.view());
+      damage_deep_map(odd, bad_map.span());
     }
-    const char* const fault = BrickMap::validate(bad_map.bytes());
+    const char* const fault = BrickMap::validate(bad_map.span());
     BrickMap opened;
-    if (BrickMap::open(bad_map.bytes(), &opened) == Status::kOk) {
+    if (BrickMap::open(bad_map.span(), &opened) == Status::kOk) {
       ask_map(odd, opened, odd.one_in(2) ? world.compact : CompactTree());
       ++opened_damaged;
     } else {

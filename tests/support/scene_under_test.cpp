@@ -149,6 +149,22 @@ HeapBytes compact_of_keys_64(const std::vector<reference::Voxel>& voxels, int le
   return from_sorted(std::move(keys), 3 * level + 8, level, 0, rank_shift);
 }
 
+HeapBytes map_of(const CompactTree& tree) {
+  const HeapBytes room(most_brick_map_bytes(tree));
+  std::size_t size = 0;
+  REQUIRE((room.view().empty() || BrickMap::make(tree, room.span(), nullptr, &size) == Status::kOk));
+  return HeapBytes(room.view().subspan(0, size));
+}
+
+HeapBytes shared_of(const CompactTree& tree) {
+  const HeapBytes work(shared_work_bytes(tree.node_count()));
+  SharedBuild build;
+  REQUIRE(SharedTree::make(tree, {}, work.span(), nullptr, &build) == Status::kOutOfMemory);
+  HeapBytes bytes(build.bytes);
+  REQUIRE(SharedTree::make(tree, bytes.span(), work.span(), nullptr) == Status::kOk);
+  return bytes;
+}
+
 HeapBytes packed(const EditedWorld& world) {
   std::size_t size = 0;
   if (world.pack({}, &size) != Status::kOutOfMemory) {

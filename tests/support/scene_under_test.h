@@ -13,6 +13,7 @@
 #include "thimble/tree/dense_grid.h"
 #include "thimble/tree/edited_world.h"
 #include "thimble/tree/octree.h"
+#include "thimble/tree/shared_tree.h"
 
 namespace thimble::tests {
 
@@ -20,8 +21,11 @@ namespace thimble::tests {
 /// moves the start off its alignment.
 class HeapBytes {
  public:
-  explicit HeapBytes(std::size_t size, std::size_t offset = 0)
+  explicit HeapBytes(std::size_t size = 0, std::size_t offset = 0)
       : storage_(new std::uint8_t[size + offset]), offset_(offset), size_(size) {}
+  explicit HeapBytes(ConstBytes from) : HeapBytes(from.size) {
+    std::copy(from.begin(), from.end(), storage_.get());
+  }
   Bytes span() const { return {storage_.get() + offset_, size_}; }
   ConstBytes view() const { return {storage_.get() + offset_, size_}; }
   bool operator==(const HeapBytes& other) const {
@@ -58,6 +62,11 @@ HeapBytes compact_of_keys_32(const std::vector<reference::Voxel>& voxels, int le
                              int rank_shift = kDefaultRankShift);
 HeapBytes compact_of_keys_64(const std::vector<reference::Voxel>& voxels, int level, unsigned materials,
                              std::uint64_t salt, int rank_shift = kDefaultRankShift);
+
+/// The bytes of the tree's brick map, and of the shared tree of the same voxels; exactly as many as they take,
+/// none where a level has no map.
+HeapBytes map_of(const CompactTree& tree);
+HeapBytes shared_of(const CompactTree& tree);
 
 /// The bytes of an edited world's tree.
 HeapBytes packed(const EditedWorld& world);

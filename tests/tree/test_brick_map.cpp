@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "support/map_cells.h"
 #include "support/scene_under_test.h"
 #include "thimble/base/memory.h"
 #include "thimble/tree/brick_map.h"
@@ -86,33 +87,7 @@ TEST_CASE(
     const BrickMap& map = scene.map;
     const ConstBytes map_bytes(scene.map_room.view().data, map.size_bytes());
     CHECK(BrickMap::validate(map_bytes) == nullptr);
-    const Vec3i sides{map.box().high.x - map.box().low.x, map.box().high.y - map.box().low.y,
-                      map.box().high.z - map.box().low.z};
-    std::int64_t wrong = 0;
-    for (std::int32_t i = 0; i < kMapSide * kMapSide * kMapSide; ++i) {
-      const Vec3i at{i % kMapSide, i / kMapSide % kMapSide, i / kMapSide / kMapSide};
-      const Vec3i cell{at.x / 4 - map.box().low.x, at.y / 4 - map.box().low.y, at.z / 4 - map.box().low.z};
-      const bool inside = cell.x >= 0 && cell.y >= 0 && cell.z >= 0 && cell.x < sides.x && cell.y < sides.y &&
-                          cell.z < sides.z;
-      const std::size_t entry =
-          static_cast<std::size_t>(inside ? cell.x + sides.x * (cell.y + sides.y * cell.z) : 0);
-      const std::uint32_t number =
-          inside ? map.directory()[2 * entry] + 256U * map.directory()[2 * entry + 1] : 0U;
-      const unsigned bit = static_cast<unsigned>(at.x % 4 + 4 * (at.y % 4) + 16 * (at.z % 4));
-      const bool solid = number != 0 && (map.bricks()[8 * number + bit / 8] >> (bit % 8) & 1) != 0;
-      const int material = world.material(at);
-      wrong += solid != (material != kNothing) ? 1 : 0;
-      if (solid && material != kNothing) {
-        bool seen = false;
-        for (int face = 0; face < 6; ++face) {
-          Vec3i next = at;
-          next[face / 2] += face % 2 != 0 ? 1 : -1;
-          seen = seen || next[face / 2] < 0 || next[face / 2] >= kMapSide || world.material(next) == kNothing;
-        }
-        wrong += seen && map.material(scene.tree, number, bit) != material ? 1 : 0;
-      }
-    }
-    CHECK(wrong == 0);
+    CHECK(wrong_cells(map, scene.tree, world.material) == 0);
     CAPTURE(&world - worlds);
     CHECK(map_bytes.size == world.size_bytes);
     CHECK(map.brick_count() == world.bricks);

@@ -90,34 +90,23 @@ TEST_CASE("compact tree: one material, whichever -> no byte more than with none"
 
 namespace {
 
-// The compact bytes of a pool.
-std::vector<std::uint8_t> compacted(const Octree& pool) {
-  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(pool)));
-  std::size_t size = 0;
-  REQUIRE(CompactTree::make(pool, {bytes.data(), bytes.size()}, nullptr, &size) == Status::kOk);
-  REQUIRE(size == bytes.size());
-  return bytes;
-}
-
 struct Parts {
-  std::vector<std::vector<std::uint8_t>> bytes;
+  std::vector<HeapBytes> bytes;
   std::vector<CompactTree> trees;
 
   void add(const Octree& pool) {
-    bytes.push_back(compacted(pool));
-    CompactTree tree;
-    REQUIRE(CompactTree::open({bytes.back().data(), bytes.back().size()}, &tree) == Status::kOk);
-    trees.push_back(tree);
+    bytes.push_back(compact_of(pool));
+    trees.push_back(open_or_throw(bytes.back()));
   }
-  Status join(std::vector<std::uint8_t>* out) const {
+  Status join(HeapBytes* out) const {
     const Span<const CompactTree> span{trees.data(), trees.size()};
     std::size_t size = 0;
     const Status status = CompactTree::make(span, {}, nullptr, &size);
     if (status != Status::kOutOfMemory) {
       return status;
     }
-    out->assign(size, 0);
-    return CompactTree::make(span, {out->data(), out->size()}, nullptr, &size);
+    *out = HeapBytes(size);
+    return CompactTree::make(span, out->span(), nullptr, &size);
   }
 };
 
@@ -125,11 +114,8 @@ struct Parts {
 void fill_world(Octree& pool, int level, unsigned materials, std::mt19937_64& random) {
   const std::int32_t side = std::int32_t{1} << level;
   for (int i = 0; i < 40; ++i) {
-    const int block_level = static_cast<int>(random() % static_cast<unsigned>(level));
-    const std::int32_t cells = side >> block_level;
-    const auto place = [&] {
-      return static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(cells)) << block_level;
-    };
+    const int block_level = pick_int(random, 0, level - 1);
+    const auto place = [&] { return pick_int(random, 0, (side >> block_level) - 1) << block_level; };
     const Vec3i corner{place(), place(), place()};
     REQUIRE(pool.insert_block(corner, block_level, static_cast<std::uint8_t>(random() % materials)) ==
             Status::kOk);
@@ -171,9 +157,9 @@ TEST_CASE("compact tree: a world joined from its parts -> the bytes of the whole
         }
         parts.add(piece.octree);
       }
-      std::vector<std::uint8_t> joined;
+      HeapBytes joined;
       REQUIRE(parts.join(&joined) == Status::kOk);
-      CHECK(joined == compacted(whole.octree));
+      CHECK(joined == compact_of(whole.octree));
     }
   }
 }
@@ -182,7 +168,7 @@ TEST_CASE("compact tree: parts that do not fit together -> refused") {
   OwnedPool small(3, 100);
   OwnedPool large(4, 100);
   Parts parts;
-  std::vector<std::uint8_t> joined;
+  HeapBytes joined;
   CHECK(parts.join(&joined) == Status::kBadArgument);
   for (int i = 0; i < 7; ++i) {
     parts.add(small.octree);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/deep_worlds.h"
+#include "support/map_cells.h"
 #include "support/ray_cases.h"
 #include "thimble/base/memory.h"
 #include "thimble/trace/ray.h"
@@ -19,38 +20,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-
-std::uint32_t word_at(const std::uint8_t* bytes) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, bytes, sizeof word);
-  return word;
-}
-
-// The brick at a place of the box, as src/FORMAT.md says.
-std::uint32_t number_of(const BrickMap& map, const Vec3i& brick) {
-  const auto page = static_cast<std::size_t>(brick.x / 4 + brick.y / 4 * 64 + brick.z / 4 * 4096);
-  const std::uint8_t* const at = map.directory() + word_at(map.directory() + 4 * page);
-  const std::uint32_t own = at[4 + brick.x % 4 + 4 * (brick.y % 4) + 16 * (brick.z % 4)];
-  return own == 0 ? 0 : word_at(at) + own;
-}
-
-struct Cell {
-  std::uint32_t number;
-  unsigned bit;
-  bool solid;
-};
-Cell cell_of(const BrickMap& map, const Vec3i& voxel) {
-  Vec3i brick;
-  for (int axis = 0; axis < 3; ++axis) {
-    brick[axis] = (voxel[axis] >> 2) - map.box().low[axis];
-    if (voxel[axis] < 0 || brick[axis] < 0 || (voxel[axis] >> 2) >= map.box().high[axis]) {
-      return {0, 0, false};
-    }
-  }
-  const std::uint32_t number = number_of(map, brick);
-  const unsigned bit = static_cast<unsigned>((voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3));
-  return {number, bit, (map.bricks()[8 * number + bit / 8] >> (bit % 8) & 1) != 0};
-}
 
 // What a ray along x from beside the voxel hits: the tree's own answer.
 int tree_material(const CompactTree& tree, const Vec3i& voxel) {
@@ -82,7 +51,7 @@ TEST_CASE(
     for (std::int32_t z = 0; z < size.z; ++z) {
       for (std::int32_t y = 0; y < size.y; ++y) {
         for (std::int32_t x = 0; x < size.x; ++x) {
-          const std::uint32_t number = number_of(map, {x, y, z});
+          const std::uint32_t number = brick_at(map, {x, y, z});
           for (int half = 0; half < 8 && number != 0; half += 4) {
             solid += static_cast<unsigned>(
                 __builtin_popcount(word_at(map.bricks() + 8 * std::size_t{number} + half)));
@@ -99,16 +68,16 @@ TEST_CASE(
         at[axis] = i % 4 == 0 ? pick_int(random, 0, side - 1)
                               : std::min(side - 1, 4 * map.box().low[axis] + pick_int(random, 0, 100));
       }
-      const Cell cell = cell_of(map, at);
+      const MapCell cell = cell_of(map, at);
       const int material = tree_material(scene.tree, at);
-      wrong += cell.solid != (material >= 0) ? 1U : 0U;
+      wrong += cell.is_solid != (material >= 0) ? 1U : 0U;
       bool seen = false;
       for (int face = 0; face < 6; ++face) {
         Vec3i next = at;
         next[face / 2] += face % 2 != 0 ? 1 : -1;
-        seen = seen || !cell_of(map, next).solid;
+        seen = seen || !cell_of(map, next).is_solid;
       }
-      wrong += cell.solid && seen && map.material(scene.tree, cell.number, cell.bit) != material ? 1U : 0U;
+      wrong += cell.is_solid && seen && map.material(scene.tree, cell.brick, cell.bit) != material ? 1U : 0U;
     }
     CHECK(wrong == 0);
   }
@@ -135,14 +104,14 @@ TEST_CASE(
     const int last = (1 << block.level) - 1;
     for (const Vec3i& at :
          {block.corner, Vec3i{block.corner.x + last, block.corner.y + last, block.corner.z + last}}) {
-      const Cell cell = cell_of(map, at);
-      REQUIRE(cell.solid);
-      CHECK(map.material(scene.tree, cell.number, cell.bit) == block.material);
+      const MapCell cell = cell_of(map, at);
+      REQUIRE(cell.is_solid);
+      CHECK(map.material(scene.tree, cell.brick, cell.bit) == block.material);
     }
   }
-  const Cell last = cell_of(map, {511, 511, 511});
-  REQUIRE(last.solid);
-  CHECK(map.material(scene.tree, last.number, last.bit) == 9);
+  const MapCell last = cell_of(map, {511, 511, 511});
+  REQUIRE(last.is_solid);
+  CHECK(map.material(scene.tree, last.brick, last.bit) == 9);
 }
 
 TEST_CASE("deep map: an empty world, a full one, one voxel -> the bytes that the format's page says") {

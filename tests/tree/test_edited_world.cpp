@@ -9,6 +9,7 @@
 
 #include "support/compact_damage.h"
 #include "support/counts.h"
+#include "support/map_cells.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/picture/render.h"
@@ -63,19 +64,8 @@ class VoxelModel {
 
 /// Every voxel by the map: solid or not, and of which material.
 bool map_is_right(const EditedWorld& world, VoxelModel& model) {
-  const BrickMap& map = world.map();
-  const int cells = model.side() / 4;
-  bool right = map.belongs_to(world.tree());
-  model.for_each([&](const Vec3i& voxel, int material) {
-    const int cell = ((voxel.z >> 2) * cells + (voxel.y >> 2)) * cells + (voxel.x >> 2);
-    const std::uint8_t* entry = map.directory() + 2 * static_cast<std::size_t>(cell);
-    const auto number = static_cast<std::uint32_t>(entry[0] | entry[1] << 8);
-    const auto bit = static_cast<unsigned>((voxel.x & 3) | (voxel.y & 3) << 2 | (voxel.z & 3) << 4);
-    const bool is_solid = (map.bricks()[8 * number + bit / 8] >> bit % 8 & 1) != 0;
-    right = right && is_solid == (material >= 0) &&
-            (material < 0 || map.material(world.tree(), number, bit) == material);
-  });
-  return right;
+  return wrong_cells(
+             world.map(), world.tree(), [&](const Vec3i& at) { return model.at(at); }, true) == 0;
 }
 
 /// Whether the pictures of `camera` are the same: by the edited world and its map, and by a tree built anew.
@@ -419,8 +409,8 @@ TEST_CASE("edited worlds: one of no tree, of a level without maps, of too much r
   const HeapBytes bytes = compact_of(pool.octree);
   const CompactTree tree = open_or_throw(bytes);
   const EditRoom room{100, 100, 10};
-  std::vector<std::uint64_t> words(edited_world_bytes(2, room) / 8 + 2);
-  const Bytes memory{reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size()};
+  const HeapBytes given(edited_world_bytes(2, room) / 8 * 8 + 16);
+  const Bytes memory = given.span();
   EditedWorld world;
   const auto make = [&](const CompactTree& from, const EditRoom& wanted, Bytes to) {
     return EditedWorld::make(from, wanted, to, &world);
@@ -457,11 +447,10 @@ TEST_CASE("edited worlds: a tree with solid bricks of 32 materials -> one of it;
   for (std::int32_t kind = 0; kind < 33; ++kind) {
     const HeapBytes bytes = compact_of(pool.octree);
     const EditRoom room{1000, 1000, 10};
-    std::vector<std::uint64_t> words(edited_world_bytes(4, room) / 8 + 1);
-    const Bytes memory{reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size()};
+    const HeapBytes memory(edited_world_bytes(4, room));
     EditedWorld world;
     if (kind > 30) {
-      REQUIRE(EditedWorld::make(open_or_throw(bytes), room, memory, &world) == Status::kOk);
+      REQUIRE(EditedWorld::make(open_or_throw(bytes), room, memory.span(), &world) == Status::kOk);
       // Nothing more of a material that none has, where all 32 are taken.
       const Vec3i brick{(kind & 3) * 4, (kind >> 2 & 3) * 4, (kind >> 4) * 4};
       Status status = Status::kOk;
@@ -475,11 +464,9 @@ TEST_CASE("edited worlds: a tree with solid bricks of 32 materials -> one of it;
   }
   const HeapBytes bytes = compact_of(pool.octree);
   const EditRoom room{1000, 1000, 10};
-  std::vector<std::uint64_t> words(edited_world_bytes(4, room) / 8 + 1);
+  const HeapBytes memory(edited_world_bytes(4, room));
   EditedWorld world;
-  CHECK(EditedWorld::make(open_or_throw(bytes), room,
-                          {reinterpret_cast<std::uint8_t*>(words.data()), 8 * words.size()},
-                          &world) == Status::kOutOfMemory);
+  CHECK(EditedWorld::make(open_or_throw(bytes), room, memory.span(), &world) == Status::kOutOfMemory);
   CHECK(world.tree().bytes() == nullptr);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/compact_damage.h"
+#include "support/map_cells.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/edited_world.h"
@@ -62,25 +63,6 @@ TEST_CASE(
 
 // ---- brick maps
 
-// The bits of the cell of `voxel`, or 0 outside the map's box.
-bool map_has(const BrickMap& map, const Vec3i& voxel, std::uint32_t* number = nullptr) {
-  std::size_t entry = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    const std::int32_t at = (voxel[axis] >> 2) - map.box().low[axis];
-    const std::int32_t side = map.box().high[axis] - map.box().low[axis];
-    if (at < 0 || at >= side) {
-      return false;
-    }
-    entry = entry * static_cast<std::size_t>(side) + static_cast<std::size_t>(at);
-  }
-  const std::uint32_t brick = map.directory()[2 * entry] + 256U * map.directory()[2 * entry + 1];
-  if (number != nullptr) {
-    *number = brick;
-  }
-  const int bit = (voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3);
-  return (map.bricks()[8 * std::size_t{brick} + static_cast<std::size_t>(bit) / 8] >> (bit % 8) & 1) != 0;
-}
-
 TEST_CASE("tree limits: maps of mixed bricks alone, of others alone and of one -> each material as it is") {
   for (int kind = 0; kind < 4; ++kind) {
     for (const int side : {4, 8, 16}) {
@@ -104,15 +86,8 @@ TEST_CASE("tree limits: maps of mixed bricks alone, of others alone and of one -
       if (kind == 0) {
         CHECK(made.map.mixed_count() == made.map.brick_count() - 1);
       }
-      for (std::int32_t i = 0; i < side * side * side; ++i) {
-        const Vec3i at{i % side, i / side % side, i / side / side};
-        std::uint32_t number = 0;
-        REQUIRE(map_has(made.map, at, &number) == solid(at));
-        if (solid(at) && (kind != 3 || at.x == 0 || at.y == 0 || at.z == 0)) {
-          const auto bit = static_cast<unsigned>((at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3));
-          REQUIRE(made.map.material(made.tree, number, bit) == material(at));
-        }
-      }
+      CHECK(wrong_cells(made.map, made.tree,
+                        [&](const Vec3i& at) { return solid(at) ? int{material(at)} : -1; }) == 0);
       // While it is made it takes 2 bytes a brick more, and nothing else where no brick is shared.
       if (kind != 3) {
         const std::size_t least = made.size + 2 * std::size_t{made.map.brick_count()};
@@ -128,15 +103,6 @@ TEST_CASE("tree limits: maps of mixed bricks alone, of others alone and of one -
 }
 
 // ---- shared trees
-
-HeapBytes shared_bytes(const CompactTree& compact) {
-  HeapBytes work(shared_work_bytes(compact.node_count()));
-  SharedBuild build;
-  REQUIRE(SharedTree::make(compact, {}, work.span(), nullptr, &build) == Status::kOutOfMemory);
-  HeapBytes bytes(build.bytes);
-  REQUIRE(SharedTree::make(compact, bytes.span(), work.span(), nullptr) == Status::kOk);
-  return bytes;
-}
 
 std::string shared_fault(const HeapBytes& bytes) {
   HeapBytes work(shared_check_bytes(bytes.view().size));
@@ -155,7 +121,7 @@ HeapBytes some_shared(int level, int materials, std::uint64_t seed) {
                             static_cast<std::uint8_t>(i % materials)) == Status::kOk);
   }
   const HeapBytes compact = compact_of(owned.octree);
-  return shared_bytes(open_or_throw(compact));
+  return shared_of(open_or_throw(compact));
 }
 
 // Where things stand in a shared tree's header: src/FORMAT.md.
@@ -207,8 +173,8 @@ TEST_CASE("tree limits: bytes with materials where links grow by a byte -> those
     REQUIRE(two.octree.insert({0, 0, 0}, 2) == Status::kOk);
     const HeapBytes first = compact_of(one.octree);
     const HeapBytes second = compact_of(two.octree);
-    const HeapBytes plain = shared_bytes(open_or_throw(first));
-    const HeapBytes colored = shared_bytes(open_or_throw(second));
+    const HeapBytes plain = shared_of(open_or_throw(first));
+    const HeapBytes colored = shared_of(open_or_throw(second));
     grown += plain.view()[kLinkBytes] != colored.view()[kLinkBytes] ? 1 : 0;
     SharedTree tree;
     REQUIRE(SharedTree::open(plain.view(), &tree) == Status::kOk);
@@ -288,10 +254,10 @@ TEST_CASE(
     const std::uint32_t nodes = world.tree().node_count();
     CHECK(world.set(voxel_of(kBrick, last), 200) == Status::kOutOfMemory);
     CHECK(world.tree().node_count() == nodes);
-    CHECK_FALSE(map_has(world.map(), voxel_of(kBrick, last)));
+    CHECK_FALSE(cell_of(world.map(), voxel_of(kBrick, last)).is_solid);
     // Of a material that bricks have it may be, and elsewhere another may come.
     REQUIRE(world.set(voxel_of(kBrick, last), 1) == Status::kOk);
-    CHECK(map_has(world.map(), voxel_of(kBrick, last)));
+    CHECK(cell_of(world.map(), voxel_of(kBrick, last)).is_solid);
     REQUIRE(world.clear(voxel_of(kBrick, (last + 1) % 64)) == Status::kOk);
     REQUIRE(world.set(voxel_of(kBrick, last), 200) == Status::kOk);
   }
