@@ -21,6 +21,14 @@ TEST_CASE("frames: any world and camera, by every engine of the core -> the byte
                 40'000});
 }
 
+TEST_CASE("frames: directions of all the bits that 32 bits take, and one more -> drawn so, or none of it") {
+  const Tallies drawn = check_frames(
+      {core_engines(), {worlds::kAny, worlds::kSolid}, {cameras::kBorder}, 20261129, 20'000, 10'000, 24});
+  const std::uint64_t taken = drawn.pixels_of("core, 32 bits");
+  CHECK(taken > drawn.pixels_of("core, 64 bits") / 10);
+  CHECK(taken < drawn.pixels_of("core, 64 bits") * 9 / 10);
+}
+
 TEST_CASE("brick frames: hard cameras in small worlds -> the bytes and hits of render_band, none wrong") {
   const Tallies drawn = check_frames({brick_engines(),
                                       {worlds::kChip, worlds::kAny},

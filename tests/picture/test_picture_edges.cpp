@@ -42,6 +42,13 @@ struct Picture {
 
 // ---- by bricks
 
+TEST_CASE("picture edges: bytes of bands without columns -> 0; a product beyond size_t -> SIZE_MAX") {
+  CHECK(band_bytes(PixelFormat::kRgb888, 0, 5) == 0);
+  CHECK(band_bytes(PixelFormat::kRgb888, 1 << 20, 1 << 20) ==
+        (sizeof(std::size_t) == 4 ? SIZE_MAX : std::size_t{3} << 20 << 20));
+  static_assert(render_bytes() >= sizeof(Camera) + sizeof(Shading));
+}
+
 // A world of 64 from one voxel and from all of it: an eye's distance from the farthest side of the world is below
 // 2^(31 - bits), that from the farthest side of what is solid 32 voxels less or nearer.
 TEST_CASE("picture edges: eyes from farther and farther away -> fast frames up to the last 1/256 voxel") {

@@ -236,6 +236,25 @@ bool set_diagonal(Random& random, const WideScene& scene, Camera* camera) {
   return camera->set(view, scene.level) == Status::kOk;
 }
 
+// Distances and directions of 31 bits together, more or less: parallel pictures about the plane where distances take one
+// more bit, so that the longest rays may be those of one corner alone; and pinholes of every kind.
+bool set_border(Random& random, const WideScene& scene, Camera* camera) {
+  const int side = 256 << scene.level;
+  const bool is_parallel = pick_int(random, 0, 2) != 0;
+  Vec3Q8 eye;
+  for (int axis = 0; axis < 3; ++axis) {
+    eye[axis] =
+        Q8::from_raw(pick_int(random, 0, is_parallel ? side : 7 * side) - (axis == 0 ? 7 * side / 2 : 0));
+  }
+  const Vec3i forward = random_voxel(random, -1000, 1000);
+  const Vec3i up = random_voxel(random, -1000, 1000);
+  const int bits = std::clamp(pick_int(random, 19, 22) - scene.level, kMinDirectionBits, kMaxDirectionBits);
+  const Q14 span = Q14::from_raw(20 << std::max(scene.level, 2) << 12);
+  return (is_parallel ? camera->set(OrthographicView{eye, forward, up, span, 5, 4, bits}, scene.level)
+                      : camera->set(PerspectiveView{eye, forward, up, Q16::saturate(120), 5, 4, bits},
+                                    scene.level)) == Status::kOk;
+}
+
 // The frame's band in bands of `rows`.
 Status draw_in_bands(const Engine& engine, Subject& subject, const FrameCase& frame, Random& random,
                      std::int32_t rows, Bytes pixels, RenderCounts* counts) {
@@ -335,6 +354,7 @@ const CameraRow kDeep{"deep", set_deep};
 const CameraRow kLarge{"large", set_large};
 const CameraRow kDiagonal{"diagonal", set_diagonal};
 const CameraRow kFine{"fine", set_fine};
+const CameraRow kBorder{"border", set_border};
 }  // namespace cameras
 
 void Tallies::add(const std::string& name, std::uint64_t pixels, bool is_right, std::uint64_t seed) {
@@ -416,11 +436,12 @@ std::uint64_t draw_by_all(const std::vector<Engine>& engines, Subject& subject, 
     const Status status = draw_in_bands(engine, subject, frame, random, rows, pixels.span(), &counts);
     const bool is_drawn = takes && status != Status::kTooFine;
     const bool is_same = std::equal(expected.begin(), expected.end(), pixels.view().begin());
-    const bool is_right = !takes     ? status == engine.otherwise
-                          : is_drawn ? status == Status::kOk && is_same &&
-                                           (counts.hits == expected_hits || counts.hits == UINT64_MAX)
-                                     : std::all_of(pixels.view().begin(), pixels.view().end(),
-                                                   [](std::uint8_t byte) { return byte == 0xA5; });
+    const bool is_untouched = counts.rays == 0 && counts.node_visits == 0 &&
+                              std::all_of(pixels.view().begin(), pixels.view().end(),
+                                          [](std::uint8_t byte) { return byte == 0xA5; });
+    const bool is_right = is_drawn ? status == Status::kOk && is_same &&
+                                         (counts.hits == expected_hits || counts.hits == UINT64_MAX)
+                                   : is_untouched && (takes || status == engine.otherwise);
     tallies->add(takes ? engine.name : engine.name + ": refused", is_drawn ? area : 0, is_right, seed);
     CHECK_MESSAGE(is_right, engine.name, ", seed ", seed, ", rows ", rows, ": ", static_cast<int>(status));
   }

@@ -73,7 +73,7 @@ extern const WorldRow kCabinet, kSolid, kStrewn, kStars, kChip, kDeep;
 }  // namespace worlds
 namespace cameras {
 inline constexpr CameraRow kAny{"any", nullptr};
-extern const CameraRow kHard, kChip, kDeep, kLarge, kDiagonal, kFine;
+extern const CameraRow kHard, kChip, kDeep, kLarge, kDiagonal, kFine, kBorder;
 }  // namespace cameras
 
 /// What an engine drew so far, and how much of it was not the core's.
