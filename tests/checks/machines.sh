@@ -1,5 +1,5 @@
 #!/bin/sh
-# Runs the portable cases and the golden frames, by brick maps too, as other machines compute them: of both orders of
+# Runs the portable cases, golden frames and frames by brick maps among them, as other machines compute them: of both orders of
 # bytes, with 32 and 64 bits, with words that stand at any even address. A machine whose compiler or emulator is not
 # here is skipped (`.ci/deps machines` installs them). Without names one of each kind: powerpc and m68k are as mips, but
 # for m68k's words at even addresses.

@@ -18,7 +18,6 @@
 #include "port.h"
 #include "portable/golden_trees.h"
 #include "portable/runner.h"
-#include "thimble/tree/brick_map.h"
 
 namespace {
 
@@ -33,9 +32,6 @@ constexpr Structure kStructures[] = {Structure::kDense, Structure::kPool, Struct
 alignas(8) uint8_t arena_bytes[kArenaBytes];
 size_t arena_size = kArenaBytes;
 uint8_t band_bytes_given[kBandBytes];
-// The map of any golden scene that may have one: they are of level 6 at most.
-constexpr int kMostMapLevel = 6;
-alignas(8) uint8_t map_bytes[most_brick_map_bytes(kMostMapLevel)];
 
 const char* name_of(Structure structure) {
   return structure == Structure::kDense ? "dense" : structure == Structure::kPool ? "pool" : "compact";
@@ -79,69 +75,43 @@ bool lists_agree() {
   return agree;
 }
 
-// Draws each frame by its scene's brick map, where the world is small enough for one.
-bool maps_agree() {
-  int drawn = 0;
-  int wrong = 0;
-  for (int f = 0; f < frame_count(); ++f) {
-    const Frame& shown = frame(f);
-    if (scene_info(shown.scene).level > kMostMapLevel) {
-      continue;
-    }
-    Arena arena{Bytes(arena_bytes)};
-    World world;
-    BrickMap map;
-    Camera camera;
-    Shading shading;
-    Band band;
-    band.pixels = {band_bytes_given, band_bytes(shown.format, shown.width_px, shown.height_px)};
-    band.format = shown.format;
-    band.rows = shown.height_px;
-    Status status = build_scene(shown.scene, Structure::kCompact, &arena, &world);
-    if (status == Status::kOk) {
-      status = BrickMap::make(world.compact, Bytes(map_bytes), &map);
-    }
-    if (status == Status::kOk) {
-      status = set_up(shown, &camera, &shading);
-    }
-    if (status == Status::kOk) {
-      status = render_band(world.compact, map, camera, shading, band);
-    }
-    const uint32_t crc = crc32(band.pixels);
-    ++drawn;
-    if (status != Status::kOk || crc != kGoldenTable[f].crc32) {
-      printf("FAILED golden: %s by its map: %s, 0x%08lX in place of 0x%08lX\n", shown.name,
-             status_text(status), static_cast<unsigned long>(crc),
-             static_cast<unsigned long>(kGoldenTable[f].crc32));
-      ++wrong;
-    }
-  }
-  printf("golden: %d frames by maps, %d wrong\n", drawn, wrong);
-  return drawn != 0 && wrong == 0;
-}
+// The groups of each application, and what result_crc.h says of them: `common` where not every board runs all.
+struct Groups {
+  Span<const portable::Group* const> groups;
+  int (*run)();
+  const char* what;
+  const char* all;
+  const char* common;
+};
+constexpr Groups kGroups[] = {
+    {portable::kCoreGroups, apps::selftest, "the core's own cases, all of which every board runs",
+     "kCoreCrc32", nullptr},
+    {portable::kGoldenGroups, apps::golden,
+     "what lies in flash: baked scenes and golden frames, all of them and those that every board runs",
+     "kGoldenCrc32", "kCommonGoldenCrc32"},
+    {portable::kPanelGroups, apps::formats, "the formats of panels, in an image that has them all",
+     "kPanelCrc32", nullptr},
+    {portable::kLitGroups, apps::lit, "lit pictures, all of which every board draws", "kLitCrc32", nullptr},
+    {portable::kWorldGroups, apps::worlds,
+     "worlds of other shapes and of the plane, all of which every board runs", "kWorldCrc32", nullptr},
+    {portable::kBrickGroups, apps::bricks, "frames by bricks, all of them and those that every board draws",
+     "kBrickCrc32", "kCommonBrickCrc32"},
+    {portable::kMapLightGroups, apps::map_light, "lit frames by bricks", "kMapLightCrc32", nullptr},
+};
 
 int run_all() {
   // Each of them says what is wrong.
-  const bool sound = lists_agree() && names_differ(portable::kCoreGroups) &&
-                     names_differ(portable::kGoldenGroups) && names_differ(portable::kLitGroups) &&
-                     names_differ(portable::kPanelGroups) && names_differ(portable::kWorldGroups) &&
-                     names_differ(portable::kBrickGroups) && names_differ(portable::kMapLightGroups) &&
-                     maps_agree();
-  const int core = apps::selftest();
-  const int frames = apps::golden();
-  const int formats = apps::formats();
-  const int lit = apps::lit();
-  const int worlds = apps::worlds();
-  const int bricks = apps::bricks();
-  const int map_light = apps::map_light();
-  const bool passed =
-      core == 0 && frames == 0 && formats == 0 && lit == 0 && worlds == 0 && bricks == 0 && map_light == 0;
-  return sound && passed ? 0 : 1;
+  bool passed = lists_agree();
+  for (const Groups& one : kGroups) {
+    passed = names_differ(one.groups) && passed;
+    passed = one.run() == 0 && passed;
+  }
+  return passed ? 0 : 1;
 }
 
-bool print_crcs(const char* all, const char* common, Span<const portable::Group* const> groups) {
+bool print_crcs(const Groups& of) {
   portable::Runner* runner = portable::Runner::make(Bytes(arena_bytes));
-  for (const portable::Group* group : groups) {
+  for (const portable::Group* group : of.groups) {
     for (int i = 0; i < group->count; ++i) {
       if (runner->run(group->at(i)) != nullptr) {
         fprintf(stderr, "%s: %s: failed, so there is no right CRC\n", group->name, group->at(i).name);
@@ -149,9 +119,10 @@ bool print_crcs(const char* all, const char* common, Span<const portable::Group*
       }
     }
   }
-  printf("inline constexpr uint32_t %s = 0x%08lX;\n", all, static_cast<unsigned long>(runner->crc32()));
-  if (common != nullptr) {
-    printf("inline constexpr uint32_t %s = 0x%08lX;\n", common,
+  printf("/// Of %s.\n", of.what);
+  printf("inline constexpr uint32_t %s = 0x%08lX;\n", of.all, static_cast<unsigned long>(runner->crc32()));
+  if (of.common != nullptr) {
+    printf("inline constexpr uint32_t %s = 0x%08lX;\n", of.common,
            static_cast<unsigned long>(runner->common_crc32()));
   } else if (runner->crc32() != runner->common_crc32()) {
     fprintf(stderr, "a case needs more than kCommonArenaBytes\n");
@@ -161,43 +132,16 @@ bool print_crcs(const char* all, const char* common, Span<const portable::Group*
 }
 
 int print_crc() {
-  printf("/// @file result_crc.h\n");
   printf(
       "/// What the portable cases compute, as CRC-32s (runner.h). Written by `thimble_golden_tests "
       "--crc`.\n");
-  printf("#ifndef THIMBLE_TESTS_PORTABLE_RESULT_CRC_H\n#define THIMBLE_TESTS_PORTABLE_RESULT_CRC_H\n\n");
-  printf("#include <stdint.h>\n\nnamespace thimble::portable {\n\n");
-  printf("/// Of the core's own cases, all of which every board runs.\n");
-  if (!print_crcs("kCoreCrc32", nullptr, portable::kCoreGroups)) {
-    return 1;
+  printf("#pragma once\n\n#include <stdint.h>\n\nnamespace thimble::portable {\n\n");
+  for (const Groups& one : kGroups) {
+    if (!print_crcs(one)) {
+      return 1;
+    }
   }
-  printf(
-      "/// Of what lies in flash: baked scenes and golden frames, all of them and those that every board "
-      "runs.\n");
-  if (!print_crcs("kGoldenCrc32", "kCommonGoldenCrc32", portable::kGoldenGroups)) {
-    return 1;
-  }
-  printf("/// Of the formats of panels, in an image that has them all.\n");
-  if (!print_crcs("kPanelCrc32", nullptr, portable::kPanelGroups)) {
-    return 1;
-  }
-  printf("/// Of lit pictures, all of which every board draws.\n");
-  if (!print_crcs("kLitCrc32", nullptr, portable::kLitGroups)) {
-    return 1;
-  }
-  printf("/// Of worlds of other shapes and of the plane, all of which every board runs.\n");
-  if (!print_crcs("kWorldCrc32", nullptr, portable::kWorldGroups)) {
-    return 1;
-  }
-  printf("/// Of frames by bricks, all of them and those that every board draws.\n");
-  if (!print_crcs("kBrickCrc32", "kCommonBrickCrc32", portable::kBrickGroups)) {
-    return 1;
-  }
-  printf("/// Of lit frames by bricks.\n");
-  if (!print_crcs("kMapLightCrc32", nullptr, portable::kMapLightGroups)) {
-    return 1;
-  }
-  printf("\n}  // namespace thimble::portable\n\n#endif\n");
+  printf("\n}  // namespace thimble::portable\n");
   return 0;
 }
 
@@ -235,10 +179,8 @@ bool first_variant(const Frame& shown, uint32_t* crc) {
 }
 
 int print_table() {
-  printf("/// @file golden_table.h\n");
   printf("/// CRC-32 of every golden frame (scenes.h). Written by `thimble_golden_tests --print`.\n");
-  printf("#ifndef THIMBLE_TESTS_GOLDEN_GOLDEN_TABLE_H\n#define THIMBLE_TESTS_GOLDEN_GOLDEN_TABLE_H\n\n");
-  printf("#include <stdint.h>\n\nnamespace thimble::golden {\n\n");
+  printf("#pragma once\n\n#include <stdint.h>\n\nnamespace thimble::golden {\n\n");
   printf("struct GoldenEntry {\n  const char* name;\n  uint32_t crc32;\n};\n\n");
   printf("inline constexpr GoldenEntry kGoldenTable[] = {\n");
   for (int f = 0; f < frame_count(); ++f) {
@@ -248,7 +190,7 @@ int print_table() {
     }
     printf("    {\"%s\", 0x%08lX},\n", frame(f).name, static_cast<unsigned long>(crc));
   }
-  printf("};\n\n}  // namespace thimble::golden\n\n#endif\n");
+  printf("};\n\n}  // namespace thimble::golden\n");
   return 0;
 }
 
