@@ -5,8 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <iostream>
-#include <stdexcept>
 
 #include "reference/reference.h"
 #include "reference/secondary.h"
@@ -53,30 +51,14 @@ class Cells {
   }
 
   HeapBytes tree(int rank_shift = kDefaultRankShift) const {
-    std::vector<std::uint64_t> keys;
-    for (int z = 0; z < side_; ++z) {
-      for (int y = 0; y < side_; ++y) {
-        for (int x = 0; x < side_; ++x) {
-          const int material = at({x, y, z});
-          if (material != kAir) {
-            keys.push_back(
-                std::uint64_t{morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                          static_cast<std::uint32_t>(z))}
-                    << 8 |
-                static_cast<std::uint64_t>(material));
-          }
-        }
+    OwnedPool pool(level_, (std::size_t{1} << 3 * level_) + 100);
+    for (int i = 0; i < side_ * side_ * side_; ++i) {
+      const Vec3i at = morton_voxel(static_cast<std::uint64_t>(i));
+      if (const int material = this->at({at.x, at.y, at.z}); material != kAir) {
+        REQUIRE(pool.octree.insert(at, static_cast<std::uint8_t>(material)) == Status::kOk);
       }
     }
-    std::sort(keys.begin(), keys.end());
-    const Span<const std::uint64_t> sorted{keys.data(), keys.size()};
-    std::size_t needed = 0;
-    static_cast<void>(CompactTree::make(sorted, level_, Bytes{}, nullptr, &needed, rank_shift));
-    HeapBytes bytes(needed);
-    if (CompactTree::make(sorted, level_, bytes.span(), nullptr, &needed, rank_shift) != Status::kOk) {
-      throw std::logic_error("secondary ray tests: a tree that is not made");
-    }
-    return bytes;
+    return compact_of(pool.octree, rank_shift);
   }
 
  private:
@@ -126,14 +108,12 @@ Cells random_cells(std::mt19937_64& random) {
 struct Tally {
   std::int64_t rays = 0;
   std::int64_t degenerate = 0;  // through edges or corners, or within planes
-  std::int64_t starts = 0;      // on faces
   std::int64_t walks = 0;       // through a medium, of more than no length
   std::int64_t left_world = 0;
   std::int64_t into_solid = 0;
   std::int64_t diagonal = 0;  // left media through an edge or corner
   std::int64_t mirrored = 0;
   std::int64_t narrow = 0;
-  std::int64_t most_visits_part = 0;  // 100 * visits / (3 * side)
   std::int64_t wrong = 0;
   std::string first;
 
@@ -221,8 +201,6 @@ class Judge {
     if (exit.hit.visits > 3U * static_cast<unsigned>(cells_.side())) {
       tally_.fail("visits: " + place);
     }
-    tally_.most_visits_part =
-        std::max(tally_.most_visits_part, std::int64_t{100} * exit.hit.visits / (3 * cells_.side()));
     tally_.walks += exit.hit.axis >= 0 ? 1 : 0;
     tally_.left_world += outside ? 1 : 0;
     tally_.into_solid += found != kAir ? 1 : 0;
@@ -243,22 +221,18 @@ class Judge {
     Hit hit;
     REQUIRE(closest_hit_from(tree_, ray, from, &narrow, options) == Status::kOk);
     REQUIRE(closest_hit_from(tree_, ray, from, &hit) == Status::kOk);
-    if (narrow.kind != hit.kind || narrow.voxel != hit.voxel || narrow.axis != hit.axis ||
-        narrow.t_numerator != hit.t_numerator || narrow.visits != hit.visits) {
+    if (!same_hit(narrow, hit) || narrow.visits != hit.visits) {
       tally_.fail("32 bits, closest: " + place);
     }
     ++tally_.narrow;
     if (status != Status::kOk || exit.left_world != wide.left_world || exit.into_solid != wide.into_solid ||
-        exit.hit.voxel != wide.hit.voxel || exit.hit.axis != wide.hit.axis ||
-        exit.hit.t_numerator != wide.hit.t_numerator || exit.hit.t_denominator != wide.hit.t_denominator ||
-        exit.hit.visits != wide.hit.visits || exit.hit.material != wide.hit.material) {
+        !same_hit(exit.hit, wide.hit) || exit.hit.visits != wide.hit.visits) {
       tally_.fail("32 bits: " + place);
     }
   }
 
   void check_start(const Ray& ray, const Hit& hit) {
     ++tally_.rays;
-    ++tally_.starts;
     const reference::Hit judged{
         true, {hit.voxel.x, hit.voxel.y, hit.voxel.z}, hit.t_numerator, hit.t_denominator, hit.axis};
     const reference::PointQ8 expected = reference::start_on_face(to_reference(ray), judged);
@@ -402,14 +376,6 @@ TEST_CASE(
       tally.first += "\nseed " + std::to_string(own) + " side " + std::to_string(cells.side());
     }
   }
-  std::cout << "secondary rays: seeds " << seed << " .. " << seed + worlds - 1 << ", answers compared "
-            << tally.rays << " of " << cases << " first rays (" << tally.degenerate
-            << " of them through edges and corners or within planes), starts on faces " << tally.starts
-            << ", ways through a medium " << tally.walks << " (out of the world " << tally.left_world
-            << ", into another solid " << tally.into_solid << ", bent ones out by an edge or corner "
-            << tally.diagonal << "), rays away from faces " << tally.mirrored << ", with 32 bits "
-            << tally.narrow << ", visits up to " << tally.most_visits_part << " % of the bound, differences "
-            << tally.wrong << std::endl;
   CHECK_MESSAGE(tally.wrong == 0, tally.first);
   CHECK(tally.rays >= rays);
   CHECK(tally.degenerate * 3 >= cases);

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <iostream>
 
 #include "reference/reference.h"
 #include "support/ray_cases.h"
@@ -63,7 +62,6 @@ RayLimits wide_limits(int level) {
 struct RunTotals {
   reference::Statistics statistics;
   SceneUnderTest::Tally tally;
-  std::int64_t worlds = 0;
   std::int64_t aimed = 0;
   std::int64_t brute_forced = 0;
   std::int64_t judge_mismatches = 0;
@@ -128,7 +126,6 @@ void run_world(std::uint64_t seed, std::int64_t rays, RunTotals& totals) {
   }
   totals.tally += tally;
   totals.statistics += statistics;
-  ++totals.worlds;
 }
 
 }  // namespace
@@ -142,11 +139,6 @@ TEST_CASE("trace: random rays in random worlds -> every structure and width give
   for (std::int64_t done = 0, world = 0; done < rays; done += rays_per_world, ++world) {
     run_world(static_cast<std::uint64_t>(seed + world), std::min(rays_per_world, rays - done), totals);
   }
-  std::cout << "trace: seeds " << seed << " .. " << seed + totals.worlds - 1 << ", worlds " << totals.worlds
-            << ", " << reference::describe(totals.statistics) << "; aimed at edges and corners "
-            << totals.aimed << ", taken by the 32-bit path " << totals.tally.narrow << ", answers compared "
-            << totals.tally.traced << ", rays judged by brute force too " << totals.brute_forced
-            << ", differences " << totals.tally.mismatches << std::endl;
   CHECK_MESSAGE(totals.tally.mismatches == 0, totals.tally.first);
   CHECK(totals.judge_mismatches == 0);
   CHECK(totals.different_bytes == 0);

@@ -1,8 +1,5 @@
 // The mutable octree, held to a map of voxels, to the canonical tree built from that map by recursion, and to
 // a coarsening that searches the whole tree for the cheapest merge at every step.
-#include "support/counts.h"
-#include "thimble/tree/octree.h"
-
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -12,10 +9,14 @@
 #include <string>
 #include <vector>
 
-namespace thimble::tools {
+#include "support/counts.h"
+#include "support/scene_under_test.h"
+#include "thimble/tree/octree.h"
+
+namespace thimble::tests {
 namespace {
 
-const int kEffort = thimble::tests::many_or_few(6, 1);
+const int kEffort = many_or_few(6, 1);
 
 using Random = std::mt19937_64;
 /// Morton index -> material.
@@ -25,24 +26,9 @@ std::int32_t below(Random& random, std::int32_t bound) {
   return static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(bound));
 }
 
-std::uint64_t morton(Vec3i p) {
-  std::uint64_t index = 0;
-  for (int bit = 0; bit < kMaxLevel; ++bit) {
-    for (int axis = 0; axis < 3; ++axis) {
-      index |= ((static_cast<std::uint64_t>(p[axis]) >> bit) & 1) << (3 * bit + axis);
-    }
-  }
-  return index;
-}
-
-Vec3i position(std::uint64_t index) {
-  Vec3i p;
-  for (int bit = 0; bit < kMaxLevel; ++bit) {
-    for (int axis = 0; axis < 3; ++axis) {
-      p[axis] |= static_cast<std::int32_t>((index >> (3 * bit + axis)) & 1) << bit;
-    }
-  }
-  return p;
+std::uint64_t morton(const Vec3i& p) {
+  return morton_code(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y),
+                     static_cast<std::uint32_t>(p.z));
 }
 
 /// A tree as plain as can be.
@@ -223,32 +209,15 @@ void check_same(const Octree& tree, const Model& model) {
 void check_holds(const Octree& tree, const Model& model) {
   std::size_t missing = 0;
   for (const auto& [index, material] : model) {
-    missing += tree.test(position(index)) ? 0U : 1U;
+    missing += tree.test(morton_voxel(index)) ? 0U : 1U;
   }
   CHECK(missing == 0);
 }
 
-/// A pool with guard bytes on both sides.
-class Pool {
- public:
-  static Pool of_nodes(std::size_t nodes) { return Pool(Octree::octree_bytes(nodes)); }
-  Bytes bytes() { return {storage_.data() + kGuard, bytes_}; }
-  std::vector<std::uint8_t> contents() const { return storage_; }
-  bool intact() const {
-    const auto is_pattern = [](std::uint8_t byte) { return byte == kPattern; };
-    const auto first = storage_.begin() + static_cast<std::ptrdiff_t>(kGuard);
-    return std::all_of(storage_.begin(), first, is_pattern) &&
-           std::all_of(first + static_cast<std::ptrdiff_t>(bytes_), storage_.end(), is_pattern);
-  }
-
- private:
-  explicit Pool(std::size_t bytes) : bytes_(bytes), storage_(bytes + 2 * kGuard, kPattern) {}
-
-  static constexpr std::size_t kGuard = 32;
-  static constexpr std::uint8_t kPattern = 0xA5;
-  std::size_t bytes_;
-  std::vector<std::uint8_t> storage_;
-};
+/// As many bytes as so many nodes take; the sanitized build sees what is written beside them.
+HeapBytes pool_of(std::size_t nodes) {
+  return HeapBytes(Octree::octree_bytes(nodes));
+}
 
 /// One change of a tree, and the same of a model.
 struct Change {
@@ -322,7 +291,7 @@ Model random_model(Random& random, int level, int materials, int count) {
 
 void fill(Octree& tree, const Model& model) {
   for (const auto& [index, material] : model) {
-    REQUIRE(tree.insert(position(index), material) == Status::kOk);
+    REQUIRE(tree.insert(morton_voxel(index), material) == Status::kOk);
   }
 }
 
@@ -416,9 +385,9 @@ TEST_CASE("octree: random inserts, removals and blocks -> the canonical tree of 
       const std::uint64_t seed = static_cast<std::uint64_t>(level * 1000 + materials);
       CAPTURE(seed);
       Random random(seed);
-      Pool pool = Pool::of_nodes(40000);
+      const HeapBytes pool = pool_of(40000);
       Octree tree;
-      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+      REQUIRE(Octree::make(level, pool.span(), &tree) == Status::kOk);
       Model model;
       int step = 0;
       std::size_t wrong = 0;
@@ -439,7 +408,6 @@ TEST_CASE("octree: random inserts, removals and blocks -> the canonical tree of 
       }
       CHECK(wrong == 0);
       check_same(tree, model);
-      CHECK(pool.intact());
       CHECK(tree.solid_added() == 0);
     }
   }
@@ -460,15 +428,15 @@ TEST_CASE(
       enough = std::max(enough, nodes_of(whole, level));
     }
     for (std::size_t nodes = 0; nodes <= enough; ++nodes) {
-      Pool pool = Pool::of_nodes(nodes);
+      const HeapBytes pool = pool_of(nodes);
       Octree tree;
-      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+      REQUIRE(Octree::make(level, pool.span(), &tree) == Status::kOk);
       REQUIRE(tree.capacity() == nodes);
       Model model;
       for (const Change& change : changes) {
         Model changed = model;
         change.apply(changed);
-        const std::vector<std::uint8_t> before = pool.contents();
+        const HeapBytes before(pool.view());
         const std::uint64_t voxels = tree.voxels();
         const std::uint32_t used = tree.nodes_used();
         const Status status = change.apply(tree);
@@ -477,13 +445,12 @@ TEST_CASE(
           model = changed;
         } else {
           REQUIRE(status == Status::kOutOfMemory);
-          CHECK(pool.contents() == before);
+          CHECK(pool == before);
           CHECK(tree.voxels() == voxels);
           CHECK(tree.nodes_used() == used);
         }
       }
       check_same(tree, model);
-      CHECK(pool.intact());
     }
   }
 }
@@ -502,17 +469,17 @@ TEST_CASE("octree: coarsening to every size -> what the slow greedy search makes
       continue;
     }
     const std::size_t all = nodes_of(model, level);
-    Pool step_pool = Pool::of_nodes(all + 8 * static_cast<std::size_t>(level));
+    const HeapBytes step_pool = pool_of(all + 8 * static_cast<std::size_t>(level));
     Octree stepwise;
-    REQUIRE(Octree::make(level, step_pool.bytes(), &stepwise) == Status::kOk);
+    REQUIRE(Octree::make(level, step_pool.span(), &stepwise) == Status::kOk);
     fill(stepwise, model);
     for (std::size_t max_nodes = all; max_nodes >= 1; max_nodes -= 1 + max_nodes / 8) {
       CAPTURE(max_nodes);
       Ref expected = canonical(model, level);
       const std::uint64_t added = coarsen_slowly(expected, max_nodes);
-      Pool pool = Pool::of_nodes(all + 8 * static_cast<std::size_t>(level));
+      const HeapBytes pool = pool_of(all + 8 * static_cast<std::size_t>(level));
       Octree tree;
-      REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+      REQUIRE(Octree::make(level, pool.span(), &tree) == Status::kOk);
       fill(tree, model);
       REQUIRE(tree.coarsen_to(max_nodes) == Status::kOk);
       REQUIRE(text_of(tree) == text_of(expected));
@@ -524,7 +491,6 @@ TEST_CASE("octree: coarsening to every size -> what the slow greedy search makes
       REQUIRE(stepwise.coarsen_to(max_nodes) == Status::kOk);
       REQUIRE(text_of(stepwise) == text_of(expected));
       CHECK(stepwise.solid_added() == added);
-      CHECK(pool.intact());
     }
   }
 }
@@ -535,9 +501,9 @@ TEST_CASE("octree: edits between coarsenings -> only the edit changes, and the t
     Random random(seed);
     const int level = 1 + static_cast<int>(seed % 3);
     const int materials = 1 + static_cast<int>(seed % 4);
-    Pool pool = Pool::of_nodes(10 + static_cast<std::size_t>(below(random, 200)));
+    const HeapBytes pool = pool_of(10 + static_cast<std::size_t>(below(random, 200)));
     Octree tree;
-    REQUIRE(Octree::make(level, pool.bytes(), &tree) == Status::kOk);
+    REQUIRE(Octree::make(level, pool.span(), &tree) == Status::kOk);
     for (const Change& change : random_changes(random, level, materials, 300)) {
       std::vector<int> before = cells_of(tree);
       bool wrong = false;
@@ -588,19 +554,18 @@ TEST_CASE("octree: edits between coarsenings -> only the edit changes, and the t
         CHECK(text_of(ref) == text);
       }
     }
-    CHECK(pool.intact());
   }
 }
 
 TEST_CASE(
     "octree: merging makes eight merged blocks of one material -> one block, and edits elsewhere stay "
     "right") {
-  Pool pool = Pool::of_nodes(200);
+  const HeapBytes pool = pool_of(200);
   Octree tree;
-  REQUIRE(Octree::make(3, pool.bytes(), &tree) == Status::kOk);
+  REQUIRE(Octree::make(3, pool.span(), &tree) == Status::kOk);
   // One 4 x 4 x 4 block of eight voxel nodes, each of material 1 but for its last voxel.
   for (std::uint64_t index = 0; index < 64; ++index) {
-    REQUIRE(tree.insert(position(index), index % 8 == 7 ? 2 : 1) == Status::kOk);
+    REQUIRE(tree.insert(morton_voxel(index), index % 8 == 7 ? 2 : 1) == Status::kOk);
   }
   REQUIRE(tree.insert({7, 7, 7}, 3) == Status::kOk);
   CHECK(tree.nodes_used() == 1 + 1 + 8 * 9 + 2);
@@ -611,4 +576,4 @@ TEST_CASE(
   CHECK(tree.solid_added() == 0);
 }
 
-}  // namespace thimble::tools
+}  // namespace thimble::tests
