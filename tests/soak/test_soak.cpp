@@ -16,6 +16,8 @@
 #include "support/frames.h"
 #include "support/lit_cases.h"
 #include "support/trial_worlds.h"
+#include "thimble/light/map_render.h"
+#include "thimble/tree/edited_world.h"
 
 namespace thimble::tests {
 namespace {
@@ -76,8 +78,8 @@ std::vector<Subject>& real_worlds() {
 
 void draw_lit(std::mt19937_64& random, std::uint64_t seed, const WideScene& scene, const FrameCase& frame,
               Tallies* tallies) {
-  if (wide::RayMap::bytes(scene.tree) > std::size_t{1} << 24) {
-    return;  // a second a map
+  if (wide::RayMap::bytes(scene.tree) > std::size_t{1} << (pick(random, 0, 9) == 0 ? 28 : 24)) {
+    return;  // a second a map, of all worlds of level 12
   }
   const LitCase lit = random_light(random, scene.level);
   const LitDrawn expected = draw_lit_core(scene, frame, lit);
@@ -96,8 +98,74 @@ void draw_lit(std::mt19937_64& random, std::uint64_t seed, const WideScene& scen
   const std::size_t workspace =
       wide::lit_workspace_bytes(lit.effects, lit.scene) * static_cast<std::size_t>(threads);
   const LitDrawn ours = draw_lit_streams(scene, map, frame, lit, workspace, threads);
-  tallies->add(threads > 1 ? "lit streams, threads" : "lit streams", pixels_of(frame),
+  const char* const of_level = scene.level > 10 ? ", level 11 and 12" : "";
+  tallies->add(std::string(threads > 1 ? "lit streams, threads" : "lit streams") + of_level, pixels_of(frame),
                ours.pixels == expected.pixels, seed);
+}
+
+// Suns and little else, for which light by a brick map has a way of its own; or any light.
+LitCase light_for_maps(std::mt19937_64& random, int level) {
+  LitCase lit = random_light(random, level);
+  if (pick(random, 0, 3) != 0) {
+    lit.effects &= Effect::kAmbientOcclusion | Effect::kEmission | Effect::kMirror | Effect::kSky;
+    lit.effects |= Effect::kDirectLight | Effect::kShadows;
+    lit.lights.resize(std::min<std::size_t>(lit.lights.size(), kMaxFlatSuns));
+    lit.scene.lights = {lit.lights.data(), lit.lights.size()};
+  }
+  return lit;
+}
+
+// A world that is edited, in light by its map and by what is proven of its suns, beside a tree of it that is made anew.
+void draw_edited(std::mt19937_64& random, std::uint64_t seed, const WideScene& scene, const FrameCase& frame,
+                 Tallies* tallies) {
+  const std::size_t least = EditedWorld::least_bytes(scene.tree);
+  const HeapBytes bytes(least + (std::size_t{1} << 20));
+  EditedWorld world;
+  if (least == 0 || EditedWorld::make(scene.tree, EditedWorld::room_in(scene.tree, bytes.view().size),
+                                      bytes.span(), &world) != Status::kOk) {
+    return;
+  }
+  const LitCase lit = light_for_maps(random, scene.level);
+  std::vector<HeapBytes> proven;
+  std::vector<SunBricks> suns;
+  for (const Light& light : lit.lights) {
+    if (!light.is_point) {
+      proven.emplace_back(SunBricks::bytes(world.map()));
+      REQUIRE(SunBricks::make(world.map(), light.place, proven.back().span(), &suns.emplace_back()) ==
+              Status::kOk);
+      suns.back().prove(pick(random, 0, 1) == 0 ? UINT32_MAX : 20000);
+    }
+  }
+  const HeapBytes journal_bytes(std::size_t{1} << 18);
+  EditJournal journal(journal_bytes.span());
+  for (int edits = pick_int(random, 0, 3); edits > 0; --edits) {
+    VoxelBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = pick_int(random, world.bounds().low[axis] - 9, world.bounds().high[axis] + 9);
+      box.high[axis] = box.low[axis] + pick_int(random, 1, 12);
+    }
+    (void)world.edit(box, pick(random, 0, 1) == 0 ? EditShape::kBox : EditShape::kBall,
+                     pick_int(random, -1, 9), &journal);
+    for (SunBricks& sun : suns) {
+      (void)sun.follow(world, static_cast<std::uint32_t>(pick(random, 0, 2000)));
+    }
+    if (pick(random, 0, 3) != 0) {
+      world.forget_changes();
+    }
+  }
+  std::size_t size = 0;
+  (void)world.pack({}, &size);
+  const HeapBytes packed(size);
+  REQUIRE(world.pack(packed.span()) == Status::kOk);
+  const LitDrawn expected = draw_lit_core(scene_of(packed.view(), "edited"), frame, lit);
+  std::vector<std::uint8_t> pixels(expected.pixels.size(), 0xA5);
+  Band band = frame.band;
+  band.pixels = Bytes(pixels.data(), pixels.size());
+  const Status status = render_lit_band(lit.effects, world.tree(), world.map(), frame.camera, frame.shading,
+                                        lit.scene, {suns.data(), suns.size()}, band, nullptr, lit.options);
+  tallies->add(scene.level > kMaxBrickMapLevel ? "lit bricks of edited worlds, level 9 and 10"
+                                               : "lit bricks of edited worlds",
+               pixels_of(frame), status == Status::kOk && pixels == expected.pixels, seed);
 }
 
 // Some of the frame's rays by the exact judge, where a grid holds the world.
@@ -156,8 +224,11 @@ void draw_frames(std::uint64_t seed, const std::vector<Engine>& engines, Tallies
       continue;
     }
     (void)draw_by_all(engines, subject, frame, random, seed, tallies);
+    frame.band.stride_bytes = 0;
+    if (view < 2) {
+      draw_edited(random, seed, subject.scene(), frame, tallies);
+    }
     if (view == 0) {
-      frame.band.stride_bytes = 0;
       draw_lit(random, seed, subject.scene(), frame, tallies);
       judge(random, seed, subject.scene(), frame, tallies);
     }
