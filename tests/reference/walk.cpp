@@ -184,6 +184,29 @@ Hit walk(const BitGrid& grid, const Ray& ray, Statistics* statistics, EmptyBlock
   return hit;
 }
 
+void mark_path(const Ray& ray, const Voxel& size, const Hit& answer, BitGrid* cubes) {
+  check_ray(ray);
+  const auto cube_of = [](const Voxel& voxel) {
+    return Voxel{voxel[0] / kPathCubeSide, voxel[1] / kPathCubeSide, voxel[2] / kPathCubeSide};
+  };
+  const Time enter = enters_grid(ray, size);
+  if (enter == kNever) {
+    return;
+  }
+  State state = place(ray, enter);
+  NextPlanes next{};
+  const auto is_inside = [&](std::size_t axis) {
+    return state.cell[axis] >= 0 && state.cell[axis] < size[axis];
+  };
+  while (is_inside(0) && is_inside(1) && is_inside(2)) {
+    cubes->set(cube_of(state.cell));
+    if (answer.hit && cube_of(state.cell) == cube_of(answer.voxel)) {
+      return;
+    }
+    leave_cube(ray, 3, next, state);
+  }
+}
+
 Statistics& Statistics::operator+=(const Statistics& other) {
   rays += other.rays;
   hits += other.hits;

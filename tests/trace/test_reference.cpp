@@ -214,3 +214,35 @@ TEST_CASE("reference: large sparse worlds -> skipping empty blocks changes nothi
   CHECK(skipping.tied_crossings < walking.tied_crossings);
   CHECK(skipping.steps < walking.steps / 4);
 }
+
+TEST_CASE("reference: voxels of the cubes on the path to an answer alone -> it is judged as by all voxels") {
+  std::mt19937_64 random(20260705);
+  std::int64_t marked = 0;
+  std::int64_t wrong = 0;
+  for (const Voxel& size : {Voxel{64, 64, 64}, Voxel{65, 63, 129}, Voxel{200, 7, 130}, Voxel{5, 9, 8}}) {
+    const World world = make_world(WorldKind::kSparse, size, random);
+    const BitGrid grid(size, world.voxels);
+    RayCases rays(random(), size, world.voxels);
+    for (int i = 0; i < 200 * kScale; ++i) {
+      const Ray ray = rays.next().ray;
+      const Hit right = walk(grid, ray);
+      Hit other = right;  // another voxel, or one where nothing is
+      other.hit = true;
+      other.voxel = i % 2 == 0 ? world.voxels[static_cast<std::size_t>(i) % world.voxels.size()] : Voxel{};
+      for (const Hit& answer : {right, other, Hit{}}) {
+        BitGrid cubes({(size[0] + 7) / 8, (size[1] + 7) / 8, (size[2] + 7) / 8});
+        mark_path(ray, size, answer, &cubes);
+        BitGrid part(size);
+        for (const Voxel& voxel : world.voxels) {
+          part.set(voxel, cubes.test({voxel[0] / 8, voxel[1] / 8, voxel[2] / 8}));
+        }
+        REQUIRE_MESSAGE(same_answer(answer, walk(part, ray)) == same_answer(answer, right), describe(ray),
+                        ": ", describe(answer), ", right: ", describe(right));
+        wrong += same_answer(answer, right) ? 0 : 1;
+        marked += cubes.count();
+      }
+    }
+  }
+  CHECK(wrong > 400 * kScale);
+  CHECK(marked < 2400 * kScale * 30);
+}

@@ -1,7 +1,8 @@
 // thimble table: the paper's Table I and II on this machine, beside the paper's own figures.
 //
-// Frames are seen and timed as instruments/timed_frames.h says. Every frame is judged: pixels are drawn at random and their rays handed to the exact reference, which holds
-// the scene's voxels in a grid of its own, filled from the generator and not from the tree.
+// Frames are seen and timed as instruments/timed_frames.h says. Every frame is judged: pixels are drawn at random and their
+// rays handed to the exact reference, which holds voxels in a grid of its own, filled from the generator and not from the
+// tree: those of the cubes that these rays pass until their hits, since a grid of a billion points takes 9 GB.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -71,41 +72,76 @@ struct Row {
   std::string engine;
 };
 
-// The hit that a ray has by the core, and the picture's pixel beside that hit's colour.
-std::uint64_t count_mismatches(const BuiltScene& built, const reference::BitGrid& grid, const Camera& camera,
-                               const Shading& shading, const std::vector<std::uint8_t>& pixels,
-                               const TraceOptions& options, std::mt19937_64* random) {
-  std::uint64_t mismatches = 0;
-  for (int i = 0; i < kJudgedPixels / kTimedFrames; ++i) {
-    const std::int32_t x = static_cast<std::int32_t>((*random)() % kTimedWidthPx);
-    const std::int32_t y = static_cast<std::int32_t>((*random)() % kTimedHeightPx);
-    const Ray ray = camera.ray(x, y);
-    Hit hit;
-    if (built.closest_hit(ray, &hit, options) != Status::kOk) {
-      throw InputError("--engine does not take the rays of this view");
-    }
-    reference::Ray judged;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      judged.origin_q8[axis] = ray.origin[static_cast<int>(axis)].raw;
-      judged.direction[axis] = ray.direction[static_cast<int>(axis)];
-    }
-    reference::Hit ours;
-    ours.hit = hit.kind == HitKind::kHit;
-    ours.voxel = {hit.voxel.x, hit.voxel.y, hit.voxel.z};
-    ours.t_numerator = hit.t_numerator;
-    ours.t_denominator = hit.t_denominator;
-    ours.axis = int{hit.axis};
-    const Rgb8 color = shade(hit, ray, camera, shading);
-    const std::uint8_t pixel =
-        pixels[static_cast<std::size_t>(y) * kTimedWidthPx + static_cast<std::size_t>(x)];
-    const bool same_pixel = pixel == gray_of(color);
-    mismatches += same_pixel && reference::same_answer(ours, reference::walk(grid, judged)) ? 0U : 1U;
-  }
-  return mismatches;
-}
+/// Judges pixels of the two rows of a scene: first all are drawn, then the scene is streamed once more.
+class PixelJudge {
+ public:
+  explicit PixelJudge(int level)
+      : size_{1 << level, 1 << level, 1 << level},
+        cubes_({size_[0] / reference::kPathCubeSide, size_[1] / reference::kPathCubeSide,
+                size_[2] / reference::kPathCubeSide}) {}
 
-Row measure(const TableCommand& command, const BuiltScene& built, const reference::BitGrid& grid,
-            WideRenderer* wide, GpuEngine* gpu, bool orthographic, std::uint64_t points,
+  /// Takes pixels of a frame at random, each with the hit that its ray has by the core.
+  void take(bool orthographic, const BuiltScene& built, const Camera& camera, const Shading& shading,
+            const std::vector<std::uint8_t>& pixels, const TraceOptions& options, std::mt19937_64* random) {
+    for (int i = 0; i < kJudgedPixels / kTimedFrames; ++i) {
+      const std::int32_t x = static_cast<std::int32_t>((*random)() % kTimedWidthPx);
+      const std::int32_t y = static_cast<std::int32_t>((*random)() % kTimedHeightPx);
+      const Ray ray = camera.ray(x, y);
+      Hit hit;
+      if (built.closest_hit(ray, &hit, options) != Status::kOk) {
+        throw InputError("--engine does not take the rays of this view");
+      }
+      Judged& judged = judged_.emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        judged.ray.origin_q8[axis] = ray.origin[static_cast<int>(axis)].raw;
+        judged.ray.direction[axis] = ray.direction[static_cast<int>(axis)];
+      }
+      judged.ours = {hit.kind == HitKind::kHit,
+                     {hit.voxel.x, hit.voxel.y, hit.voxel.z},
+                     hit.t_numerator,
+                     hit.t_denominator,
+                     int{hit.axis}};
+      const std::uint8_t pixel =
+          pixels[static_cast<std::size_t>(y) * kTimedWidthPx + static_cast<std::size_t>(x)];
+      judged.is_same_pixel = pixel == gray_of(shade(hit, ray, camera, shading));
+      judged.orthographic = orthographic;
+      mark_path(judged.ray, size_, judged.ours, &cubes_);
+    }
+  }
+
+  /// Of perspective and parallel pixels, how many are not as the reference says.
+  std::array<std::uint64_t, 2> mismatches(const SceneSource& source, const Progress& progress) const {
+    reference::BitGrid grid(size_);
+    source.stream(
+        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
+          constexpr int kSide = reference::kPathCubeSide;
+          if (cubes_.test({x / kSide, y / kSide, z / kSide})) {
+            grid.set({x, y, z});
+          }
+        },
+        progress);
+    std::array<std::uint64_t, 2> wrong{};
+    for (const Judged& judged : judged_) {
+      const bool is_right = judged.is_same_pixel && same_answer(judged.ours, walk(grid, judged.ray));
+      wrong[judged.orthographic ? 1 : 0] += is_right ? 0U : 1U;
+    }
+    return wrong;
+  }
+
+ private:
+  struct Judged {
+    reference::Ray ray;
+    reference::Hit ours;
+    bool is_same_pixel = false;
+    bool orthographic = false;
+  };
+  reference::Voxel size_;
+  reference::BitGrid cubes_;
+  std::vector<Judged> judged_;
+};
+
+Row measure(const TableCommand& command, const BuiltScene& built, PixelJudge* judge, WideRenderer* wide,
+            GpuEngine* gpu, bool orthographic, std::uint64_t points,
             const std::function<void(double)>& progress) {
   const TraceOptions options = command.engine.trace_options();
   std::vector<std::uint8_t> pixels(band_bytes(PixelFormat::kGray8, kTimedWidthPx, kTimedHeightPx));
@@ -141,7 +177,7 @@ Row measure(const TableCommand& command, const BuiltScene& built, const referenc
     }
     seconds.push_back(taken);
     row.hits = counts.hits;
-    row.mismatches += count_mismatches(built, grid, camera, shading, pixels, options, &random);
+    judge->take(orthographic, built, camera, shading, pixels, options, &random);
     progress(static_cast<double>(frame + 1) / kTimedFrames);
   }
   row.seconds = quantile(seconds, 0.5);
@@ -221,18 +257,15 @@ void run(const TableCommand& command) {
     BuiltScene built(*source, build, [&](double done) { bar.update(done * 0.3); });
     const auto wide = command.engine.wide_renderer(&built, kTimedWidthPx, kTimedHeightPx);
     const auto gpu = command.engine.gpu(built);
-    const int side = 1 << command.depth;
-    reference::BitGrid grid({side, side, side});
-    source->stream(
-        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
-          grid.set({x, y, z});
-        },
-        [&](double done) { bar.update(0.3 + done * 0.3); });
+    PixelJudge judge(command.depth);
     std::vector<Row> pair;
     for (const bool orthographic : {false, true}) {
-      pair.push_back(measure(command, built, grid, wide.get(), gpu.get(), orthographic, points,
-                             [&](double done) { bar.update(0.6 + 0.2 * (done + (orthographic ? 1 : 0))); }));
+      pair.push_back(measure(command, built, &judge, wide.get(), gpu.get(), orthographic, points,
+                             [&](double done) { bar.update(0.3 + 0.2 * (done + (orthographic ? 1 : 0))); }));
     }
+    const auto wrong = judge.mismatches(*source, [&](double done) { bar.update(0.7 + done * 0.3); });
+    pair[0].mismatches = wrong[0];
+    pair[1].mismatches = wrong[1];
     bar.clear();
     for (const Row& row : pair) {
       files.print(row_text(row));
