@@ -1,6 +1,7 @@
 #include "scene/voxelise.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "scene/mesh_shade.h"
 #include "scene/world_fit.h"
@@ -35,54 +36,21 @@ std::array<double, 3> turned(const std::array<double, 3>& p, bool z_up) {
   return z_up ? p : std::array<double, 3>{p[0], -p[2], p[1]};
 }
 
-/// First and last block of 2^level voxels whose closed extent meets the closed range low..high. The range
-/// keeps off the world's border, so neither is outside.
-std::int32_t first_block(std::int32_t low, int level) {
-  return (low - 1) >> (kUnitBits + level);
-}
-std::int32_t last_block(std::int32_t high, int level) {
-  return high >> (kUnitBits + level);
-}
-
-/// Voxels first..last, row by row; what a plane decides is tested once for each row, column or cell.
-void emit_voxels(const TriangleBoxTest& test, const UnitPoint& first, const UnitPoint& last,
-                 std::uint8_t material, const VoxelSink& sink) {
-  for (std::int32_t z = first[2]; z <= last[2]; ++z) {
-    for (std::int32_t y = first[1]; y <= last[1]; ++y) {
-      UnitPoint center{0, y * kUnitsPerVoxel + kHalfVoxel, z * kUnitsPerVoxel + kHalfVoxel};
-      if (!test.meets_plane(0, center, kHalfVoxel)) {
-        continue;
-      }
-      for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-        center[0] = x * kUnitsPerVoxel + kHalfVoxel;
-        if (test.meets_plane(1, center, kHalfVoxel) && test.meets_plane(2, center, kHalfVoxel) &&
-            test.meets_surface(center, kHalfVoxel)) {
-          sink(x, y, z, material);
-        }
-      }
-    }
-  }
-}
-
-/// Emits the voxels of a block that meets the triangle. The stack holds at most 7 siblings a level and the
-/// block in hand.
-void descend(const TriangleBoxTest& test, const TriangleBlock& root, std::uint8_t material,
-             const VoxelSink& sink) {
-  std::array<TriangleBlock, 7 * 12 + 1> stack;
-  std::size_t depth = 0;
-  stack[depth++] = root;
-  while (depth > 0) {
-    const TriangleBlock block = stack[--depth];
-    if (block.level == 0) {
-      sink(block.voxel[0], block.voxel[1], block.voxel[2], material);
-      continue;
-    }
-    for (int child = 7; child >= 0; --child) {
+/// The voxels of a block of at least 4 a side that meet the triangle.
+void visit_met(const TriangleBoxTest& test, const TriangleBlock& block, std::uint8_t material,
+               const VoxelSink& sink) {
+  if (block.level > 2) {
+    for (int child = 0; child < 8; ++child) {
       const TriangleBlock part = child_of(block, child);
       if (meets_block(test, part)) {
-        stack[depth++] = part;
+        visit_met(test, part, material, sink);
       }
     }
+    return;
+  }
+  for (std::uint64_t met = test.met_mask(block.voxel); met != 0; met &= met - 1) {
+    const UnitPoint at = voxel_of(block.voxel, met);
+    sink(at[0], at[1], at[2], material);
   }
 }
 
@@ -227,6 +195,11 @@ std::uint64_t TriangleBoxTest::surface_mask(const UnitPoint& voxel) const {
   return passed;
 }
 
+UnitPoint voxel_of(const UnitPoint& corner, std::uint64_t mask) {
+  const int bit = std::countr_zero(mask);
+  return {corner[0] + (bit & 3), corner[1] + (bit >> 2 & 3), corner[2] + (bit >> 4)};
+}
+
 TriangleBlock child_of(const TriangleBlock& block, int child) {
   TriangleBlock part{block.voxel, block.level - 1};
   for (int axis = 0; axis < 3; ++axis) {
@@ -266,36 +239,19 @@ std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bo
 }
 
 void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, const VoxelSink& sink) {
-  // Wide enough that the bounding box spans at most five blocks a side: few for a triangle of some voxels,
-  // which are then tested directly, and few tests wasted on a large one.
-  constexpr std::int32_t kMaxSpan = 4;
   const TriangleBoxTest test(triangle);
-  int level = 0;
-  UnitPoint first{};
-  UnitPoint last{};
-  for (bool small = false; !small; ++level) {
-    small = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[axis] = first_block(test.low()[axis], level);
-      last[axis] = last_block(test.high()[axis], level);
-      small = small && last[axis] - first[axis] <= kMaxSpan;
-    }
+  // The least block of the octree that holds it. It keeps off the world's border, so no voxel that it meets is outside.
+  TriangleBlock block{{}, 2};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    block.voxel[axis] = (test.low()[axis] - 1) >> kUnitBits;
+    const std::int32_t last = test.high()[axis] >> kUnitBits;
+    block.level = std::max(block.level,
+                           static_cast<int>(std::bit_width(static_cast<unsigned>(block.voxel[axis] ^ last))));
   }
-  --level;
-  if (level == 0) {
-    emit_voxels(test, first, last, material, sink);
-    return;
+  for (std::int32_t& coordinate : block.voxel) {
+    coordinate = coordinate >> block.level << block.level;
   }
-  for (std::int32_t z = first[2]; z <= last[2]; ++z) {
-    for (std::int32_t y = first[1]; y <= last[1]; ++y) {
-      for (std::int32_t x = first[0]; x <= last[0]; ++x) {
-        const TriangleBlock block{{x << level, y << level, z << level}, level};
-        if (meets_block(test, block)) {
-          descend(test, block, material, sink);
-        }
-      }
-    }
-  }
+  visit_met(test, block, material, sink);
 }
 
 bool is_shaded(const TriangleMesh& mesh) {

@@ -55,17 +55,8 @@ class TriangleBoxTest {
 
   /// A cube by its centre and half its side, in units (voxel (i,j,k): 256 * i + 128, half 128).
   bool meets(const UnitPoint& center, std::int32_t half) const {
-    return meets_surface(center, half) && meets_bounds(center, half) && meets_plane(0, center, half) &&
-           meets_plane(1, center, half) && meets_plane(2, center, half);
-  }
-
-  /// The parts of `meets`. The triangle's bounding box against the cube:
-  bool meets_bounds(const UnitPoint& center, std::int32_t half) const;
-  /// The edges' axes in the coordinate plane perpendicular to `axis`; `center[axis]` is not used.
-  bool meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
-  /// The triangle's plane against the cube.
-  bool meets_surface(const UnitPoint& center, std::int32_t half) const {
-    return std::abs(distance(center)) <= normal_reach_ * half;
+    return meets_bounds(center, half) && std::abs(distance(center)) <= normal_reach_ * half &&
+           meets_plane(0, center, half) && meets_plane(1, center, half) && meets_plane(2, center, half);
   }
   /// Which of the 4 x 4 x 4 voxels from `voxel` on pass `meets`: bit x + 4 y + 16 z.
   std::uint64_t met_mask(const UnitPoint& voxel) const;
@@ -80,6 +71,10 @@ class TriangleBoxTest {
     std::int64_t low = 0, high = 0;
     std::int64_t reach = 0;  ///< |u| + |v|
   };
+  /// The triangle's bounding box against the cube.
+  bool meets_bounds(const UnitPoint& center, std::int32_t half) const;
+  /// The edges' axes in the coordinate plane perpendicular to `axis`; `center[axis]` is not used.
+  bool meets_plane(std::size_t axis, const UnitPoint& center, std::int32_t half) const;
   /// Of the centre from the triangle's plane, times the normal's length.
   std::int64_t distance(const UnitPoint& center) const {
     return normal_[0] * (center[0] - origin_[0]) + normal_[1] * (center[1] - origin_[1]) +
@@ -105,8 +100,8 @@ using BlockSink = std::function<void(const UnitPoint& voxel, int level, std::uin
 std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bool z_up);
 
 /// Calls `sink` once for each voxel of the world of 2^level whose closed box meets `triangle` (coordinates
-/// 1 .. 2^(level + 8) - 1). Cost: the bounding box is cut into at most 5 x 5 x 5 blocks, those that meet the
-/// triangle into eight, and so on down to voxels, so a big triangle costs in proportion to its area. No heap.
+/// 1 .. 2^(level + 8) - 1). Cost: the least block of the octree that holds it is cut into eight, those that meet the
+/// triangle again, and so on down to 4 x 4 x 4 voxels, so a big triangle costs in proportion to its area. No heap.
 void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, const VoxelSink& sink);
 
 /// Whether its voxels have colours of their own (mesh_shade.h).
@@ -115,7 +110,7 @@ bool is_shaded(const TriangleMesh& mesh);
 /// then, as for a mesh without colours, everything is material 0. `progress` may be empty. InputError "no
 /// triangles".
 ///
-/// Small triangles, and few of any size, come one by one, z rows of y rows of x within small ones. A voxel
+/// Small triangles, and few of any size, come one by one. A voxel
 /// then comes once for each triangle that it meets. Where there are many large ones (more than 2^24 voxels in
 /// their boxes, and more than 64 a triangle), which may cover each other many times over, they go cell by cell:
 /// each voxel comes once, with the material of the last triangle that meets it, and a full block as one. So time
@@ -140,6 +135,8 @@ struct TriangleBlock {
   int level;
 };
 
+/// Of the 4 x 4 x 4 voxels from `corner` on that of the mask's lowest bit, x + 4 y + 16 z.
+UnitPoint voxel_of(const UnitPoint& corner, std::uint64_t mask);
 /// Of eight parts, bit a of `child` says the upper half of axis a.
 TriangleBlock child_of(const TriangleBlock& block, int child);
 /// Whether the triangle meets the block.

@@ -79,11 +79,8 @@ class Cell {
   void take_shaded(std::size_t cube, std::uint64_t met, const CellTriangle& triangle,
                    const TriangleBlock& block) {
     for (; met != 0; met &= met - 1) {
-      const int bit = std::countr_zero(met);
-      const auto material = shade_(triangle, {block.voxel[0] + (bit & 3), block.voxel[1] + (bit >> 2 & 3),
-                                              block.voxel[2] + (bit >> 4)});
-      if (material) {
-        take(cube, std::uint64_t{1} << bit, *material);
+      if (const auto material = shade_(triangle, voxel_of(block.voxel, met))) {
+        take(cube, met & -met, *material);
       }
     }
   }
@@ -117,9 +114,8 @@ class Cell {
       }
     }
     for (; left != 0; left &= left - 1) {
-      const int bit = std::countr_zero(left);
-      sink({block.voxel[0] + (bit & 3), block.voxel[1] + (bit >> 2 & 3), block.voxel[2] + (bit >> 4)}, 0,
-           has_materials_ ? materials_[64 * cube + static_cast<std::size_t>(bit)] : *first_material_);
+      const auto bit = static_cast<std::size_t>(std::countr_zero(left));
+      sink(voxel_of(block.voxel, left), 0, has_materials_ ? materials_[64 * cube + bit] : *first_material_);
     }
   }
 
