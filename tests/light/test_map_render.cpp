@@ -213,11 +213,9 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
     const std::uint64_t seed = random();
     CAPTURE(seed);
     std::mt19937_64 own(seed);
-    constexpr ChipWorld kDeepWorlds[] = {ChipWorld::kBlocks, ChipWorld::kDust, ChipWorld::kMerged};
     const bool is_deep = turn % 4 == 3;
     const int level = is_deep ? pick_int(own, 9, 10) : pick_int(own, 3, 6);
-    const MappedTree scene =
-        make_chip_scene(own, is_deep ? kDeepWorlds[turn / 4 % 3] : kChipWorlds[turn % 6], level);
+    const MappedTree scene = make_chip_scene(own, kChipWorlds[turn % std::size(kChipWorlds)], level);
     const std::vector<Surface> surfaces = hard_surfaces(own);
     for (int view = 0; view < 6; ++view) {
       CAPTURE(view);

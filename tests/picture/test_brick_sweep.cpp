@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "support/chip_worlds.h"
-#include "support/deep_worlds.h"
 #include "support/frames.h"
 #include "support/ray_cases.h"
 #include "thimble/picture/render.h"
@@ -161,7 +160,7 @@ TEST_CASE(
   std::mt19937_64 random(20261126);
   for (const int level : {9, 10}) {
     const int side_q8 = 256 << level;
-    const MappedTree scene = make_deep_scene(random, DeepWorld::kBlocks, level);
+    const MappedTree scene = make_chip_scene(random, ChipWorld::kBlocks, level);
     const VoxelBox& box = scene.tree.bounds();
     for (int turn = 0; turn < 12; ++turn) {
       CAPTURE(level);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "golden/scenes.h"
-#include "support/deep_worlds.h"
+#include "support/chip_worlds.h"
 #include "support/gpu_kernels.h"
 #include "support/hard_frames.h"
 #include "support/lit_cases.h"
@@ -147,13 +147,12 @@ WideScene make_stars(Random& random) {
       std::size_t{24} << 20);
 }
 WideScene make_chip(Random& random) {
-  return scene_of(
-      make_chip_scene(random, kChipWorlds[pick_int(random, 0, 5)], pick_int(random, 3, 6)).tree_bytes.view(),
-      "");
+  return scene_of(make_chip_tree(random, kChipWorlds[pick_int(random, 0, 6)], pick_int(random, 3, 6)).view(),
+                  "");
 }
 WideScene make_deep(Random& random) {
-  const auto kind = static_cast<DeepWorld>(pick_int(random, 0, kDeepWorldKinds - 1));
-  return scene_of(make_deep_tree(random, kind, pick_int(random, 9, 10)).view(), "");
+  return scene_of(make_chip_tree(random, kChipWorlds[pick_int(random, 0, 6)], pick_int(random, 9, 10)).view(),
+                  "");
 }
 
 bool set_chip(Random& random, const WideScene& scene, Camera* camera) {

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <random>
 #include <vector>
 
-#include "support/deep_worlds.h"
+#include "support/chip_worlds.h"
 #include "support/map_cells.h"
 #include "support/ray_cases.h"
 #include "thimble/base/memory.h"
@@ -37,10 +38,11 @@ int tree_material(const CompactTree& tree, const Vec3i& voxel) {
 TEST_CASE(
     "deep map: random worlds of level 9 and 10 -> each voxel looked at, and its material where it is seen") {
   std::mt19937_64 random(910);
-  for (int turn = 0; turn < 2 * kDeepWorldKinds; ++turn) {
+  constexpr int kKinds = std::size(kChipWorlds);
+  for (int turn = 0; turn < 2 * kKinds; ++turn) {
     CAPTURE(turn);
-    const int level = 9 + turn / kDeepWorldKinds;
-    const MappedTree scene = make_deep_scene(random, static_cast<DeepWorld>(turn % kDeepWorldKinds), level);
+    const int level = 9 + turn / kKinds;
+    const MappedTree scene = make_chip_scene(random, kChipWorlds[turn % kKinds], level);
     const BrickMap& map = scene.map;
     REQUIRE(map.level() == level);
     REQUIRE(map.belongs_to(scene.tree));
@@ -140,7 +142,7 @@ TEST_CASE("deep map: an empty world, a full one, one voxel -> the bytes that the
 
 TEST_CASE("deep map: each count of origins and each entry of the table moved -> damaged") {
   std::mt19937_64 random(913);
-  const MappedTree scene = make_deep_scene(random, DeepWorld::kBlocks, 9);
+  const MappedTree scene = make_chip_scene(random, ChipWorld::kBlocks, 9);
   const std::size_t size = scene.map.size_bytes();
   const HeapBytes bytes(size);
   std::uint8_t* const base = bytes.span().data;
