@@ -146,13 +146,15 @@ class Check {
     }                                                                 \
   } while (false)
 
-/// A case. `index` is for functions that serve a whole table.
+/// A case, or several of a table in turn: of `index` and the numbers behind it.
 struct Case {
   const char* name;      ///< a statement: what: condition -> result; null where flash is too short for names
   uint32_t arena_bytes;  ///< what `Check::arena` must hold
   void (*run)(Check& check, int index);
   int index = 0;
-  const char* detail = nullptr;  ///< null, or what tells it from others of this name
+  const char* detail =
+      nullptr;  ///< null, or what tells it from others of this name: of several, what is numbered
+  int times = 1;
 };
 
 /// The cases of one topic, which stand in one file.
@@ -163,13 +165,21 @@ struct Group {
   Case (*at)(int index);
 };
 
+template <const auto& kCases>
+constexpr int count_of() {
+  int count = 0;
+  for (const Case& row : kCases) {
+    count += row.times;
+  }
+  return count;
+}
 #ifdef THIMBLE_TERSE_CASES
 /// A table of cases without their names: as `kCases` itself is then used for nothing else, the linker never
 /// sees it.
 struct TerseCase {
   void (*run)(Check& check, int index);
   uint16_t arena_bytes;
-  int16_t index;
+  uint16_t index_and_times;  // 11 bits and 5
 };
 template <size_t kCount>
 struct TerseTable {
@@ -180,7 +190,8 @@ constexpr auto terse() {
   TerseTable<sizeof kCases / sizeof kCases[0]> table{};
   TerseCase* to = table.cases;
   for (const Case& one : kCases) {
-    *to++ = {one.run, static_cast<uint16_t>(one.arena_bytes), static_cast<int16_t>(one.index)};
+    *to++ = {one.run, static_cast<uint16_t>(one.arena_bytes),
+             static_cast<uint16_t>(one.index | one.times << 11)};
   }
   return table;
 }
@@ -189,17 +200,27 @@ inline constexpr auto kTerse = terse<kCases>();
 /// A group of a plain array of cases.
 template <const auto& kCases>
 constexpr Group group_of(const char* name, const char* file) {
-  return {name, file, static_cast<int>(sizeof kCases / sizeof kCases[0]), [](int index) -> Case {
-            const TerseCase& one = kTerse<kCases>.cases[index];
-            return {nullptr, one.arena_bytes, one.run, one.index};
+  return {name, file, count_of<kCases>(), [](int index) -> Case {
+            const TerseCase* row = kTerse<kCases>.cases;
+            for (; index >= row->index_and_times >> 11; ++row) {
+              index -= row->index_and_times >> 11;
+            }
+            return {nullptr, row->arena_bytes, row->run, (row->index_and_times & 0x7FF) + index};
           }};
 }
 #else
 /// A group of a plain array of cases.
 template <const auto& kCases>
 constexpr Group group_of(const char* name, const char* file) {
-  return {name, file, static_cast<int>(sizeof kCases / sizeof kCases[0]),
-          [](int index) -> Case { return kCases[index]; }};
+  return {name, file, count_of<kCases>(), [](int index) -> Case {
+            const Case* row = kCases;
+            for (; index >= row->times; ++row) {
+              index -= row->times;
+            }
+            Case one = *row;
+            one.index += index;
+            return one;
+          }};
 }
 #endif
 

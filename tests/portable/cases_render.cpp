@@ -187,26 +187,8 @@ constexpr uint32_t kDrawBytes = kSceneBytes + kPictureBytes + kRowBytes;
 constexpr const char kByRays[] = "each pixel -> its ray's shade; counts -> the sums";
 
 constexpr Case kCases[] = {
-    {kByRays, kRayBytes, against_rays, 0, "dense grid, mono1, depth"},
-    {kByRays, kRayBytes, against_rays, 1, "dense grid, gray4, normal"},
-    {kByRays, kRayBytes, against_rays, 2, "dense grid, gray8, color"},
-    {kByRays, kRayBytes, against_rays, 3, "dense grid, rgb565, mono"},
-    {kByRays, kRayBytes, against_rays, 4, "dense grid, rgb888, depth"},
-    {kByRays, kRayBytes, against_rays, 5, "pool, mono1, normal"},
-    {kByRays, kRayBytes, against_rays, 6, "pool, gray4, color"},
-    {kByRays, kRayBytes, against_rays, 7, "pool, gray8, mono"},
-    {kByRays, kRayBytes, against_rays, 8, "pool, rgb565, depth"},
-    {kByRays, kRayBytes, against_rays, 9, "pool, rgb888, normal"},
-    {kByRays, kRayBytes, against_rays, 10, "compact tree, mono1, color"},
-    {kByRays, kRayBytes, against_rays, 11, "compact tree, gray4, mono"},
-    {kByRays, kRayBytes, against_rays, 12, "compact tree, gray8, depth"},
-    {kByRays, kRayBytes, against_rays, 13, "compact tree, rgb565, normal"},
-    {kByRays, kRayBytes, against_rays, 14, "compact tree, rgb888, color"},
-    {"bands of any height -> the picture of one frame", kDrawBytes, any_band_height, 0, "mono1"},
-    {"bands of any height -> the picture of one frame", kDrawBytes, any_band_height, 1, "gray4"},
-    {"bands of any height -> the picture of one frame", kDrawBytes, any_band_height, 2, "gray8"},
-    {"bands of any height -> the picture of one frame", kDrawBytes, any_band_height, 3, "rgb565"},
-    {"bands of any height -> the picture of one frame", kDrawBytes, any_band_height, 4, "rgb888"},
+    {kByRays, kRayBytes, against_rays, 0, "structure, format and mode", 15},
+    {"bands of any height -> the picture of one frame", kDrawBytes, any_band_height, 0, "format", 5},
     {"both widths, all structures, both projections -> one picture", kDrawBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_scene(check));

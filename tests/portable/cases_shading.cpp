@@ -51,10 +51,7 @@ void depth_scale(Check& check, int index) {
 }
 
 constexpr Case kCases[] = {
-    {"depth: from near to far -> 255 down to the least, never rising", 0, depth_scale, 0, "a voxel"},
-    {"depth: from near to far -> 255 down to the least, never rising", 0, depth_scale, 1, "usual"},
-    {"depth: from near to far -> 255 down to the least, never rising", 0, depth_scale, 2, "1/256 voxel"},
-    {"depth: from near to far -> 255 down to the least, never rising", 0, depth_scale, 3, "the longest"},
+    {"depth: from near to far -> 255 down to the least, never rising", 0, depth_scale, 0, "planes", 4},
     {"depth: far before near -> bright up to near, dim behind", 0,
      [](Check& check, int) {
        THIMBLE_REQUIRE(camera_along_x(check));

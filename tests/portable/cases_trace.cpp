@@ -360,28 +360,15 @@ void merged_world(Check& check, int) {
 
 constexpr Case kCases[] = {
     {"random rays -> the brute force's answer, in every structure and width", cloud_bytes(3),
-     against_brute_force, kLattice, "lattice points and small slopes"},
-    {"random rays -> the brute force's answer, in every structure and width", cloud_bytes(3),
-     against_brute_force, kSmall, "halves of voxels"},
-    {"random rays -> the brute force's answer, in every structure and width", cloud_bytes(3),
-     against_brute_force, kAnywhere, "anywhere"},
-    {"random rays -> the brute force's answer, in every structure and width", cloud_bytes(3),
-     against_brute_force, kAxes, "components of 0"},
-    {"random rays -> the brute force's answer, in every structure and width", cloud_bytes(3),
-     against_brute_force, kFarAway, "from worlds away"},
-    {"random rays -> the brute force's answer, in every structure and width", cloud_bytes(3),
-     against_brute_force, kLong, "directions of 20 bits"},
+     against_brute_force, 0, "family", 6},
     {"no direction -> bad argument, the hit untouched", kOneBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(build(check, kOne));
        refuse(check, ray_q8({256, 256, 256}, {0, 0, 0}), Status::kBadArgument);
      }},
-    {"origin beyond the limits -> out of range, the hit untouched", kOneBytes, origin_beyond, 0, "x"},
-    {"origin beyond the limits -> out of range, the hit untouched", kOneBytes, origin_beyond, 1, "y"},
-    {"origin beyond the limits -> out of range, the hit untouched", kOneBytes, origin_beyond, 2, "z"},
-    {"direction beyond the limits -> out of range, the hit untouched", kOneBytes, direction_beyond, 0, "x"},
-    {"direction beyond the limits -> out of range, the hit untouched", kOneBytes, direction_beyond, 1, "y"},
-    {"direction beyond the limits -> out of range, the hit untouched", kOneBytes, direction_beyond, 2, "z"},
+    {"origin beyond the limits -> out of range, the hit untouched", kOneBytes, origin_beyond, 0, "axis", 3},
+    {"direction beyond the limits -> out of range, the hit untouched", kOneBytes, direction_beyond, 0, "axis",
+     3},
     {"check_ray: levels 0 and 13 -> out of range", 0,
      [](Check& check, int) {
        const Ray ray = ray_q8({0, 0, 0}, {1, 0, 0});
@@ -421,9 +408,7 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(check.hit.t_numerator, 9216);
        THIMBLE_EQUAL(check.hit.t_denominator, 256 * kMaxDirection);
      }},
-    {"away from the world or past it -> no node visited", kOneBytes, no_visit, 0, "x"},
-    {"away from the world or past it -> no node visited", kOneBytes, no_visit, 1, "y"},
-    {"away from the world or past it -> no node visited", kOneBytes, no_visit, 2, "z"},
+    {"away from the world or past it -> no node visited", kOneBytes, no_visit, 0, "axis", 3},
     {"past the box of what is occupied -> no node visited", kOneBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(build(check, kOne));
@@ -457,9 +442,7 @@ constexpr Case kCases[] = {
          THIMBLE_EQUAL(check.hit.visits, 3U);
        }
      }},
-    {"step limit -> reported when one visit more is needed", cloud_bytes(3), step_limit, 0, "dense grid"},
-    {"step limit -> reported when one visit more is needed", cloud_bytes(3), step_limit, 1, "pool"},
-    {"step limit -> reported when one visit more is needed", cloud_bytes(3), step_limit, 2, "compact tree"},
+    {"step limit -> reported when one visit more is needed", cloud_bytes(3), step_limit, 0, "structure", 3},
     {"any_hit: nobody asks for the visits -> the same kind", kOneBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(build(check, kOne));
@@ -471,9 +454,7 @@ constexpr Case kCases[] = {
          THIMBLE_EQUAL(kind, HitKind::kHit);
        }
      }},
-    {"moved by whole voxels -> the same hit, moved", 256, shifted, 0, "x"},
-    {"moved by whole voxels -> the same hit, moved", 256, shifted, 1, "y"},
-    {"moved by whole voxels -> the same hit, moved", 256, shifted, 2, "z"},
+    {"moved by whole voxels -> the same hit, moved", 256, shifted, 0, "axis", 3},
     {"axes exchanged -> the hit with its axes exchanged", cloud_bytes(3), turned, 1, "x z y"},
     {"axes exchanged -> the hit with its axes exchanged", cloud_bytes(3), turned, 2, "y x z"},
     {"axes exchanged -> the hit with its axes exchanged", cloud_bytes(3), turned, 3, "y z x"},
@@ -492,9 +473,7 @@ constexpr Case kCases[] = {
        THIMBLE_REQUIRE_OK(closest(check, 1, ray_q8({-256, 700, 700}, {5, 0, 0}), check.options));
        THIMBLE_EQUAL(check.hit.kind, HitKind::kMiss);
      }},
-    {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 0, "x"},
-    {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 1, "y"},
-    {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 2, "z"},
+    {"the largest world along its edges -> the voxel in each corner", 1280, along_edges, 0, "axis", 3},
     {"a world merged to one block -> its lowest corner, its level, t at its face", 512, merged_world},
 };
 

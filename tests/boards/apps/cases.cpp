@@ -57,6 +57,10 @@ void put_name(const Group& group, const Case& one, int number) {
   put(": ", one.name);
   if (one.detail != nullptr) {
     put(" (", one.detail);
+    if (one.times > 1) {
+      put(" ");
+      put_count(one.index);
+    }
     put(")");
   }
 }
