@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -93,6 +94,18 @@ TEST_CASE("command on a scene larger than its memory: drawn from the file, as wi
   std::fstream(scene, std::ios::in | std::ios::out | std::ios::binary).seekp(-1, std::ios::end).put('\x7f');
   const CommandResult directory = run_command({"-c", draw + folder.path("d.pgm")}, shell);
   CHECK_MESSAGE(directory.status == 1, directory.describe());
+}
+
+TEST_CASE("bake: many points -> written from where their tree was built, without room for another") {
+  if (kSanitized) {
+    return;  // it takes memory of its own
+  }
+  const TemporaryFolder folder;
+  const std::string scene = folder.path("points.oct");
+  const CommandResult baked = check_done({"bake", "points:17e6,depth=11", "-o", scene, "--quiet"});
+  const auto tree_kib = static_cast<long>(std::filesystem::file_size(scene) >> 10);
+  CHECK(tree_kib > 40000);
+  CHECK(baked.peak_kib < 2 * tree_kib);  // with a list of 17 million keys, or a copy: more than that
 }
 
 }  // namespace thimble::tests

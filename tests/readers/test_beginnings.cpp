@@ -1,9 +1,5 @@
 // Files are looked at before they are loaded, and what is loaded takes memory in proportion.
 #include <doctest/doctest.h>
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <memory>
@@ -161,17 +157,10 @@ TEST_CASE("info: a hundred million points in 4,096 places -> memory for the plac
   const bool is_few = thimble::tests::takes_few();
   const char* const points = is_few ? "points:4e7,depth=4" : "points:1e8,depth=4";
   // No limit here: within one, a list of points was cut where it ended before, too.
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::dup2(::open("/dev/null", O_WRONLY), STDOUT_FILENO);
-    ::execl(THIMBLE_COMMAND_PATH, "thimble", "info", "--quiet", points, nullptr);
-    ::_exit(127);
-  }
-  REQUIRE(child > 0);
-  int status = 0;
-  rusage usage{};
-  REQUIRE(::wait4(child, &status, 0, &usage) == child);
-  CHECK(status == 0);
-  CHECK(usage.ru_maxrss < (is_few ? 110 : 250) * 1024);  // kilobytes; the points would take 160, 400 MB
+  CommandLimits limits;
+  limits.seconds = 300;
+  const CommandResult result = run_command({"info", "--quiet", points}, limits);
+  CHECK_MESSAGE(result.status == 0, result.describe());
+  CHECK(result.peak_kib < (is_few ? 110 : 250) * 1024);  // the points would take 160, 400 MB
 }
 #endif

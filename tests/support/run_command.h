@@ -20,8 +20,9 @@ struct CommandResult {
   int status = -1;  ///< exit status; -1 when a signal ended it
   int signal = 0;   ///< the signal that ended it, 0 for none
   bool timed_out = false;
-  std::string out;  ///< standard output
-  std::string err;  ///< standard error
+  std::string out;    ///< standard output
+  std::string err;    ///< standard error
+  long peak_kib = 0;  ///< the most memory that it had, or what the test had when it began
 
   /// For failure messages.
   std::string describe() const;
