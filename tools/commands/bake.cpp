@@ -141,6 +141,8 @@ namespace {
 BakingOptions baking_options(const BakeCommand& command, const SceneSource& source, std::string* note) {
   BakingOptions options;
   options.limit_bytes = command.limit().bytes();
+  options.threads =
+      options.limit_bytes ? 1 : all_cores();  // within a limit, figures are those of any machine
   options.name = scene_name(command.scene.arguments.scene);
   options.brick_map = command.brick_map || command.scene.board != nullptr;
   options.effects = command.effects;

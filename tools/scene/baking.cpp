@@ -298,6 +298,7 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
   Baked result;
   const std::uint64_t limit = options.limit_bytes.value_or(UINT32_MAX);
   BuildOptions build;
+  build.threads = options.threads;
   build.front_bytes =
       kFrontBytes;  // so that the tree, which may be large, becomes a part of the scene where it is
   BuiltScene built(source, build, progress);

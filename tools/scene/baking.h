@@ -40,6 +40,7 @@ void suit_display(const DisplayFacts& display, const CompactTree& tree, const Sc
 struct BakingOptions {
   std::optional<std::uint64_t> limit_bytes;  ///< of the baked scene
   bool coarsen = false;                      ///< merge blocks until it keeps the limit
+  int threads = 1;                           ///< that build
   /// Add a brick map (brick_map.h), which makes frames on a chip faster, where the world has one and it keeps
   /// the limit.
   bool brick_map = false;

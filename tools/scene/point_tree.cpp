@@ -6,6 +6,8 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <functional>
+#include <future>
 #include <vector>
 
 #include "readers/oct.h"
@@ -71,11 +73,9 @@ class PartLists {
   PartLists(Bytes room, std::size_t parts, bool many)
       : room_(room), parts_(parts), lines_(parts), many_(many) {}
 
-  /// False where there is no room.
-  bool add(std::size_t number, std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint8_t material) {
+  /// Adds a point, a byte for x, y, z and the material each from the lowest on. False where there is no room.
+  bool add(std::size_t number, std::uint32_t point) {
     Line& line = lines_[number];
-    const std::uint32_t point =
-        (x & 255U) | (y & 255U) << 8 | (z & 255U) << 16 | std::uint32_t{material} << 24;
     const unsigned used = line.used;
     std::memcpy(line.bytes + used, &point, sizeof point);  // of three bytes the fourth is written over
     line.used = static_cast<std::uint8_t>(used + width());
@@ -604,11 +604,52 @@ class GrowingTree {
   std::uint64_t bytes_ = 0;
 };
 
+struct DealtPoint {
+  std::uint32_t part;
+  std::uint32_t point;
+};
+
+/// Hands points to `deal` many at a time, with several threads on another one while the next points come. What `deal`
+/// throws, `add` or `finish` does.
+class PointBatches {
+ public:
+  PointBatches(int threads, std::function<void(const std::vector<DealtPoint>& points)> deal)
+      : policy_(threads > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred),
+        deal_(std::move(deal)) {}
+
+  void add(const DealtPoint& point) {
+    coming_.push_back(point);
+    if (coming_.size() == std::size_t{1} << 16) {
+      hand_over();
+    }
+  }
+  void finish() {
+    hand_over();
+    dealing_.get();
+  }
+
+ private:
+  void hand_over() {
+    if (dealing_.valid()) {
+      dealing_.get();
+    }
+    dealt_.swap(coming_);
+    coming_.clear();
+    dealing_ = std::async(policy_, [this] { deal_(dealt_); });
+  }
+
+  std::launch policy_;
+  std::function<void(const std::vector<DealtPoint>& points)> deal_;
+  std::vector<DealtPoint> coming_;
+  std::vector<DealtPoint> dealt_;
+  std::future<void> dealing_;  // the last: whatever is thrown, it ends before what it reads goes
+};
+
 /// Streams the source once into the lists of the parts from `first` on. Where these take too much the last parts are
 /// left for another time.
 /// @return the first part that is left out; `first` where there is no room
 std::size_t deal_points(const SceneSource& source, std::size_t first, std::size_t end,
-                        std::uint64_t most_bytes, PartLists* lists, VoxelBox* bounds,
+                        std::uint64_t most_bytes, int threads, PartLists* lists, VoxelBox* bounds,
                         const Progress& progress) {
   struct NoRoom {};
   const auto shorten = [&] {
@@ -621,6 +662,16 @@ std::size_t deal_points(const SceneSource& source, std::size_t first, std::size_
       lists->drop(--end);
     }
   };
+  PointBatches batches(threads, [&](const std::vector<DealtPoint>& points) {
+    for (const DealtPoint& dealt : points) {
+      if (dealt.part < end && !lists->add(dealt.part, dealt.point)) {
+        throw NoRoom{};
+      }
+      if (lists->bytes() > most_bytes && end - first > 1) {
+        shorten();
+      }
+    }
+  });
   std::array<std::array<bool, std::size_t{1} << kMaxLevel>, 3> is_taken{};  // places along each axis
   try {
     source.stream(
@@ -629,18 +680,14 @@ std::size_t deal_points(const SceneSource& source, std::size_t first, std::size_
           const auto uy = static_cast<std::uint32_t>(y);
           const auto uz = static_cast<std::uint32_t>(z);
           is_taken[0][ux] = is_taken[1][uy] = is_taken[2][uz] = true;
-          const std::size_t part = morton_of_bytes(ux >> kPartLevel, uy >> kPartLevel, uz >> kPartLevel);
-          if (part < first || part >= end) {
-            return;
-          }
-          if (!lists->add(part, ux, uy, uz, material)) {
-            throw NoRoom{};
-          }
-          if (lists->bytes() > most_bytes && end - first > 1) {
-            shorten();
+          const std::uint32_t part = morton_of_bytes(ux >> kPartLevel, uy >> kPartLevel, uz >> kPartLevel);
+          if (part >= first) {
+            batches.add(
+                {part, (ux & 255U) | (uy & 255U) << 8 | (uz & 255U) << 16 | std::uint32_t{material} << 24});
           }
         },
         progress);
+    batches.finish();
   } catch (const NoRoom&) {
     return first;
   }
@@ -675,7 +722,8 @@ PointTree build_point_tree(const SceneSource& source, Bytes room, int threads, c
   std::vector<BuiltPart> batch(static_cast<std::size_t>(threads == 1 ? 1 : 4 * threads));
   VoxelBox bounds;
   for (std::size_t first = 0; first < parts;) {
-    const std::size_t end = deal_points(source, first, parts, most_list_bytes, &lists, &bounds, progress);
+    const std::size_t end =
+        deal_points(source, first, parts, most_list_bytes, threads, &lists, &bounds, progress);
     if (end == first) {
       return {};
     }
