@@ -14,7 +14,7 @@
 
 #include "readers/formats.h"
 #include "readers/read_any.h"
-#include "readers/vox_palette.h"
+#include "readers/vox_parts.h"
 #include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 #include "support/run_command.h"

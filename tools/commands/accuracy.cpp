@@ -310,7 +310,7 @@ std::string simulation_plot(SimulationWorld world, const std::vector<SimulationR
   plot.y_label = is_water ? "RMS error of heights, voxels" : "median error of positions, cells (0 not shown)";
   for (const SimulationRow& row : rows) {
     const std::string name = is_water ? fixed(row.wave_speed_q6 / 64.0, 3) + " columns a step"
-                                      : "positions of 2^-" + std::to_string(row.subpixel_bits) + " cells";
+                                      : concat("positions of 2^-", row.subpixel_bits, " cells");
     if (plot.series.empty() || plot.series.back().name != name) {
       plot.series.push_back({name, false, {}});
     }
@@ -355,10 +355,9 @@ void run_scene(const AccuracyCommand& command) {
       std::fprintf(stderr, "note: %s\n", note.c_str());
     }
   }
-  files.print(printable(scene) + "\n" + std::to_string(command.study.view.width_px) + "x" +
-              std::to_string(command.study.view.height_px) + ", median of " +
-              std::to_string(command.study.rounds) + " frames each, by turns\n" +
-              accuracy_tables(study, command.study.axis) + answer);
+  files.print(concat(printable(scene), "\n", command.study.view.width_px, "x", command.study.view.height_px,
+                     ", median of ", command.study.rounds, " frames each, by turns\n",
+                     accuracy_tables(study, command.study.axis), answer));
 }
 
 void run_hard(const AccuracyCommand& command) {
@@ -431,9 +430,9 @@ void add_positive(CLI::App& app, const std::string& name, const std::string& typ
       help);
 }
 
-void add_file_options(CLI::App& sub, ReportPaths* paths) {
-  add_path_option(
-      sub, "--csv", "FILE.csv", &paths->csv,
+void add_report_of(AccuracyCommand* command, CLI::App& sub) {
+  add_report(
+      sub, &command->files, &command->scene.quiet,
       "a line a setting: row (setting; anytime: a frame of the defaults stopped early; light: a lit "
       "picture), group (default, the knob turned alone, together, best: the reference itself, anytime), "
       "options (of thimble render), front (1: nothing nearer to the reference is as cheap, times within 3 "
@@ -450,11 +449,8 @@ void add_file_options(CLI::App& sub, ReportPaths* paths) {
       "others), operation, bound_name, unit, error (the largest), bound, cases. With --simulation: row "
       "(particles, water), substeps, subpixel_bits, columns (a side), wave_speed_q6 (columns a step), steps, "
       "work (displacements made, or columns worked out), ms_median, ms_quarter, ms_three_quarters (of all "
-      "steps), unit (of the errors), error_rms, error_median, error_most, front");
-  add_path_option(sub, "--json", "FILE.json", &paths->json,
-                  "the same, an array of objects; null where the CSV is empty");
-  add_path_option(sub, "--plot", "FILE.svg", &paths->plot,
-                  "PSNR against what --against says, the front marked and named");
+      "steps), unit (of the errors), error_rms, error_median, error_most, front",
+      "PSNR against what --against says, the front marked and named");
 }
 
 }  // namespace
@@ -479,11 +475,9 @@ void add_accuracy(CLI::App& app) {
       "instead of a scene: substeps and bits of positions of the particle world, or columns and steps of a "
       "basin of water, against the finest");
   add_whole_option(*sub, "--rays", "N", 1, 1000000000, &command->hard_rays,
-                   "--hard-cases: rays, shared among the cases; a fifth as many cases of each operation")
-      ->default_str("1000000");
+                   "--hard-cases: rays, shared among the cases; a fifth as many cases of each operation");
   add_whole_option(*sub, "--seed", "S", 0, INT64_MAX / 2000003, &command->seed,
-                   "--hard-cases: of the random rays")
-      ->default_str("1");
+                   "--hard-cases: of the random rays");
   add_positive(*sub, "--for-ms", "T", 1e-9, &command->for_ms,
                "answer with the options that come nearest to the reference in T milliseconds of the "
                "processor a frame, median on this machine at this --size");
@@ -493,15 +487,13 @@ void add_accuracy(CLI::App& app) {
                "PSNR is 20 log10(255/E) dB)");
   sub->get_option("--for-ms")->excludes(sub->get_option("--for-error"));
   add_whole_option(*sub, "--rounds", "N", 1, 999, &command->study.rounds,
-                   "frames timed of each setting, by turns, one of each a round")
-      ->default_str("5");
+                   "frames timed of each setting, by turns, one of each a round");
   add_choice_option(
       *sub, "--against",
       {{"time", CostAxis::kTime}, {"visits", CostAxis::kVisits}, {"instructions", CostAxis::kInstructions}},
       &command->study.axis,
       "what the front and the plot weigh errors against: milliseconds here, or what is the same on every "
-      "machine: nodes visited, or an estimate of instructions on lm3s6965evb")
-      ->default_str("time");
+      "machine: nodes visited, or an estimate of instructions on lm3s6965evb");
   add_view(*sub, &command->study.view, false);
   add_shade(
       *sub, &command->study.shade,
@@ -511,8 +503,7 @@ void add_accuracy(CLI::App& app) {
       "light whose knobs are turned too (rays of occlusion, rays of rough metal, bounces): auto (what the "
       "scene's materials and lights call for), none, or effects with commas between them: " +
           effect_names());
-  add_file_options(*sub, &command->files);
-  add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
+  add_report_of(command.get(), *sub);
   when_chosen(*sub, [command, sub] { run(*command, *sub); });
 }
 

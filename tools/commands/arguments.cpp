@@ -175,7 +175,7 @@ CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std:
       [=](const std::string& text) -> std::string {
         const auto number = parse_whole(text, low, high);
         if (!number) {
-          return "is not a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+          return concat("is not a whole number from ", low, " to ", high);
         }
         take(*number);
         return {};
@@ -196,6 +196,13 @@ CLI::Option* add_real_option(CLI::App& app, const std::string& name, const std::
         return {};
       },
       help);
+}
+
+CLI::Option* add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
+                             double high, double* to, const std::string& help) {
+  return add_real_option(
+             app, name, type_name, low, high, [to](double number) { *to = number; }, help)
+      ->default_str(shortest(*to));
 }
 
 CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,

@@ -52,7 +52,8 @@ CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std:
                               std::int64_t low, std::int64_t high,
                               const std::function<void(std::int64_t)>& take, const std::string& help);
 
-/// The same, kept where `to` says: in a whole number, or an optional one.
+/// The same, kept where `to` says: in a whole number, or an optional one. Its default is what `to` holds,
+/// unless that is below `low`: then there is none.
 template <class Number>
 CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
                               std::int64_t low, std::int64_t high, Number* to, const std::string& help) {
@@ -63,30 +64,39 @@ CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std:
       *to = static_cast<typename Number::value_type>(number);
     }
   };
-  return add_whole_option(app, name, type_name, low, high, std::function<void(std::int64_t)>(take), help);
+  CLI::Option* const option =
+      add_whole_option(app, name, type_name, low, high, std::function<void(std::int64_t)>(take), help);
+  if constexpr (std::is_integral_v<Number>) {
+    option->default_str(std::cmp_less(*to, low) ? "" : std::to_string(*to));
+  }
+  return option;
 }
 
 /// An option that is a finite number of low .. high.
 CLI::Option* add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
                              double high, const std::function<void(double)>& take, const std::string& help);
+/// The same, kept in `to`, which holds its default.
+CLI::Option* add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
+                             double high, double* to, const std::string& help);
 
 /// An option that is one of a few words, in any case. `take` gets the index into `words`.
 CLI::Option* add_choice_option(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                                std::function<void(std::size_t)> take, const std::string& help);
 
-/// The same; `to` gets what stands beside the word.
+/// The same; `to` gets what stands beside the word. What it holds is the default, where there is a word for that.
 template <class Value>
 CLI::Option* add_choice_option(
     CLI::App& app, const std::string& name,
     const std::vector<std::pair<std::string, std::type_identity_t<Value>>>& choices, Value* to,
     const std::string& help) {
   std::vector<std::string> words;
-  words.reserve(choices.size());
+  std::string usual;
   for (const auto& [word, value] : choices) {
     words.push_back(word);
+    usual = usual.empty() && value == *to ? word : usual;
   }
   const auto take = [choices, to](std::size_t index) { *to = choices[index].second; };
-  return add_choice_option(app, name, words, take, help);
+  return add_choice_option(app, name, words, take, help)->default_str(usual);
 }
 
 /// The path of a file.

@@ -216,9 +216,8 @@ std::string baked_text(const BakeCommand& command, const BakingOptions& options,
     text += "note: " + command.note + "\n";
   }
   const double a_voxel = static_cast<double>(bytes) / static_cast<double>(tree.voxel_count());
-  text += counted(tree.voxel_count(), "voxel") + " in " + grouped(bytes) + " bytes (depth " +
-          std::to_string(tree.level()) +
-          (tree.voxel_count() == 0 ? "" : ", " + fixed(a_voxel, 2) + " bytes a voxel") + ")\n";
+  text += concat(counted(tree.voxel_count(), "voxel"), " in ", grouped(bytes), " bytes (depth ", tree.level(),
+                 tree.voxel_count() == 0 ? "" : ", " + fixed(a_voxel, 2) + " bytes a voxel", ")\n");
   if (baked.effects != Effect::kNone) {
     text += "for the effects " + effects_text(baked.effects) + "\n";
   }

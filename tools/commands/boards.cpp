@@ -1,20 +1,23 @@
 // thimble boards: what the boards are, and what of a scene fits on each.
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <map>
 #include <memory>
+#include <tuple>
 
+#include "boards/frame_costs.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
+#include "counted/counted.h"
 #include "output/progress.h"
 #include "output/tables.h"
 #include "output/units.h"
 #include "readers/oct.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
-#include "scene/board_frames.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
@@ -68,6 +71,77 @@ BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& sourc
   for_each_block(tree, [&](const Vec3i&, int level, std::uint8_t) { voxels += level == 0 ? 1U : 0U; });
   return {baked.bytes.size(), (tree.node_count() + voxels) / 8 * 7, baked.effects};
 }
+
+// As `bake --board --effects none` does, with a map whatever its size.
+std::uint64_t count_frame(const BoardFacts& board, const SceneSource& source, counted::FrameWork* work) {
+  ViewWishes view;
+  view.width_px = board.width_px;
+  view.height_px = board.height_px;
+  view.side = NamedView::kBest;
+  view.fov_degrees = kPictureFov;
+  BakingOptions options;
+  options.brick_map = true;
+  options.effects = {false};
+  options.camera = [&](const CompactTree& tree) {
+    return frame_round(view, source, shape_of(source, tree)).kept;
+  };
+  const BakedScene* const given = source.baked();
+  const Baked made = given != nullptr ? Baked() : bake_scene(source, options);
+  const ConstBytes bytes = (given != nullptr ? *given : made.scene).bytes();
+  const bool is_ink = bits_per_pixel(board.format) == 1;
+  return counted::count_frames(bytes.data, bytes.size, board.width_px, board.height_px, is_ink, work)
+             ? bytes.size
+             : 0;
+}
+
+// Frames a second of a scene on each board, before anybody has one.
+class BoardFrames {
+ public:
+  explicit BoardFrames(const SceneSource& source) : source_(source) {}
+
+  // Instructions of a frame of the scene without light by the brick map, as `bench` counts them (the median of eight
+  // views), within a fifth (tests/budgets/scene_frames.csv); 0 where scene and map do not fit beside the
+  // program, or the world has no map. Bakes for each size of display once.
+  std::uint64_t instructions(const BoardFacts& board) {
+    const auto cost = std::find_if(std::begin(kFrameCosts), std::end(kFrameCosts), [&](const FrameCost& one) {
+      return std::strcmp(one.cpu, board.cpu) == 0;
+    });
+    if (source_.level() > board.most_map_level || cost == std::end(kFrameCosts)) {
+      return 0;
+    }
+    const Counted& work = counted(board);
+    if (work.bytes == 0 || work.bytes > scene_flash_bytes(board)) {
+      return 0;
+    }
+    const auto all = [&](const counted::FrameWork& one) {
+      return static_cast<std::int64_t>(one.blocks * cost->block_hundredths / 100 + one.hits * cost->hit);
+    };
+    const std::int64_t frame = std::int64_t{board.frame_instructions} + all(work.scene) - all(work.demo);
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(frame, 1));
+  }
+
+ private:
+  struct Counted {
+    std::uint64_t bytes = 0;  ///< baked, with a map; 0: it has none
+    counted::FrameWork scene;
+    counted::FrameWork demo;
+  };
+  const Counted& counted(const BoardFacts& board) {
+    const auto [at, is_new] =
+        counted_.try_emplace({board.width_px, board.height_px, bits_per_pixel(board.format) == 1});
+    Counted& counted = at->second;
+    if (is_new) {
+      counted.bytes = count_frame(board, source_, &counted.scene);
+      SceneArguments arguments;
+      arguments.scene = "demo";
+      count_frame(board, *open_scene(arguments), &counted.demo);
+    }
+    return counted;
+  }
+
+  const SceneSource& source_;
+  std::map<std::tuple<std::int32_t, std::int32_t, bool>, Counted> counted_;  ///< by width, height, ink
+};
 
 SceneSizes measure(const BoardsCommand& command) {
   SceneSizes sizes;
@@ -204,8 +278,7 @@ std::string boards_text() {
   std::vector<Cells> rows{{"board", "core", "picture", "display", "buttons", "RAM", "flash", "stack"}};
   for (const BoardFacts& board : platform::boards()) {
     rows.push_back({board.name, board.cpu,
-                    std::to_string(board.width_px) + "x" + std::to_string(board.height_px) + " " +
-                        format_name(board.format),
+                    concat(board.width_px, "x", board.height_px, " ", format_name(board.format)),
                     screen_name(board.screen), std::to_string(board.buttons), grouped(board.ram_bytes),
                     grouped(board.flash_bytes), grouped(board.stack_bytes)});
   }
@@ -222,9 +295,10 @@ std::string boards_text() {
 }
 
 std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
-  std::string text = "\n" + printable(command.scene.arguments.scene) + "\n" + counted(sizes.voxels, "voxel") +
-                     " at depth " + std::to_string(sizes.depth) + ", " + grouped(sizes.baked_bytes) +
-                     " bytes baked, " + grouped(sizes.pool_bytes) + " bytes as a pool built on the chip\n\n";
+  std::string text =
+      concat("\n", printable(command.scene.arguments.scene), "\n", counted(sizes.voxels, "voxel"),
+             " at depth ", sizes.depth, ", ", grouped(sizes.baked_bytes), " bytes baked, ",
+             grouped(sizes.pool_bytes), " bytes as a pool built on the chip\n\n");
   std::vector<Cells> rows{{"board", "scene flash", "scene", "RAM to draw", "fits", "RAM to build", "fits",
                            "deepest", "a second"}};
   for (const BoardFacts& board : platform::boards()) {

@@ -17,8 +17,9 @@ namespace {
 constexpr std::uint64_t kMostPathBytes = std::uint64_t{64} << 20;
 constexpr std::array<const char*, 10> kNames{"ex", "ey", "ez", "tx", "ty", "tz", "ux", "uy", "uz", "fov"};
 
-[[noreturn]] void fail_in_path(const std::string& path, std::uint64_t line, const std::string& sentence) {
-  throw OutputError(printable(path) + ": line " + std::to_string(line) + ": " + sentence);
+template <class... Pieces>
+[[noreturn]] void fail_in_path(const std::string& path, std::uint64_t line, const Pieces&... pieces) {
+  throw OutputError(concat(printable(path), ": line ", line, ": ", pieces...));
 }
 
 std::vector<std::string_view> cells_of(std::string_view line) {
@@ -78,8 +79,7 @@ class PathReader {
     if (columns_.empty()) {
       columns_ = columns_for(cells.size());
       if (columns_.empty()) {
-        fail_in_path(path_, line,
-                     std::to_string(cells.size()) + " columns are none of a camera; " + kPathColumns);
+        fail_in_path(path_, line, concat(cells.size(), " columns are none of a camera; ", kPathColumns));
       }
       result_.has_fov = columns_.back() == 9;
       if (is_names(cells)) {
@@ -87,9 +87,7 @@ class PathReader {
       }
     }
     if (cells.size() != columns_.size()) {
-      fail_in_path(
-          path_, line,
-          std::to_string(cells.size()) + " columns; the first line has " + std::to_string(columns_.size()));
+      fail_in_path(path_, line, concat(cells.size(), " columns; the first line has ", columns_.size()));
     }
     std::array<double, 10> numbers{};
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -113,11 +111,11 @@ class PathReader {
     if (result_.has_fov) {
       camera.view.fov_degrees = numbers[9];
       if (!(numbers[9] >= 1 && numbers[9] <= 120)) {
-        fail_in_path(path_, line, "fov " + shortest(numbers[9]) + " is not from 1 to 120 degrees");
+        fail_in_path(path_, line, "fov ", shortest(numbers[9]), " is not from 1 to 120 degrees");
       }
     }
     if (result_.cameras.size() == kMostFilmFrames) {
-      fail_in_path(path_, line, "a film has at most " + grouped(kMostFilmFrames) + " frames");
+      fail_in_path(path_, line, "a film has at most ", grouped(kMostFilmFrames), " frames");
     }
     result_.cameras.push_back(camera);
   }

@@ -92,7 +92,7 @@ std::string materials(const LitDescription& lit, const UsedMaterials& used, Surf
     return none;
   }
   if (count > kMostNamed) {
-    names += " and " + std::to_string(count - kMostNamed) + " more";
+    names += concat(" and ", count - kMostNamed, " more");
   }
   return (count == 1 ? "material " : "materials ") + names + (count == 1 ? " is " : " are ") + what;
 }
@@ -119,9 +119,9 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
     case Effect::kShadows:
       return rest.has_shadows ? "its lights cast shadows" : named;
     case Effect::kAmbientOcclusion:
-      return rest.occlusion.rays == 0 ? named
-                                      : std::to_string(rest.occlusion.rays) + " rays a face, " +
-                                            std::to_string(rest.occlusion.reach) + " voxels far";
+      return rest.occlusion.rays == 0
+                 ? named
+                 : concat(rest.occlusion.rays, " rays a face, ", rest.occlusion.reach, " voxels far");
     case Effect::kEmission:
     case Effect::kEmitterLight:
       return materials(lit, used, SurfaceKind::kEmit, "emissive", named);
@@ -132,8 +132,7 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
     case thimble::Effect::kMedia:
       return materials(lit, used, SurfaceKind::kMedia, "cloud", named);
     case thimble::Effect::kWater:
-      return rest.has_water ? "water of " + std::to_string(rest.water.width) + " x " +
-                                  std::to_string(rest.water.depth) + " columns"
+      return rest.has_water ? concat("water of ", rest.water.width, " x ", rest.water.depth, " columns")
                             : named;
     case Effect::kFog:
       return rest.fog.density_q16 == 0
@@ -403,8 +402,8 @@ std::string frame_lines(const EffectsStudy& study) {
 std::string plot(const EffectsCommand& command, const EffectsStudy& study) {
   BarChart chart;
   chart.title = "What effects cost: " + scene_title(command.scene.arguments.scene);
-  chart.x_label = "milliseconds a frame of " + std::to_string(command.study.view.width_px) + " x " +
-                  std::to_string(command.study.view.height_px) + ", with quartiles";
+  chart.x_label = concat("milliseconds a frame of ", command.study.view.width_px, " x ",
+                         command.study.view.height_px, ", with quartiles");
   for (const EffectRow& row : study.rows) {
     Bar bar;
     bar.name = effect_name(row.effect);
@@ -447,21 +446,17 @@ void add_effects(CLI::App& app) {
   add_effect_options(*sub, &command->study.effects);
   add_view(*sub, &command->study.view);
   add_whole_option(*sub, "--frames", "N", 1, 99, &command->study.frames,
-                   "frames timed of each set of effects, by turns")
-      ->default_str("5");
-  add_path_option(
-      *sub, "--csv", "FILE.csv", &command->files.csv,
+                   "frames timed of each set of effects, by turns");
+  add_report(
+      *sub, &command->files, &command->scene.quiet,
       "a line an effect, each that there is: effect, called_for (1 or 0), why (in words), K_rays for K of "
       "primary, shadow, occlusion, mirror, glass, media, water (rays of that kind in a frame with the effect "
       "less those in one without, so below 0 where the effect saves some), rays (of all kinds), node_visits "
       "(the same of nodes), ms (median over the frames of the time with less the time without), q25_ms, "
       "q75_ms (its quartiles), with_ms, without_ms (medians of the frames; empty where not called for), "
       "ram_bytes (state and tables of a lit picture, as render --memory counts them), flash_bytes (on "
-      "lm3s6965evb, the image with this effect alone less one with none)");
-  add_path_option(*sub, "--json", "FILE.json", &command->files.json,
-                  "the same, an array of objects; null where the CSV is empty");
-  add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot, "milliseconds a frame, a bar an effect");
-  add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
+      "lm3s6965evb, the image with this effect alone less one with none)",
+      "milliseconds a frame, a bar an effect");
   when_chosen(*sub, [command] { run(*command); });
 }
 

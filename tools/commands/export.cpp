@@ -27,7 +27,7 @@ void run(const ExportCommand& command) {
   const auto source = command.scene.open();
   const BuiltScene built = command.scene.build(*source);
   if (built.voxels() == 0) {
-    throw InputError("nothing in " + printable(command.scene.arguments.scene) + " is solid");
+    throw InputError("nothing in ", printable(command.scene.arguments.scene), " is solid");
   }
   with_progress("writing", command.scene.quiet, [&](const Progress& progress) {
     write_voxels(outputs[0], command.format, built.compact(), source->palette(), source->has_colors(),

@@ -45,13 +45,12 @@ std::vector<BoardImage> load_images(std::string folder, const platform::BoardFac
       try {
         images.push_back(open_image(load_file(path, kMostImageBytes).text(), board));
       } catch (const InputError& wrong) {
-        throw InputError(path + " " + wrong.what());
+        throw InputError(path, " ", wrong.what());
       }
     }
   }
   if (images.empty()) {
-    throw InputError("there is no image of " + app + " for " + board.name +
-                     (folder.empty() ? "" : " in " + folder) +
+    throw InputError("there is no image of ", app, " for ", board.name, folder.empty() ? "" : " in " + folder,
                      "; make images builds them, --images or $THIMBLE_IMAGES says where they are");
   }
   sort_images(&images);

@@ -30,7 +30,7 @@ std::string describe(const SceneCamera& camera) {
     text += ", up " + text_of({camera.up.x / kUnit, camera.up.y / kUnit, camera.up.z / kUnit});
   }
   if (camera.direction_bits != 0) {
-    text += ", directions of " + std::to_string(camera.direction_bits) + " bits";
+    text += concat(", directions of ", camera.direction_bits, " bits");
   }
   return text;
 }
@@ -42,16 +42,14 @@ void describe(const LitDescription& lit, const UsedMaterials& used, const Row& r
   if (!lit.lights.empty()) {
     const auto points = std::count_if(lit.lights.begin(), lit.lights.end(),
                                       [](const Light& light) { return light.is_point; });
-    row("lights", std::to_string(lit.lights.size()) + ": " +
-                      std::to_string(lit.lights.size() - static_cast<std::size_t>(points)) + " distant, " +
-                      std::to_string(points) + " in the world");
+    row("lights", concat(lit.lights.size(), ": ", lit.lights.size() - static_cast<std::size_t>(points),
+                         " distant, ", points, " in the world"));
   }
   if (rest.has_water) {
     const WaterSurface& water = rest.water;
     const double level = water.corner.z + static_cast<double>(water.highest_q8) / Q8::kOne;
-    row("water", std::to_string(water.width) + " x " + std::to_string(water.depth) + " columns from " +
-                     std::to_string(water.corner.x) + "," + std::to_string(water.corner.y) + ", level " +
-                     shortest(level));
+    row("water", concat(water.width, " x ", water.depth, " columns from ", water.corner.x, ",",
+                        water.corner.y, ", level ", shortest(level)));
   }
   row("effects", effects_text(called_for(lit, used)));
 }
@@ -72,7 +70,7 @@ std::string describe(const LitDescription& lit, const UsedMaterials& used) {
   const char* separator = ": ";
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     if (kinds[kind] != 0) {
-      materials += separator + std::to_string(kinds[kind]) + " " + kKindNames[kind];
+      materials += concat(separator, kinds[kind], " ", kKindNames[kind]);
       separator = ", ";
     }
   }
@@ -139,17 +137,14 @@ void run(const SceneOptions& options) {
   for (const std::string& note : source->notes()) {
     row("note", note);
   }
-  row("depth", std::to_string(built.level()) + " (a world of " + std::to_string(1 << built.level()) +
-                   " voxels a side)");
+  row("depth", concat(built.level(), " (a world of ", 1 << built.level(), " voxels a side)"));
   if (source->points() != 0) {
     row("points", grouped(source->points()));
   }
   row("solid voxels", grouped(built.voxels()));
   row("occupied box", box.empty() ? "none"
-                                  : std::to_string(box.low.x) + "," + std::to_string(box.low.y) + "," +
-                                        std::to_string(box.low.z) + " to " + std::to_string(box.high.x) +
-                                        "," + std::to_string(box.high.y) + "," + std::to_string(box.high.z) +
-                                        " (exclusive)");
+                                  : concat(box.low.x, ",", box.low.y, ",", box.low.z, " to ", box.high.x, ",",
+                                           box.high.y, ",", box.high.z, " (exclusive)"));
 
   const UsedMaterials used = used_materials(*source);
   const LitDescription lit = source->lighting();
@@ -170,7 +165,7 @@ void run(const SceneOptions& options) {
     const char* fault =
         CompactTree::validate({built.compact().bytes(), built.compact().size_bytes()}, &place);
     if (fault != nullptr) {
-      throw InputError("the compact tree is not sound at " + std::to_string(place) + ": " + fault);
+      throw InputError("the compact tree is not sound at ", place, ": ", fault);
     }
     row("compact tree", "sound");
   }

@@ -47,12 +47,12 @@ class Whole {
   void check_belongs(const PartFile& part) const {
     const PartHeader& one = header();
     const PartHeader& other = part.header();
-    const auto fail = [&](const std::string& why) {
-      throw InputError(printable(part.path()) + ": does not belong to " + printable(parts_.front().path()) +
-                       ": " + why);
+    const auto fail = [&](const auto&... why) {
+      throw InputError(printable(part.path()), ": does not belong to ", printable(parts_.front().path()),
+                       ": ", why...);
     };
     const auto size_of = [](const PartHeader& header) {
-      return std::to_string(header.width_px) + "x" + std::to_string(header.height_px);
+      return concat(header.width_px, "x", header.height_px);
     };
     if (other.kind != one.kind) {
       const auto name = [](PartKind kind) {
@@ -61,13 +61,13 @@ class Whole {
                : kind == PartKind::kAnimation ? "a film by --frames"
                                               : "a film by --camera-path";
       };
-      fail(std::string("it is a part of ") + name(other.kind) + ", not of " + name(one.kind));
+      fail("it is a part of ", name(other.kind), ", not of ", name(one.kind));
     }
     if (other.width_px != one.width_px || other.height_px != one.height_px) {
-      fail("its size is " + size_of(other) + ", not " + size_of(one));
+      fail("its size is ", size_of(other), ", not ", size_of(one));
     }
     if (other.all != one.all) {
-      fail("its film has " + std::to_string(other.all) + " frames, not " + std::to_string(one.all));
+      fail("its film has ", other.all, " frames, not ", one.all);
     }
     if (other.scene_crc32 != one.scene_crc32) {
       fail("it shows another scene, or one built otherwise (--depth, --frame, --coarsen and the like)");
@@ -88,9 +88,8 @@ class Whole {
       if (owners_[unit] == kNone) {
         owners_[unit] = index;
       } else if (parts_[owners_[unit]].read(unit) != part.read(unit)) {
-        throw InputError(printable(part.path()) + ": differs from " +
-                         printable(parts_[owners_[unit]].path()) + " in " + head.unit() + " " +
-                         std::to_string(unit) + ", which both hold");
+        throw InputError(printable(part.path()), ": differs from ", printable(parts_[owners_[unit]].path()),
+                         " in ", head.unit(), " ", unit, ", which both hold");
       }
     }
   }
@@ -107,15 +106,14 @@ class Whole {
         ++end;
       }
       if (end != unit && ++gaps <= kMostNamed) {
-        text += (text.empty() ? "" : ", ") + std::to_string(unit) + ":" + std::to_string(end - unit);
+        text += concat(text.empty() ? "" : ", ", unit, ":", end - unit);
       }
       missing += end - unit;
       unit = std::max(end, unit + 1);
     }
     if (missing != 0) {
-      throw InputError("of " + std::to_string(all) + " " + header().unit() +
-                       "s these are missing (FIRST:COUNT): " + text +
-                       (gaps > kMostNamed ? " and " + std::to_string(gaps - kMostNamed) + " gaps more" : ""));
+      throw InputError("of ", all, " ", header().unit(), "s these are missing (FIRST:COUNT): ", text,
+                       gaps > kMostNamed ? concat(" and ", gaps - kMostNamed, " gaps more") : "");
     }
   }
 

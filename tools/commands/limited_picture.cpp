@@ -140,8 +140,7 @@ bool LimitedPicture::take(SmallPicture* picture, bool waits) {
   if (!shared_->is_done) {
     const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     const bool took_long = number == SIGXCPU || number == SIGKILL || number == SIGALRM;
-    shared_->fail(took_long ? "takes longer than the " + std::to_string(limits_.seconds) +
-                                  " s that a small picture may"
+    shared_->fail(took_long ? concat("takes longer than the ", limits_.seconds, " s that a small picture may")
                             : "ended the process that read it");
   }
   picture->error = shared_->error.data();

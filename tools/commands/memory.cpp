@@ -78,7 +78,7 @@ std::string boards_that_fit(const MemoryStudy& study, const DepthRow& row, std::
 }
 
 std::string grid_text(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
-  return std::to_string(x) + "x" + std::to_string(y) + "x" + std::to_string(z);
+  return concat(x, "x", y, "x", z);
 }
 
 // The error of the picture at a depth; null for none.
@@ -220,10 +220,11 @@ std::string stored_table(const MemoryStudy& study) {
     }
     rows.push_back(cells);
   }
-  return "\nwhat is stored at a place (depth " + std::to_string(own.depth) +
-         "): color 1 byte, normal 2, opacity 1, at every unit of a dense\ngrid, at every solid block and "
-         "voxel of a tree\n" +
-         columns_of(rows, 1);
+  return concat(
+      "\nwhat is stored at a place (depth ", own.depth,
+      "): color 1 byte, normal 2, opacity 1, at every unit of a dense\ngrid, at every solid block and "
+      "voxel of a tree\n",
+      columns_of(rows, 1));
 }
 
 std::string building_table(const MemoryStudy& study) {
@@ -285,8 +286,8 @@ std::string boards_table(const MemoryStudy& study) {
                     grouped(board.ram_bytes > drawing ? board.ram_bytes - drawing : 0), deepest(kPool),
                     deepest(kDense)});
   }
-  return "\nthe deepest depth that each board holds, of " + std::to_string(study.depths.back().depth) +
-         ": baked in flash, or built in RAM\n" + columns_of(rows, 1);
+  return concat("\nthe deepest depth that each board holds, of ", study.depths.back().depth,
+                ": baked in flash, or built in RAM\n", columns_of(rows, 1));
 }
 
 std::string paper_table() {
@@ -444,14 +445,13 @@ void add_memory(CLI::App& app) {
            "the same for 1 KiB, 2 KiB, ... until the whole scene fits, and what coarsening to the "
            "budget does to the picture; --csv, --json and --plot then hold this");
   add_whole_option(*sub, "--frames", "N", 0, 99, &command->study.frames,
-                   "frames timed for each depth and structure; 0: none, no times and visits")
-      ->default_str("3");
+                   "frames timed for each depth and structure; 0: none, no times and visits");
   add_view(*sub, &command->study.view);
   add_shade(*sub, &command->study.shade,
             "what a wrong pixel is: of another brightness by distance, by the face's direction, of another "
             "palette colour, or hit or not");
-  add_path_option(
-      *sub, "--csv", "FILE.csv", &command->files.csv,
+  add_report(
+      *sub, &command->files, &command->scene.quiet,
       "a line a depth: row (depth; or paper, paper_4_gib: the paper's sum, dense columns only), depth, grid "
       "(of the dense grid), units (its cells), stored (what dense_bytes holds a unit; scene: a bit), voxels "
       "(solid), leaves (solid blocks and voxels of a tree), pool_nodes, compact_nodes, dag_nodes; for S of "
@@ -463,12 +463,8 @@ void add_memory(CLI::App& app) {
       "(hit in one only), depth_error_mean_voxels, depth_error_max_voxels (in voxels of the deepest). With "
       "--budget-sweep a line a budget: budget_bytes, S_depth (deepest that fits, 0: none), compact_... and "
       "dag_... (those errors at that depth), coarsened_bytes, coarsened_solid_added_voxels, coarsened_... "
-      "(errors of the compact tree of the whole depth, coarsened to fit)");
-  add_path_option(*sub, "--json", "FILE.json", &command->files.json,
-                  "the same, an array of objects; null where the CSV is empty");
-  add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot,
-                  "bytes against depth; with --budget-sweep mean depth error against budget");
-  add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no notes");
+      "(errors of the compact tree of the whole depth, coarsened to fit)",
+      "bytes against depth; with --budget-sweep mean depth error against budget");
   when_chosen(*sub, [command] { run(*command); });
 }
 

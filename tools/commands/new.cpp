@@ -275,8 +275,7 @@ void add_new(CLI::App& app) {
       "what builds it: CMake (with a panel by the Pico's SDK), PlatformIO, or Arduino")
       ->default_str("cmake");
   add_choice_option<bool>(*sub, "--language", {{"c++", false}, {"c", true}}, &command->in_c,
-                          "what the program is written in")
-      ->default_str("c++");
+                          "what the program is written in");
   add_fitting(*sub, command.get());
   add_picture_view(*sub, &command->view);
   command->scene.add_report(*sub);

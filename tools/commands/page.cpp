@@ -80,8 +80,8 @@ std::string poster_url(const Image& image, std::size_t most_bytes) {
       return "data:image/jpeg;base64," + base64(file);
     }
   }
-  throw InputError("its picture takes " + grouped(file.size()) + " bytes, and the poster of a page has " +
-                   grouped(most_bytes) + "; choose a smaller --size");
+  throw InputError("its picture takes ", grouped(file.size()), " bytes, and the poster of a page has ",
+                   grouped(most_bytes), "; choose a smaller --size");
 }
 
 std::string edge_colors(const Image& image) {

@@ -316,8 +316,8 @@ void note_coarse_steps(const WorldOptions& world) {
   while (log2 < 4 && is_coarse(log2)) {
     ++log2;
   }
-  const std::string mend = is_coarse(log2) ? "no number of substeps keeps it"
-                                           : "--substeps " + std::to_string(1 << log2) + " keeps it";
+  const std::string mend =
+      is_coarse(log2) ? "no number of substeps keeps it" : concat("--substeps ", 1 << log2, " keeps it");
   std::fprintf(stderr,
                "note: gravity is strong for the step: energy may change by more than 1 per cent; %s\n",
                mend.c_str());
@@ -353,8 +353,8 @@ void run(const ParticlesCommand& given) {
   ParticlesCommand command = given;
   WorldOptions& world_options = command.world;
   if (world_options.least_diameter > world_options.most_diameter) {
-    refuse_usage("--min-size", std::to_string(world_options.least_diameter) + " is more than --max-size, " +
-                                   std::to_string(world_options.most_diameter));
+    refuse_usage("--min-size", concat(world_options.least_diameter, " is more than --max-size, ",
+                                      world_options.most_diameter));
   }
   if (command.play.view == host::ScreenKind::kAuto) {
     const bool for_files = command.play.steps || !command.state_path.empty() || !command.field_path.empty() ||
@@ -433,18 +433,13 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       "cells of the world, a pixel each")
       ->default_str("800x600");
   add_whole_option(sub, "--count", "N", 0, kMaxBalls / 2, &world->count,
-                   "balls at the start; of --bodies, the first N")
-      ->default_str("693");
+                   "balls at the start; of --bodies, the first N");
   add_whole_option(sub, "--min-size", "D", 1, kMaxBallDiameter, &world->least_diameter,
-                   "least diameter of a ball, cells")
-      ->default_str("2");
+                   "least diameter of a ball, cells");
   add_whole_option(sub, "--max-size", "D", 1, kMaxBallDiameter, &world->most_diameter,
-                   "largest diameter of a ball, cells, up to " + std::to_string(kMaxBallDiameter))
-      ->default_str("12");
-  add_real_option(
-      sub, "--bounciness", "B", 0, 1, [world](double value) { world->bounciness = value; },
-      "the part of its speed that a ball keeps when it bounces, 0 to 1")
-      ->default_str("0.8");
+                   "largest diameter of a ball, cells, up to " + std::to_string(kMaxBallDiameter));
+  add_real_option(sub, "--bounciness", "B", 0, 1, &world->bounciness,
+                  "the part of its speed that a ball keeps when it bounces, 0 to 1");
   add_text_option(
       sub, "--gravity", "X,Y",
       [world](const std::string& text) -> std::string {
@@ -459,11 +454,9 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       },
       "gravity in cells a step a step; y down the picture; with --bodies there is none unless given")
       ->default_str("0,0.1");
-  add_real_option(
-      sub, "--speed", "V", 0, 8192, [world](double value) { world->speed = value; },
-      "random balls start with up to V cells a step on each axis; of --bodies the fastest has V")
-      ->default_str("3");
-  add_whole_option(sub, "--seed", "S", 0, UINT32_MAX, &world->seed, "of random balls")->default_str("1");
+  add_real_option(sub, "--speed", "V", 0, 8192, &world->speed,
+                  "random balls start with up to V cells a step on each axis; of --bodies the fastest has V");
+  add_whole_option(sub, "--seed", "S", 0, UINT32_MAX, &world->seed, "of random balls");
   add_path_option(
       sub, "--bodies", "FILE", &command->bodies_path,
       "balls from a file: the number of bodies, the radius of the world, then a line \"x y vx vy m r g b\" "
@@ -471,11 +464,9 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
       "--min-size; y is turned; a body whose place is taken goes to the nearest free one; those beyond the "
       "box are left out");
   add_choice_option(sub, "--substeps", {{"1", 0}, {"2", 1}, {"4", 2}, {"8", 3}, {"16", 4}},
-                    &world->substeps_log2, "parts that each step is made in")
-      ->default_str("1");
+                    &world->substeps_log2, "parts that each step is made in");
   add_whole_option(sub, "--subpixel-bits", "N", 1, 15, &world->subpixel_bits,
-                   "positions are kept to 2^-N cells")
-      ->default_str("15");
+                   "positions are kept to 2^-N cells");
 }
 
 void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
@@ -492,8 +483,7 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
       &command->play.view,
       "where the world is shown; auto: nowhere where --steps or a file to write (but --record-input) is "
       "given, else in an X11 window where DISPLAY works, else in the terminal where standard output is one, "
-      "else nowhere")
-      ->default_str("auto");
+      "else nowhere");
   add_whole_option(
       sub, "--eps", "N", 1, 1'000'000,
       [command](std::int64_t rate) {

@@ -38,7 +38,7 @@ std::int32_t plain_band_rows(const RenderCommand& command, PixelFormat format) {
 }
 
 [[noreturn]] void fail_camera(const RenderCommand& command) {
-  throw InputError("--engine " + command.engine.name + " does not take the rays of this camera");
+  throw InputError("--engine ", command.engine.name, " does not take the rays of this camera");
 }
 
 // What belongs to the scene's own look and films only.
@@ -344,8 +344,8 @@ void prepare(RenderCommand* given) {
   use_display(command.scene.board, &command.view);
   if (command.quality.at_edges &&
       std::max(command.view.width_px, command.view.height_px) > kMaxPicturePx / kEdgeGrid) {
-    throw InputError("--samples auto wants a picture of at most " +
-                     std::to_string(kMaxPicturePx / kEdgeGrid) + " pixels a side");
+    throw InputError("--samples auto wants a picture of at most ", kMaxPicturePx / kEdgeGrid,
+                     " pixels a side");
   }
   command.output.read_sizes(command.view, command.fov_given);
   command.engine.check_budget(command.scene.budget_bytes().has_value());
@@ -461,8 +461,7 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
       "gradient, black behind stars)");
   add_choice_option(
       app, "--ground", {{"auto", std::nullopt}, {"on", true}, {"off", false}}, &command->look.wishes.ground,
-      "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light")
-      ->default_str("auto");
+      "a ground under the scene that shows nothing but its shadow; auto: where the scene states no light");
   command->output.add_films(app);
   add_flag(app, "--verbose", &command->look.verbose, "say on standard error what the scene's look came to");
 }

@@ -252,7 +252,7 @@ std::unique_ptr<SceneSource> open_frame(const RenderCommand& command, std::int64
   try {
     return open_scene(arguments);
   } catch (const InputError& error) {
-    throw InputError("frame " + std::to_string(*arguments.frame) + ": " + error.what());
+    throw InputError("frame ", *arguments.frame, ": ", error.what());
   }
 }
 
@@ -335,8 +335,8 @@ std::vector<Framing> film_framings(const RenderCommand& command, const SceneSour
   const std::int64_t last = output.played->first + output.played->count - 1;
   if (source.frames() == 1 || last >= std::int64_t{source.frames()}) {
     throw InputError(
-        "there is no frame " + std::to_string(last) + " for --frames; " +
-        (source.frames() == 1 ? "it holds still" : "the last is " + std::to_string(source.frames() - 1)));
+        "there is no frame ", last, " for --frames; ",
+        source.frames() == 1 ? "it holds still" : "the last is " + std::to_string(source.frames() - 1));
   }
   // What is wrong with a later frame is said before the first is drawn.
   const RowRange drawn = output.frames.value_or(RowRange{0, output.played->count});

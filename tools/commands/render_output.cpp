@@ -28,8 +28,8 @@ bool is_mono_part(const std::string& output) {
 void check_range(const std::string& name, const RowRange& range, std::int64_t all,
                  const std::string& of_what) {
   if (std::int64_t{range.first} + range.count > all) {
-    refuse_usage(name, std::to_string(range.first) + ":" + std::to_string(range.count) + " goes beyond " +
-                           of_what + ", whose last is " + std::to_string(all - 1));
+    refuse_usage(
+        name, concat(range.first, ":", range.count, " goes beyond ", of_what, ", whose last is ", all - 1));
   }
 }
 
@@ -151,8 +151,7 @@ void RenderOutput::check(bool is_transparent) const {
 
 void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
   if (rows) {
-    check_range("--rows", *rows, view.height_px,
-                "the picture of " + std::to_string(view.height_px) + " rows");
+    check_range("--rows", *rows, view.height_px, concat("the picture of ", view.height_px, " rows"));
   }
   if (!camera_path.empty()) {
     cameras = read_camera_path(camera_path, view);
@@ -167,7 +166,7 @@ void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
   }
   if (frames) {
     const std::int64_t all = film_frames();
-    check_range("--part", *frames, all, "the film of " + std::to_string(all) + " frames");
+    check_range("--part", *frames, all, concat("the film of ", all, " frames"));
   }
 }
 

@@ -89,8 +89,8 @@ void SceneOptions::add_to(CLI::App& app) {
       {{"dense", StructureKind::kDense},
        {"pool", StructureKind::kPool},
        {"compact", StructureKind::kCompact}},
-      &structure, "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one")
-      ->default_str("compact");
+      &structure,
+      "what is built and traced: one bit a voxel, an octree that can be edited, or a compact one");
   add_report(app);
 }
 
@@ -148,8 +148,8 @@ BuiltScene SceneOptions::build(const SceneSource& source, BuildOptions options) 
     const BakedScene* baked = source.baked();
     if (baked != nullptr && structure == StructureKind::kCompact &&
         baked->bytes().size > scene_flash_bytes(*board)) {
-      throw InputError("takes " + grouped(baked->bytes().size) + " bytes, " + board->name + " has " +
-                       grouped(scene_flash_bytes(*board)) + " bytes of flash for a scene");
+      throw InputError("takes ", grouped(baked->bytes().size), " bytes, ", board->name, " has ",
+                       grouped(scene_flash_bytes(*board)), " bytes of flash for a scene");
     }
   }
   options.coarsen = coarsen;
@@ -225,9 +225,8 @@ void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& 
       ->check(offering(offered()));
   add_normals(app, &wishes->choice);
   add_whole_option(app, "--bounces", "N", 0, kMaxBounces, &wishes->bounces,
-                   "rays that follow one another from a pixel by mirrors, glass and water, 0 to " +
-                       std::to_string(kMaxBounces) + " (default: the scene's own, else " +
-                       std::to_string(kDefaultBounces) + ")");
+                   concat("rays that follow one another from a pixel by mirrors, glass and water, 0 to ",
+                          kMaxBounces, " (default: the scene's own, else ", kDefaultBounces, ")"));
 }
 
 namespace {

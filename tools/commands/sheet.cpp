@@ -80,14 +80,14 @@ std::vector<std::string> find_scenes(const std::string& folder) {
     }
   }
   if (error) {
-    throw InputError("cannot be listed: " + error.message());
+    throw InputError("cannot be listed: ", error.message());
   }
   if (names.empty()) {
     throw InputError("no file in it is a scene");
   }
   if (names.size() > kMostTiles) {
-    throw InputError("holds " + grouped(names.size()) + " scenes, and a sheet has room for " +
-                     grouped(kMostTiles) + "; name a folder in it");
+    throw InputError("holds ", grouped(names.size()), " scenes, and a sheet has room for ",
+                     grouped(kMostTiles), "; name a folder in it");
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -226,7 +226,7 @@ std::size_t write_page(const SheetCommand& command, const std::vector<std::strin
        {"title", xml_text(std::filesystem::canonical(command.folder).filename().string())}});
   file->write(before + "<main");
   if (command.columns != 0) {
-    file->write(" style=\"grid-template-columns: repeat(" + std::to_string(command.columns) + ", 1fr)\"");
+    file->write(concat(" style=\"grid-template-columns: repeat(", command.columns, ", 1fr)\""));
   }
   file->write(">\n");
   std::size_t at = 0;
@@ -266,8 +266,7 @@ void add_sheet(CLI::App& app) {
       std::string("the sheet, ") + kImageEndings +
           "; or .html, one file, whose scenes take 4 MiB each at most")
       ->required();
-  add_whole_option(*sub, "--size", "N", 96, 1024, &command->side_px, "pixels a side of each picture")
-      ->default_str("240");
+  add_whole_option(*sub, "--size", "N", 96, 1024, &command->side_px, "pixels a side of each picture");
   add_whole_option(*sub, "--columns", "N", 1, kMostTiles, &command->columns, "pictures in a row")
       ->default_str("a little more than there are rows");
   add_threads(*sub, &command->processes,

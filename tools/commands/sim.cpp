@@ -118,11 +118,11 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
     bytes.assign(made.bytes.begin(), made.bytes.end());
   }
   if (bytes.size() > limit) {
-    throw InputError("takes " + grouped(bytes.size()) + " bytes baked; " + board.name + " has " +
-                     grouped(limit) + " bytes of flash for a scene" +
-                     (source->baked() == nullptr && !command.scene.coarsen
-                          ? "; a smaller --depth may fit, --coarsen merges blocks until it does"
-                          : ""));
+    throw InputError("takes ", grouped(bytes.size()), " bytes baked; ", board.name, " has ", grouped(limit),
+                     " bytes of flash for a scene",
+                     source->baked() == nullptr && !command.scene.coarsen
+                         ? "; a smaller --depth may fit, --coarsen merges blocks until it does"
+                         : "");
   }
   return bytes;
 }
@@ -258,7 +258,7 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   }
   report(*command, result, engine);
   if (result.status != 0) {
-    *sentence = who + " ended with status " + std::to_string(result.status);
+    *sentence = concat(who, " ended with status ", result.status);
     return result.status;
   }
   if (result.pictures == 0 && (outputs[kShot] != nullptr || wanted || outputs[kRecording] != nullptr)) {
@@ -331,16 +331,14 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
        {"none", host::ScreenKind::kNone}},
       &command->session.display,
       "where the display is shown; auto: in an X11 window where DISPLAY works, else in the terminal where "
-      "standard output is one, else not at all; a board without a display gets one by window or terminal")
-      ->default_str("auto");
+      "standard output is one, else not at all; a board without a display gets one by window or terminal");
   add_choice_option(sub, "--theme",
                     {{"auto", std::nullopt},
                      {"oled", host::Theme::kOled},
                      {"lcd", host::Theme::kLcd},
                      {"plain", host::Theme::kPlain}},
                     &command->session.theme,
-                    "how the display looks; auto: as the board's does; pictures in files never have a theme")
-      ->default_str("auto");
+                    "how the display looks; auto: as the board's does; pictures in files never have a theme");
   add_whole_option(sub, "--scale", "N", 1, 32, &command->session.scale,
                    "screen pixels a pixel at most (default: as fits)");
   add_whole_option(
@@ -350,8 +348,7 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
       "and it is exact when the camera stands still; the key h switches it, t stops the turning; the work a "
       "frame depends on the board alone, so the pictures are the board's");
   add_whole_option(sub, "--fps", "N", 1, 1000, &command->session.frames_a_second,
-                   "frames a second at most in a window or terminal, and of the recording")
-      ->default_str("30");
+                   "frames a second at most in a window or terminal, and of the recording");
 }
 
 void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {

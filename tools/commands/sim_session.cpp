@@ -225,7 +225,7 @@ class SimSession {
     const platform::BoardFacts& board = *options_.board;
     if (options_.application->takes_pointer && event.x_px >= 0 && event.y_px >= 0 &&
         event.x_px < board.width_px && event.y_px < board.height_px) {
-      pointed_ = what + std::to_string(event.x_px) + "," + std::to_string(event.y_px) + ".";
+      pointed_ = concat(what, event.x_px, ",", event.y_px, ".");
     }
   }
 
@@ -365,8 +365,8 @@ class SimSession {
 
 std::string memory_text(const host::MemoryUse& use, const char* separator) {
   const auto share = [](std::uint32_t used, std::uint32_t limit) {
-    return grouped(used) + " of " + grouped(limit) + " bytes (" +
-           std::to_string(limit == 0 ? 0 : std::uint64_t{100} * used / limit) + "%)";
+    return concat(grouped(used), " of ", grouped(limit), " bytes (",
+                  limit == 0 ? 0 : std::uint64_t{100} * used / limit, "%)");
   };
   return "RAM " + share(use.ram_bytes, use.ram_limit_bytes) + "  flash: scene " +
          share(use.flash_bytes, use.flash_limit_bytes) + separator + "stack " + grouped(use.stack_bytes) +

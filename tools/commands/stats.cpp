@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "commands/arguments.h"
 #include "output/tables.h"
 #include "scene/lit_description.h"
 #include "scene/painter.h"
@@ -81,6 +82,15 @@ std::string stats_text(const Stats& stats) {
   }
   // A file's name may hold bytes that are no UTF-8; they are replaced, not an error.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void add_report(CLI::App& app, ReportPaths* paths, bool* quiet, const std::string& columns,
+                const std::string& plot) {
+  add_path_option(app, "--csv", "FILE.csv", &paths->csv, columns);
+  add_path_option(app, "--json", "FILE.json", &paths->json,
+                  "the same, an array of objects; null where the CSV is empty");
+  add_path_option(app, "--plot", "FILE.svg", &paths->plot, plot);
+  add_flag(app, "--quiet", quiet, "no progress bar and no notes");
 }
 
 void ReportFiles::write(const nlohmann::ordered_json& rows, const std::string& plot) {

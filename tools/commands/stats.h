@@ -12,6 +12,10 @@
 #include "scene/scene_source.h"
 #include "thimble/light/render.h"
 
+namespace CLI {
+class App;
+}
+
 namespace thimble::tools {
 
 struct Painting;
@@ -67,6 +71,10 @@ struct ReportPaths {
   std::string json;
   std::string plot;
 };
+
+/// --csv, whose columns are these, --json, --plot and --quiet of a study.
+void add_report(CLI::App& app, ReportPaths* paths, bool* quiet, const std::string& columns,
+                const std::string& plot);
 
 class ReportFiles {
  public:

@@ -218,8 +218,7 @@ JsonRow objects_of(const std::vector<Row>& rows) {
 std::string plot_text(const TableCommand& command, const std::vector<Row>& rows) {
   Plot plot;
   plot.title = "One frame of 800 x 600 pixels";
-  plot.x_label =
-      "points in the world of 2^" + std::to_string(command.depth) + " a side (" + command.scene + ")";
+  plot.x_label = concat("points in the world of 2^", command.depth, " a side (", command.scene, ")");
   plot.y_label = "seconds a frame";
   for (const bool orthographic : {false, true}) {
     const std::string name = orthographic ? "orthographic" : "perspective";
@@ -248,7 +247,7 @@ void run(const TableCommand& command) {
   for (const std::uint64_t points : command.points) {
     ProgressBar bar(grouped(points) + " points", command.quiet);
     SceneArguments arguments;
-    arguments.scene = command.scene + ":" + std::to_string(points);
+    arguments.scene = concat(command.scene, ":", points);
     arguments.depth = command.depth;
     const auto source = open_scene(arguments);
     BuildOptions build;

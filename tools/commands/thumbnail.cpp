@@ -42,7 +42,7 @@ void add_thumbnail(CLI::App& app) {
   sub->add_option("picture", command->output, "the picture, a PNG whatever its name")
       ->type_name("FILE")
       ->required();
-  add_whole_option(*sub, "--size", "N", 16, 1024, &command->side_px, "pixels a side")->default_str("128");
+  add_whole_option(*sub, "--size", "N", 16, 1024, &command->side_px, "pixels a side");
   when_chosen(*sub, [command] { run(*command); });
 }
 

@@ -92,8 +92,8 @@ class RayFile {
     }
     table_ = read_npy_table(file);
     if (table_->columns != 6) {
-      throw InputError("rays are rows of six numbers, ox, oy, oz, dx, dy, dz; this array has " +
-                       std::to_string(table_->columns) + " columns");
+      throw InputError("rays are rows of six numbers, ox, oy, oz, dx, dy, dz; this array has ",
+                       table_->columns, " columns");
     }
     first_line_ = 0;
     for (std::size_t row = 0; row < table_->rows;) {

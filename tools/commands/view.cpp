@@ -69,8 +69,7 @@ void add_view_command(CLI::App& app) {
                     {{"auto", host::ScreenKind::kAuto},
                      {"window", host::ScreenKind::kWindow},
                      {"terminal", host::ScreenKind::kTerminal}},
-                    &options.display, "where; auto: an X11 window where DISPLAY works, else the terminal")
-      ->default_str("auto");
+                    &options.display, "where; auto: an X11 window where DISPLAY works, else the terminal");
   add_shade(*sub, &command->shade, "as for render; without it and --effects the scene decides, as there",
             &options.look.shade_word);
   add_effect_options(*sub, &command->effects, {}, "the scene's own look; none with --shade");

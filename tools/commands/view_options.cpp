@@ -34,28 +34,24 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
       [view](const std::string& text) -> std::string {
         const auto size = parse_pair(text, 'x', 1, kMaxPicturePx);
         if (!size) {
-          return "is not WxH with sides of 1 to " + std::to_string(kMaxPicturePx) + " pixels";
+          return concat("is not WxH with sides of 1 to ", kMaxPicturePx, " pixels");
         }
         std::tie(view->width_px, view->height_px) = *size;
         view->sized = true;
         return {};
       },
-      "the picture's size in pixels (default: " + std::to_string(view->width_px) + "x" +
-          std::to_string(view->height_px) +
-          (app.get_option_no_throw("--board") != nullptr ? ", or the display of --board)" : ")"));
+      concat("the picture's size in pixels (default: ", view->width_px, "x", view->height_px,
+             app.get_option_no_throw("--board") != nullptr ? ", or the display of --board)" : ")"));
   add_choice_option(app, "--projection", {{"perspective", false}, {"orthographic", true}},
-                    &view->orthographic, "how rays leave the camera")
-      ->default_str("perspective");
+                    &view->orthographic, "how rays leave the camera");
   add_triple(app, "--eye", &view->eye,
              "where the camera is, in voxels (default: where it sees the whole scene)");
   add_triple(app, "--target", &view->target,
              "what it looks at, in voxels (default: the middle of the scene)");
   add_triple(app, "--up", &view->up,
              "what is up in the picture (default: 0,0,1, or 0,1,0 when looking along z)");
-  add_real_option(
-      app, "--fov", "DEG", 1, 120, [view](double degrees) { view->fov_degrees = degrees; },
-      "perspective: vertical field of view in degrees, 1 to 120")
-      ->default_str(shortest(view->fov_degrees));
+  add_real_option(app, "--fov", "DEG", 1, 120, &view->fov_degrees,
+                  "perspective: vertical field of view in degrees, 1 to 120");
   add_text_option(
       app, "--span", "V",
       [view](const std::string& text) {
@@ -97,8 +93,8 @@ void add_picture_view(CLI::App& app, ViewWishes* view, bool with_direction_bits)
       &view->side,
       "from which side the scene fills nine tenths of the picture; best: of eight three-quarter views from "
       "above the one that shows the most distinct faces and colours; iso: of the four corners; front looks "
-      "along +y, left along +x; paper: where the instruments stand, which frame a box (default: the scene's "
-      "own camera, else best)");
+      "along +y, left along +x; paper: where the instruments stand, which frame a box")
+      ->default_str("the scene's own camera, else best");
   const auto add_angle = [&](const char* name, double* angle, double most, const char* help) {
     add_real_option(
         app, name, "DEG", -most, most, [angle](double degrees) { *angle = degrees; }, help);

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "output/concat.h"
+
 namespace thimble::tools {
 
 /// 48000000 as "48,000,000".

@@ -29,14 +29,12 @@ class BinvoxGrid final : public VoxelGrid {
     for (; covered < cells; at += 2) {
       const std::string place = "run at byte offset " + std::to_string(at);
       if (at + 2 > file.bytes.size()) {
-        throw InputError(place + ": the file ends after " + std::to_string(covered) + " of " +
-                         std::to_string(cells) + " voxels");
+        throw InputError(place, ": the file ends after ", covered, " of ", cells, " voxels");
       }
       const unsigned value = file.bytes[at];
       const unsigned count = file.bytes[at + 1];
       if (value > 1 || count == 0 || covered + count > cells) {
-        throw InputError(place + ": the value " + std::to_string(value) + ", " + std::to_string(count) +
-                         " times, with " + std::to_string(cells - covered) +
+        throw InputError(place, ": the value ", value, ", ", count, " times, with ", cells - covered,
                          " voxels to go; values are 0 and 1, each 1 to 255 times");
       }
       covered += count;
@@ -70,7 +68,7 @@ class BinvoxGrid final : public VoxelGrid {
     std::string_view line;
     lines.next(line);
     if (line.substr(kBinvoxMagic.size()) != " 1") {
-      fail_at_line(1, quoted(line) + " is not version 1, the only one that is read");
+      fail_at_line(1, quoted(line), " is not version 1, the only one that is read");
     }
     for (bool more = true; more;) {
       if (!lines.next(line)) {
@@ -83,13 +81,13 @@ class BinvoxGrid final : public VoxelGrid {
           std::int64_t value = 0;
           const std::string_view number = take_word(line);
           if (!parse_integer(number, value) || value < 1 || value > std::int64_t{kGridSideLimit}) {
-            fail_at_line(lines.line_number(), "the side " + quoted(number) + " is no number from 1 to " +
-                                                  std::to_string(kGridSideLimit));
+            fail_at_line(lines.line_number(), "the side ", quoted(number), " is no number from 1 to ",
+                         kGridSideLimit);
           }
           side = static_cast<std::uint32_t>(value);
         }
       } else if (more && word != "translate" && word != "scale" && !word.empty() && !word.starts_with('#')) {
-        fail_at_line(lines.line_number(), quoted(word) + " is not dim, translate, scale or data");
+        fail_at_line(lines.line_number(), quoted(word), " is not dim, translate, scale or data");
       }
     }
     if (dim_[0] == 0) {

@@ -42,9 +42,9 @@ class ColorScale {
     }
     const bool is_small = highest_ > 0 && highest_ <= 2 && (is_whole_ || highest_ > 1);
     if (stated_ == 0 && is_valid_ && (highest_ > 255 || is_small)) {
-      notes.push_back("no color is above " + std::to_string(static_cast<int>(std::ceil(highest_))) +
-                      ": full is taken to be " + std::to_string(static_cast<int>(full())) +
-                      " (--colors says otherwise)");
+      notes.push_back(concat("no color is above ", static_cast<int>(std::ceil(highest_)),
+                             ": full is taken to be ", static_cast<int>(full()),
+                             " (--colors says otherwise)"));
     }
   }
 

@@ -33,8 +33,8 @@ double load_any_number(const std::uint8_t* first, const NumberType& type, bool i
 
 std::span<const std::uint8_t> ByteReader::take(std::uint64_t count) {
   if (count > remaining()) {
-    fail("truncated at byte offset " + std::to_string(offset()) + ": " + std::to_string(count) +
-         " bytes are needed and " + std::to_string(remaining()) + " are there");
+    fail("truncated at byte offset ", offset(), ": ", count, " bytes are needed and ", remaining(),
+         " are there");
   }
   const std::span<const std::uint8_t> taken = bytes_.subspan(next_, static_cast<std::size_t>(count));
   next_ += static_cast<std::size_t>(count);
@@ -43,18 +43,13 @@ std::span<const std::uint8_t> ByteReader::take(std::uint64_t count) {
 
 void ByteReader::expect(std::string_view magic, const char* what) {
   if (remaining() < magic.size() || text(magic.size()) != magic) {
-    throw InputError(std::string("is no ") + what + ": it does not begin with \"" + std::string(magic) +
-                     "\"");
+    throw InputError("is no ", what, ": it does not begin with \"", magic, "\"");
   }
 }
 
 ByteReader ByteReader::sub(std::uint64_t count, std::string_view place) {
   const std::uint64_t first_offset = offset();
   return ByteReader(take(count), place, first_offset);
-}
-
-void ByteReader::fail(const std::string& sentence) const {
-  throw InputError(place_ + ": " + sentence);
 }
 
 }  // namespace thimble::tools

@@ -175,8 +175,11 @@ class ByteReader {
   /// The next `count` bytes as a range of their own, which no read leaves; this cursor moves past them.
   ByteReader sub(std::uint64_t count, std::string_view place);
 
-  /// Throws InputError "PLACE: SENTENCE".
-  [[noreturn]] void fail(const std::string& sentence) const;
+  /// Throws InputError "PLACE: SENTENCE", a sentence of these pieces.
+  template <class... Pieces>
+  [[noreturn]] void fail(const Pieces&... pieces) const {
+    throw InputError(place_, ": ", pieces...);
+  }
 
  private:
   std::uint64_t little(std::size_t count) { return load_bits(take(count).data(), count, false); }

@@ -19,6 +19,13 @@ struct NumberTable {
 /// @throws InputError  a broken header, another type or number of dimensions, fewer bytes than the shape takes
 NumberTable read_npy_table(const SharedBytes& file);
 
+/// The height at a point of a grid; NaN where there is none. Rows count from the farthest.
+using HeightAt = std::function<double(std::uint64_t column, std::uint64_t row)>;
+/// Heights as a landscape of voxels (height_grid.cpp). `height` is called twice for some points, and not
+/// kept. Memory: 2 bytes a column of voxels.
+/// @throws InputError  fewer than 2 x 2 points, no height at all
+Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightAt& height);
+
 /// What a reader needs beside the bytes; most need none of it.
 struct ReadOptions {
   std::string path{};                    ///< of the file, for the other files that it names; may be empty

@@ -54,21 +54,20 @@ struct Record {
 Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, bool is_big_endian) {
   const std::string place = "record at byte offset " + std::to_string(offset);
   if (bytes.size() - offset < kMarkerBytes) {
-    throw InputError(place + ": the file ends in its marker");
+    throw InputError(place, ": the file ends in its marker");
   }
   Record record;
   record.offset = offset + kMarkerBytes;
   record.size_bytes = static_cast<std::uint32_t>(load_bits(&bytes[offset], kMarkerBytes, is_big_endian));
   const std::uint64_t left = bytes.size() - record.offset;
   if (std::uint64_t{record.size_bytes} + kMarkerBytes > left) {
-    throw InputError(place + ": its length is " + std::to_string(record.size_bytes) + " bytes, but " +
-                     std::to_string(left) + " bytes are left");
+    throw InputError(place, ": its length is ", record.size_bytes, " bytes, but ", left, " bytes are left");
   }
   const std::uint64_t marker =
       load_bits(&bytes[record.offset + record.size_bytes], kMarkerBytes, is_big_endian);
   if (marker != record.size_bytes) {
-    throw InputError(place + ": its length is " + std::to_string(record.size_bytes) +
-                     " before the data and " + std::to_string(marker) + " after it");
+    throw InputError(place, ": its length is ", record.size_bytes, " before the data and ", marker,
+                     " after it");
   }
   return record;
 }
@@ -162,11 +161,9 @@ Source read_gadget(const SharedBytes& file, const ReadOptions&, const Progress& 
   } else if (positions.size_bytes == particles * 3 * sizeof(double)) {
     cloud->number_bytes = sizeof(double);
   } else {
-    throw InputError("the header counts " + std::to_string(particles) +
-                     " particles, but the record of positions at byte offset " +
-                     std::to_string(header.end()) + " has " + std::to_string(positions.size_bytes) +
-                     " bytes, not " + std::to_string(particles * 12) + " or " +
-                     std::to_string(particles * 24));
+    throw InputError("the header counts ", particles,
+                     " particles, but the record of positions at byte offset ", header.end(), " has ",
+                     positions.size_bytes, " bytes, not ", particles * 12, " or ", particles * 24);
   }
   cloud->positions_offset = positions.offset;
   cloud->file = file;
@@ -177,7 +174,7 @@ Source read_gadget(const SharedBytes& file, const ReadOptions&, const Progress& 
   const std::size_t point_bytes = 3 * cloud->number_bytes;
   cloud->for_each([&](const CloudPoint& point) {
     if (!point.is_finite()) {
-      throw InputError("the position of particle " + std::to_string(point.line) + " is not finite");
+      throw InputError("the position of particle ", point.line, " is not finite");
     }
     meter.at(positions.offset + static_cast<std::size_t>(point.line) * point_bytes);
   });

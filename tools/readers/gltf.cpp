@@ -179,7 +179,7 @@ class Scene {
       for (const json& index : list) {
         const std::uint64_t node = index.is_number_unsigned() ? index.get<std::uint64_t>() : UINT64_MAX;
         if (node >= seen.size() || seen[static_cast<std::size_t>(node)]) {
-          throw InputError(place + ": it names a node that is not there, or one that has a parent already");
+          throw InputError(place, ": it names a node that is not there, or one that has a parent already");
         }
         seen[static_cast<std::size_t>(node)] = true;
         waiting.push_back({node, parent});
@@ -230,16 +230,15 @@ class Scene {
           continue;
         }
         if (list == std::string_view("extensionsRequired") && !is_in(kLooks, name)) {
-          throw InputError("the file requires the extension " + tools::quoted(name) + ", which is not read");
+          throw InputError("the file requires the extension ", tools::quoted(name), ", which is not read");
         }
         unread.insert(name);
       }
     }
     if (!unread.empty()) {
-      mesh_.notes.push_back(
-          "what it says by the extension " + tools::quoted(*unread.begin()) +
-          (unread.size() == 1 ? "" : " and " + std::to_string(unread.size() - 1) + " more") +
-          " is not drawn");
+      mesh_.notes.push_back("what it says by the extension " + tools::quoted(*unread.begin()) +
+                            (unread.size() == 1 ? "" : concat(" and ", unread.size() - 1, " more")) +
+                            " is not drawn");
     }
   }
 
@@ -255,9 +254,8 @@ class Scene {
       const auto number = gltf_number(*attributes, name, place);
       const GltfAccessor accessor = number ? file_.accessor(*number) : GltfAccessor{};
       if (number && accessor.components != components) {
-        throw InputError(place + ": " + name + " of its instances has " +
-                         std::to_string(accessor.components) + " components, not " +
-                         std::to_string(components));
+        throw InputError(place, ": ", name, " of its instances has ", accessor.components,
+                         " components, not ", components);
       }
       return accessor;
     };
@@ -267,8 +265,7 @@ class Scene {
     const std::uint64_t count = std::max({moves.count, scales.count, turns.count});
     for (const GltfAccessor& accessor : {moves, scales, turns}) {
       if (accessor.components != 0 && accessor.count != count) {
-        throw InputError(place + ": its instances have " + std::to_string(count) + " and " +
-                         std::to_string(accessor.count) + " values");
+        throw InputError(place, ": its instances have ", count, " and ", accessor.count, " values");
       }
     }
     const auto take = [](const GltfAccessor& accessor, std::uint64_t i, std::span<double> to) {
@@ -306,8 +303,7 @@ class Scene {
   void add_mesh(std::uint64_t mesh, const Placing& placing) {
     const json::array_t& primitives = gltf_list(file_.entry("meshes", mesh), "primitives");
     for (std::size_t i = 0; i < primitives.size(); ++i) {
-      Part part{&primitives[i], placing,
-                "primitive " + std::to_string(i) + " of mesh " + std::to_string(mesh)};
+      Part part{&primitives[i], placing, concat("primitive ", i, " of mesh ", mesh)};
       part.mode = gltf_number(*part.primitive, "mode", part.place).value_or(kTriangles);
       const json* attributes = gltf_member(*part.primitive, "attributes");
       const bool is_drawn = part.mode == kPoints || (part.mode >= kTriangles && part.mode <= kFan);
@@ -325,16 +321,14 @@ class Scene {
       }
       const GltfAccessor positions = file_.accessor(place);
       if (positions.components != 3) {
-        throw InputError(part.place + ": its positions have " + std::to_string(positions.components) +
-                         " components, not 3");
+        throw InputError(part.place, ": its positions have ", positions.components, " components, not 3");
       }
       part.vertices = positions.count;
       const auto indices = gltf_number(*part.primitive, "indices", part.place);
       part.corners = part.mode == kPoints ? 0 : (indices ? file_.accessor(*indices).count : part.vertices);
       bytes_ += kPartBytes + part.vertices * kVertexBytes + triangles_of(part) * kTriangleBytes;
       if (bytes_ + file_.bytes_made() > file_.most_bytes()) {
-        throw InputError("the scene places meshes that take more than the limit of " +
-                         std::to_string(file_.most_bytes()) +
+        throw InputError("the scene places meshes that take more than the limit of ", file_.most_bytes(),
                          " bytes, three times what the file holds and 64 MB");
       }
       parts_.push_back(std::move(part));
@@ -376,7 +370,7 @@ class Scene {
         const auto& m = part.placing[row];
         world[row] = m[0] * local[0] + m[1] * local[1] + m[2] * local[2] + m[3];
         if (!std::isfinite(world[row])) {
-          throw InputError(part.place + ": the position of vertex " + std::to_string(i) + " is not finite");
+          throw InputError(part.place, ": the position of vertex ", i, " is not finite");
         }
       }
       mesh_.positions.push_back(world);
@@ -418,7 +412,7 @@ class Scene {
     const auto number = gltf_number(*part.primitive, "indices", part.place);
     const GltfAccessor indices = number ? file_.accessor(*number) : GltfAccessor{};
     if (number && indices.components != 1) {
-      throw InputError(part.place + ": its indices are vectors");
+      throw InputError(part.place, ": its indices are vectors");
     }
     undrawn_["the last corners, too few for a triangle,"] +=
         part.corners < 3 || (part.mode == kTriangles && part.corners % 3 != 0) ? 1U : 0U;
@@ -428,9 +422,8 @@ class Scene {
     for (std::uint64_t i = 0; i < part.corners; ++i) {
       const std::uint64_t index = number ? indices.index(i) : i;
       if (index >= part.vertices) {
-        throw InputError(part.place + ": its corner " + std::to_string(i) + " has the index " +
-                         std::to_string(index) + ", which is not one of its " +
-                         std::to_string(part.vertices) + " vertices");
+        throw InputError(part.place, ": its corner ", i, " has the index ", index,
+                         ", which is not one of its ", part.vertices, " vertices");
       }
       const auto corner = static_cast<std::uint32_t>(first + index);
       if (part.mode == kFan) {
@@ -639,8 +632,7 @@ class Scene {
       }
     }
     if (file_.count("scenes") > 1) {
-      mesh_.notes.push_back("of its " + std::to_string(file_.count("scenes")) +
-                            " scenes the default one is drawn");
+      mesh_.notes.push_back(concat("of its ", file_.count("scenes"), " scenes the default one is drawn"));
     }
     mesh_.is_unlit = unlit_ != 0 && !has_lit_;
     if (unlit_ != 0 && has_lit_) {

@@ -29,8 +29,8 @@ void check_beginning(std::span<const std::uint8_t> packed, const std::string& pl
                  buffer.Decode(&header.flags);
   if (is_good && (header.version_major != draco::kDracoMeshBitstreamVersionMajor ||
                   header.version_minor != draco::kDracoMeshBitstreamVersionMinor)) {
-    throw InputError(place + ": its Draco data is of version " + std::to_string(header.version_major) + "." +
-                     std::to_string(header.version_minor) + "; only 2.2 is read");
+    throw InputError(place, ": its Draco data is of version ", header.version_major, ".",
+                     header.version_minor, "; only 2.2 is read");
   }
   if (is_good && (header.flags & METADATA_FLAG_MASK) != 0) {
     draco::GeometryMetadata metadata;
@@ -46,11 +46,11 @@ void check_beginning(std::span<const std::uint8_t> packed, const std::string& pl
     is_good = is_good && draco::DecodeVarint(&faces, &buffer) && draco::DecodeVarint(&points, &buffer);
   }
   if (!is_good) {
-    throw InputError(place + ": its Draco data is damaged at its beginning");
+    throw InputError(place, ": its Draco data is damaged at its beginning");
   }
   if (std::max(points, faces) > kBelieved + kBelievedPerByte * packed.size()) {
-    throw InputError(place + ": its Draco data claims " + std::to_string(faces) + " triangles and " +
-                     std::to_string(points) + " points in " + std::to_string(packed.size()) + " bytes");
+    throw InputError(place, ": its Draco data claims ", faces, " triangles and ", points, " points in ",
+                     packed.size(), " bytes");
   }
 }
 
@@ -62,7 +62,7 @@ void unpack_draco(GltfFile& file, const json& primitive, const json& extension, 
   const json* ids = gltf_member(extension, "attributes");
   const json* attributes = gltf_member(primitive, "attributes");
   if (!view || !indices || ids == nullptr || !ids->is_object()) {
-    throw InputError(place +
+    throw InputError(place,
                      ": its KHR_draco_mesh_compression lacks bufferView or attributes, or it has no indices");
   }
   const auto packed = file.buffer_view(*view);
@@ -71,7 +71,7 @@ void unpack_draco(GltfFile& file, const json& primitive, const json& extension, 
   buffer.Init(reinterpret_cast<const char*>(packed.data()), packed.size());
   auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok()) {
-    throw InputError(place + ": its Draco data is damaged");
+    throw InputError(place, ": its Draco data is damaged");
   }
   const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
   file.unpacked(*view, std::uint64_t{mesh->num_faces()} * 12 + std::uint64_t{mesh->num_points()} * 12);
@@ -88,7 +88,7 @@ void unpack_draco(GltfFile& file, const json& primitive, const json& extension, 
             ? mesh->GetAttributeByUniqueId(static_cast<std::uint32_t>(*unique_id))
             : nullptr;
     if (!accessor || attribute == nullptr) {
-      throw InputError(place + ": its Draco data has no " + tools::quoted(name) + " as it says");
+      throw InputError(place, ": its Draco data has no ", tools::quoted(name), " as it says");
     }
     std::array<float, 4> reals{};
     std::array<std::int64_t, 4> integers{};
@@ -99,7 +99,7 @@ void unpack_draco(GltfFile& file, const json& primitive, const json& extension, 
         const bool has_value = is_real ? attribute->ConvertValue<float>(value, 4, reals.data())
                                        : attribute->ConvertValue<std::int64_t>(value, 4, integers.data());
         if (!has_value) {
-          throw InputError(place + ": its Draco data has values of a kind that is not read");
+          throw InputError(place, ": its Draco data has values of a kind that is not read");
         }
       }
       return is_real ? static_cast<double>(reals[component]) : static_cast<double>(integers[component]);

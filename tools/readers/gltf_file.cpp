@@ -38,9 +38,8 @@ void check_json(std::string_view text) {
     depth += c == '[' || c == '{' ? 1 : (c == ']' || c == '}' ? -1 : 0);
     values += c == '[' || c == '{' || c == ',' ? 1 : 0;
     if (depth > kGltfDepthLimit || values > kGltfValueLimit) {
-      throw InputError("the JSON has more than " + std::to_string(kGltfValueLimit) +
-                       " values, or nests them deeper than " + std::to_string(kGltfDepthLimit) +
-                       ", at its byte " + std::to_string(i));
+      throw InputError("the JSON has more than ", kGltfValueLimit, " values, or nests them deeper than ",
+                       kGltfDepthLimit, ", at its byte ", i);
     }
   }
 }
@@ -163,7 +162,7 @@ std::optional<std::uint64_t> gltf_number(const json& object, const char* name, c
   // Exporters have written 12.0.
   const double value = member->is_number() ? member->get<double>() : -1;
   if (!(value >= 0 && value <= 9007199254740992.0) || value != std::floor(value)) {
-    throw InputError(place + ": " + name + " is no whole number from 0 on");
+    throw InputError(place, ": ", name, " is no whole number from 0 on");
   }
   return static_cast<std::uint64_t>(value);
 }
@@ -179,7 +178,7 @@ void gltf_reals(const json& object, const char* name, std::span<double> values, 
     values[i] = is_good ? (*member)[i].get<double>() : 0;
   }
   if (!is_good) {
-    throw InputError(place + ": " + name + " is no list of " + std::to_string(values.size()) + " numbers");
+    throw InputError(place, ": ", name, " is no list of ", values.size(), " numbers");
   }
 }
 
@@ -189,7 +188,7 @@ void gltf_real(const json& object, const char* name, double& value, const std::s
     return;
   }
   if (!member->is_number()) {
-    throw InputError(place + ": " + name + " is no number");
+    throw InputError(place, ": ", name, " is no number");
   }
   value = member->get<double>();
 }
@@ -219,7 +218,7 @@ GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
     const json* version = asset == nullptr ? nullptr : gltf_member(*asset, "version");
     if (version != nullptr && version->is_string() &&
         !version->get_ref<const std::string&>().starts_with("2")) {
-      throw InputError("version " + tools::quoted(version->get_ref<const std::string&>()) +
+      throw InputError("version ", tools::quoted(version->get_ref<const std::string&>()),
                        " is not supported, only 2 is");
     }
     return;
@@ -228,7 +227,7 @@ GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
   reader.skip(4);
   const std::uint32_t version = reader.u32();
   if (version != 2) {
-    throw InputError("version " + std::to_string(version) + " at byte offset 4 is not supported, only 2 is");
+    throw InputError("version ", version, " at byte offset 4 is not supported, only 2 is");
   }
   reader.skip(4);
   bool has_json = false;
@@ -255,12 +254,11 @@ GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
 const json& GltfFile::entry(const char* name, std::uint64_t i) const {
   const json::array_t& list = gltf_list(json_, name);
   if (i >= list.size()) {
-    throw InputError("there is no entry " + std::to_string(i) + " among the " + std::to_string(list.size()) +
-                     " of " + quoted(name));
+    throw InputError("there is no entry ", i, " among the ", list.size(), " of ", quoted(name));
   }
   const json& found = list[static_cast<std::size_t>(i)];
   if (!found.is_object()) {
-    throw InputError("entry " + std::to_string(i) + " of " + quoted(name) + " is no object");
+    throw InputError("entry ", i, " of ", quoted(name), " is no object");
   }
   return found;
 }
@@ -309,12 +307,12 @@ std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
   const json* uri = gltf_member(entry, "uri");
   if (uri == nullptr) {
     if (i != 0 || !binary_) {
-      throw InputError(place + ": it has no link, and the file has no binary chunk for it");
+      throw InputError(place, ": it has no link, and the file has no binary chunk for it");
     }
     return binary_->bytes;
   }
   if (!uri->is_string()) {
-    throw InputError(place + ": its link is no text");
+    throw InputError(place, ": its link is no text");
   }
   SharedBytes bytes;
   if (const std::string fault = link(uri->get_ref<const std::string&>(), place, bytes); !fault.empty()) {
@@ -327,14 +325,14 @@ std::span<const std::uint8_t> GltfFile::buffer_view(std::uint64_t i) {
   const std::string place = "buffer view " + std::to_string(i);
   const json& view = entry("bufferViews", i);
   if (gltf_extension(view, "EXT_meshopt_compression") != nullptr) {
-    throw InputError(place + ": its data is compressed (EXT_meshopt_compression), which is not read");
+    throw InputError(place, ": its data is compressed (EXT_meshopt_compression), which is not read");
   }
   const auto whole = buffer(gltf_number(view, "buffer", place).value_or(0));
   const std::uint64_t offset = gltf_number(view, "byteOffset", place).value_or(0);
   const std::uint64_t length = gltf_number(view, "byteLength", place).value_or(0);
   if (offset > whole.size() || length > whole.size() - offset) {
-    throw InputError(place + ": " + std::to_string(length) + " bytes from " + std::to_string(offset) +
-                     " on are not in its buffer of " + std::to_string(whole.size()));
+    throw InputError(place, ": ", length, " bytes from ", offset, " on are not in its buffer of ",
+                     whole.size());
   }
   return whole.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
@@ -349,10 +347,8 @@ void GltfFile::lay(GltfAccessor& accessor, std::uint64_t view, std::uint64_t off
       (accessor.count == 0 || (element <= bytes.size() - offset &&
                                accessor.count - 1 <= (bytes.size() - offset - element) / accessor.stride));
   if (!fits) {
-    throw InputError(place + ": " + std::to_string(accessor.count) + " times " + std::to_string(element) +
-                     " bytes from " + std::to_string(offset) + " on, one every " +
-                     std::to_string(accessor.stride) + ", are not in its buffer view of " +
-                     std::to_string(bytes.size()));
+    throw InputError(place, ": ", accessor.count, " times ", element, " bytes from ", offset,
+                     " on, one every ", accessor.stride, ", are not in its buffer view of ", bytes.size());
   }
   accessor.bytes = bytes.subspan(static_cast<std::size_t>(offset));
 }
@@ -383,7 +379,7 @@ std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor
     indices.count = gltf_number(*sparse, "count", place).value_or(0);
     indices.type = where == nullptr ? NumberType{'u', 0} : component_type_of(*where, place);
     if (!index_view || !value_view || indices.type.kind != 'u' || indices.type.size_bytes == 0) {
-      throw InputError(place + ": its sparse values lack their indices or themselves");
+      throw InputError(place, ": its sparse values lack their indices or themselves");
     }
     GltfAccessor values = accessor;
     values.count = indices.count;
@@ -392,9 +388,8 @@ std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor
     for (std::uint64_t k = 0; k < indices.count; ++k) {
       const std::uint32_t index = indices.index(k);
       if (index >= accessor.count) {
-        throw InputError(place + ": its sparse value " + std::to_string(k) + " has the index " +
-                         std::to_string(index) + ", which is not one of its " +
-                         std::to_string(accessor.count));
+        throw InputError(place, ": its sparse value ", k, " has the index ", index,
+                         ", which is not one of its ", accessor.count);
       }
       set(index, values, k);
     }
@@ -405,9 +400,8 @@ std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor
 std::vector<std::uint8_t> GltfFile::room_for(const GltfAccessor& accessor, const std::string& place) {
   const std::uint64_t element = accessor.element_bytes();
   if (accessor.count > (most_bytes() - std::min(most_bytes(), bytes_made_)) / element) {
-    throw InputError(place + ": " + std::to_string(accessor.count) +
-                     " sparse or compressed values take more than the limit of " +
-                     std::to_string(most_bytes()) + " bytes, three times what the file holds and 64 MB");
+    throw InputError(place, ": ", accessor.count, " sparse or compressed values take more than the limit of ",
+                     most_bytes(), " bytes, three times what the file holds and 64 MB");
   }
   bytes_made_ += accessor.count * element;
   return std::vector<std::uint8_t>(static_cast<std::size_t>(accessor.count * element));
@@ -421,8 +415,7 @@ void GltfFile::fill(std::uint64_t i, std::uint64_t count,
   const std::string place = "accessor " + std::to_string(i);
   const GltfAccessor accessor = described(i, place);
   if (accessor.count != count) {
-    throw InputError(place + ": it has " + std::to_string(accessor.count) +
-                     " values, and its compressed data " + std::to_string(count));
+    throw InputError(place, ": it has ", accessor.count, " values, and its compressed data ", count);
   }
   std::vector<std::uint8_t> bytes = room_for(accessor, place);
   std::size_t at = 0;
@@ -456,7 +449,7 @@ GltfAccessor GltfFile::described(std::uint64_t i, const std::string& place) cons
   }
   accessor.type = component_type_of(entry, place);
   if (accessor.element_bytes() == 0) {
-    throw InputError(place + ": its type or componentType is missing or none of numbers and vectors");
+    throw InputError(place, ": its type or componentType is missing or none of numbers and vectors");
   }
   const json* normalized = gltf_member(entry, "normalized");
   accessor.normalized = normalized != nullptr && normalized->is_boolean() && normalized->get<bool>();

@@ -72,8 +72,7 @@ class GoxGrid final : public VoxelGrid {
     reader.expect("GOX ", "Goxel scene");
     const std::uint32_t version = reader.u32();
     if (version < 1 || version > kNewestVersion) {
-      throw InputError("version " + std::to_string(version) +
-                       " of Goxel's scenes is not read, only 1 and 2 are");
+      throw InputError("version ", version, " of Goxel's scenes is not read, only 1 and 2 are");
     }
     for (std::size_t chunks = 0; reader.remaining() > 0;) {
       const std::string place = "the chunk at byte offset " + std::to_string(reader.offset());
@@ -88,7 +87,7 @@ class GoxGrid final : public VoxelGrid {
         ++chunks;
       }
       if (chunks > kMostBlocks || blocks_ > kMostBlocks) {
-        chunk.fail("there are more than the limit of " + std::to_string(kMostBlocks) + " blocks");
+        chunk.fail("there are more than the limit of ", kMostBlocks, " blocks");
       }
     }
   }
@@ -165,8 +164,7 @@ class GoxGrid final : public VoxelGrid {
         }
         reader.skip(4);
         if (block.picture >= pictures_.size()) {
-          reader.fail("block " + std::to_string(block.picture) + " is not among the " +
-                      std::to_string(pictures_.size()) + " of the file");
+          reader.fail("block ", block.picture, " is not among the ", pictures_.size(), " of the file");
         }
         placed_.push_back(block);
       }
@@ -237,8 +235,7 @@ class GoxGrid final : public VoxelGrid {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t side = high[axis] - low_[axis] + 1;
       if (side > std::int64_t{kGridSideLimit}) {
-        throw InputError("the layers reach over " + std::to_string(side) + " voxels, the limit is " +
-                         std::to_string(kGridSideLimit));
+        throw InputError("the layers reach over ", side, " voxels, the limit is ", kGridSideLimit);
       }
       size_[axis] = static_cast<std::int32_t>(side);
     }

@@ -1,15 +1,20 @@
 // Landscapes of heights, and `.asc` files (ESRI ASCII grid), which hold such.
 //
+// The grid becomes 512 voxels along its longer side, or as many as it has points where these are
+// more, up to 2048; heights between points lie on the surface through the four around them. What the units
+// are, no file says reliably, so the range of heights is drawn as a sixth of the longer side, whatever it
+// is. The first row is the farthest (the greatest y, north); colours go with height, from green over brown
+// to white. Where there is no height (NaN, the file's NODATA_value) there is a hole. The landscape is a
+// shell: its surface, and walls down to the lowest height around it.
+//
 // Of an `.asc`: the lines `ncols`, `nrows`, and in any order `xllcorner` or `xllcenter`, the same of y,
 // `cellsize` (or `dx` and `dy`), `NODATA_value`; then as many numbers as these say, laid out in any way.
 //
 // Source of the format: Esri, "ASCII raster format".
-#include "readers/height_grid.h"
+#include "readers/formats.h"
 
 #include <algorithm>
 #include <limits>
-
-#include "readers/formats.h"
 
 namespace thimble::tools {
 namespace {
@@ -136,8 +141,7 @@ class Landscape final : public VoxelGrid {
 
 Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightAt& height) {
   if (columns < 2 || rows < 2) {
-    throw InputError("a grid of " + std::to_string(columns) + " x " + std::to_string(rows) +
-                     " heights is no landscape; 2 x 2 is the least");
+    throw InputError("a grid of ", columns, " x ", rows, " heights is no landscape; 2 x 2 is the least");
   }
   return std::make_unique<Landscape>(columns, rows, height);
 }
@@ -164,7 +168,7 @@ Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progr
     for (std::size_t i = 0; i < 2; ++i) {
       const bool is_count = equals_ignoring_case(word, i == 0 ? "ncols" : "nrows");
       if (is_count && (!parse_integer(number, counts[i]) || counts[i] < 2)) {
-        fail_at_line(words.line(), quoted(word) + " is " + quoted(number) + ", not a whole number from 2 on");
+        fail_at_line(words.line(), quoted(word), " is ", quoted(number), ", not a whole number from 2 on");
       }
     }
     if (equals_ignoring_case(word, "nodata_value")) {
@@ -176,27 +180,26 @@ Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progr
   // A digit and what separates it from the next; the last may stand at the very end.
   const std::uint64_t room = (std::uint64_t{words.remaining()} + word.size() + 1) / 2;
   if (columns == 0 || rows == 0 || columns > room / rows) {
-    throw InputError("the header announces " + std::to_string(rows) + " rows of " + std::to_string(columns) +
-                     " heights, but the file has room for " + std::to_string(room) + " at most");
+    throw InputError("the header announces ", rows, " rows of ", columns,
+                     " heights, but the file has room for ", room, " at most");
   }
   std::vector<float> heights;
   heights.reserve(static_cast<std::size_t>(columns * rows));
   for (; !word.empty(); word = words.next()) {
     double value = 0;
     if (parse_number(word, value) == NumberKind::kGarbage) {
-      fail_at_line(words.line(), quoted(word) + " is not a number");
+      fail_at_line(words.line(), quoted(word), " is not a number");
     }
     if (heights.size() == columns * rows) {
-      fail_at_line(words.line(),
-                   quoted(word) + " comes after the last of " + std::to_string(columns * rows) + " heights");
+      fail_at_line(words.line(), quoted(word), " comes after the last of ", columns * rows, " heights");
     }
     const bool is_there = parse_number(word, value) == NumberKind::kFinite && value != nothing;
     heights.push_back(is_there ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN());
     meter.at(words.offset());
   }
   if (heights.size() != columns * rows) {
-    throw InputError("the header announces " + std::to_string(columns * rows) +
-                     " heights, but the file holds " + std::to_string(heights.size()));
+    throw InputError("the header announces ", columns * rows, " heights, but the file holds ",
+                     heights.size());
   }
   return height_landscape(columns, rows, [&](std::uint64_t column, std::uint64_t row) {
     return static_cast<double>(heights[static_cast<std::size_t>(row * columns + column)]);

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "output/concat.h"
+
 namespace thimble::tools {
 
 /// Input that cannot be used. `what()` is one clear sentence without the file's name and without a full stop
@@ -10,7 +12,9 @@ namespace thimble::tools {
 /// `thimble: FILE: sentence` on stderr and exits with status 1.
 class InputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// From the pieces of the sentence.
+  template <class First, class... Rest>
+  explicit InputError(const First& first, const Rest&... rest) : std::runtime_error(concat(first, rest...)) {}
 };
 
 /// The input may be good, but the system has nothing left to open it with. Whoever can do without an input that is bad

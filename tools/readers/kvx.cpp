@@ -24,8 +24,7 @@ class ColumnGrid : public VoxelGrid {
     for (std::uint32_t& side : sides_) {
       side = reader.u32();
       if (side < 1 || side > kGridSideLimit) {
-        reader.fail("a side of " + std::to_string(side) + " voxels; there are 1 to " +
-                    std::to_string(kGridSideLimit));
+        reader.fail("a side of ", side, " voxels; there are 1 to ", kGridSideLimit);
       }
     }
     set_size(sides_[0], sides_[1], sides_[2]);
@@ -47,15 +46,14 @@ class KvxGrid final : public ColumnGrid {
     read_size(reader);
     const std::uint64_t end = std::uint64_t{model_bytes} + 4;
     if (file.bytes.size() < kPaletteBytes || end > file.bytes.size() - kPaletteBytes) {
-      throw InputError("the model announces " + std::to_string(model_bytes) +
+      throw InputError("the model announces ", model_bytes,
                        " bytes, which the file does not hold before a palette of 768");
     }
     const std::uint64_t tables =
         4 * (std::uint64_t{sides_[0]} + 1) + 2 * std::uint64_t{sides_[0]} * (sides_[1] + 1);
     if (kKvxHeaderBytes + tables > end) {
-      throw InputError("the model of " + std::to_string(model_bytes) +
-                       " bytes has no room for the table of " + std::to_string(sides_[0]) + " x " +
-                       std::to_string(sides_[1]) + " columns");
+      throw InputError("the model of ", model_bytes, " bytes has no room for the table of ", sides_[0], " x ",
+                       sides_[1], " columns");
     }
     end_ = static_cast<std::size_t>(end);
     check_solid("the model holds no voxels");
@@ -72,8 +70,8 @@ class KvxGrid final : public ColumnGrid {
           const std::uint32_t length = slabs.u8();
           slabs.skip(1);  // which sides are visible
           if (top + length > sides_[2]) {
-            slabs.fail("a slab reaches from " + std::to_string(top) + " to " + std::to_string(top + length) +
-                       ", below the model's " + std::to_string(sides_[2]) + " voxels");
+            slabs.fail("a slab reaches from ", top, " to ", top + length, ", below the model's ", sides_[2],
+                       " voxels");
           }
           for (std::uint32_t z = top; z < top + length; ++z) {
             const std::uint8_t* color = palette + 3 * std::size_t{slabs.u8()};
@@ -94,11 +92,10 @@ class KvxGrid final : public ColumnGrid {
     const std::uint64_t first_row = row.u32();
     const std::uint64_t first = kKvxHeaderBytes + first_row + inner.u16();
     const std::uint64_t last = kKvxHeaderBytes + first_row + inner.u16();
-    const std::string place = "column " + std::to_string(x) + "," + std::to_string(y);
+    const std::string place = concat("column ", x, ",", y);
     if (first > last || last > end_) {
-      throw InputError(place + " lies from byte offset " + std::to_string(first) + " to " +
-                       std::to_string(last) + ", outside of the model, which ends at " +
-                       std::to_string(end_));
+      throw InputError(place, " lies from byte offset ", first, " to ", last,
+                       ", outside of the model, which ends at ", end_);
     }
     return ByteReader(
         file_.bytes.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first)), place,
@@ -132,16 +129,16 @@ class Kv6Grid final : public ColumnGrid {
           const std::uint32_t z = voxels.u16();
           voxels.skip(2);
           if (z >= sides_[2]) {
-            voxels.fail("a voxel of column " + std::to_string(x) + "," + std::to_string(y) + " lies at " +
-                        std::to_string(z) + ", below the model's " + std::to_string(sides_[2]) + " voxels");
+            voxels.fail("a voxel of column ", x, ",", y, " lies at ", z, ", below the model's ", sides_[2],
+                        " voxels");
           }
           put(visit, x, y, z, {color[2], color[1], color[0]});
         }
       }
     }
     if (voxels.remaining() != 0) {
-      voxels.fail("there are " + std::to_string(count_) + " of them, and the columns have " +
-                  std::to_string(count_ - voxels.remaining() / kKv6VoxelBytes));
+      voxels.fail("there are ", count_, " of them, and the columns have ",
+                  count_ - voxels.remaining() / kKv6VoxelBytes);
     }
   }
 

@@ -51,7 +51,7 @@ class LasCloud final : public PointCloud {
     walk([&](const CloudPoint& point, const std::uint8_t* color) {
       ++kept;
       if (!point.is_finite()) {
-        throw InputError("the position of point " + std::to_string(point.line) + " is not finite");
+        throw InputError("the position of point ", point.line, " is not finite");
       }
       for (std::size_t channel = 0; color != nullptr && channel < 3; ++channel) {
         highest = std::max(highest, component(color, channel));
@@ -69,8 +69,8 @@ class LasCloud final : public PointCloud {
             : highest <= 4095       ? 4095
                                     : 65535;
     if (has_color_ && full_ != 65535 && options.full_color == 0) {
-      notes.push_back("no color is above " + std::to_string(highest) + ": they are taken for " +
-                      (full_ == 255 ? "8" : "12") + " bits, not 16 (--colors says otherwise)");
+      notes.push_back(concat("no color is above ", highest, ": they are taken for ",
+                             full_ == 255 ? "8" : "12", " bits, not 16 (--colors says otherwise)"));
     }
   }
 
@@ -93,7 +93,7 @@ class LasCloud final : public PointCloud {
     const unsigned major = header.u8();
     const unsigned minor = header.u8();
     if (major != 1 || minor > 4) {
-      throw InputError("version " + std::to_string(major) + "." + std::to_string(minor) +
+      throw InputError("version ", major, ".", minor,
                        " at byte offset 24 is not supported, only 1.0 to 1.4 are");
     }
     header.skip(68);
@@ -119,15 +119,13 @@ class LasCloud final : public PointCloud {
       count_ = count != 0 ? count : count_;
     }
     if (format >= kFormats.size()) {
-      throw InputError("point format " + std::to_string(format) +
-                       " at byte offset 104 is not supported, only 0 to 10 are");
+      throw InputError("point format ", format, " at byte offset 104 is not supported, only 0 to 10 are");
     }
     is_new_format_ = format >= 6;
     color_offset_ = kFormats[format].color_offset;
     if (record_bytes_ < kFormats[format].least_bytes) {
-      throw InputError("points of format " + std::to_string(format) + " take at least " +
-                       std::to_string(kFormats[format].least_bytes) + " bytes, but the header says " +
-                       std::to_string(record_bytes_));
+      throw InputError("points of format ", format, " take at least ", kFormats[format].least_bytes,
+                       " bytes, but the header says ", record_bytes_);
     }
     if (is_packed) {
       const bool has_color = color_offset_ != kNoColor;
@@ -139,8 +137,8 @@ class LasCloud final : public PointCloud {
     const std::uint64_t room =
         first_offset_ < file_.bytes.size() ? (file_.bytes.size() - first_offset_) / record_bytes_ : 0;
     if (count_ > room) {
-      throw InputError("the header counts " + std::to_string(count_) + " points, but from byte offset " +
-                       std::to_string(first_offset_) + " on the file has room for " + std::to_string(room));
+      throw InputError("the header counts ", count_, " points, but from byte offset ", first_offset_,
+                       " on the file has room for ", room);
     }
   }
 

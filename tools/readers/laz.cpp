@@ -393,7 +393,7 @@ struct Packing {
 };
 
 [[noreturn]] void refuse_item(unsigned type, unsigned version) {
-  throw InputError("item " + std::to_string(type) + " of version " + std::to_string(version) +
+  throw InputError("item ", type, " of version ", version,
                    " in its compressed points is not read (waveforms, or LASzip before 2.0)");
 }
 
@@ -456,8 +456,7 @@ Packing read_packing(const SharedBytes& file, const LasPoints& points) {
       const unsigned compressor = all.u16();
       const unsigned coder = all.u16();
       if (compressor < 1 || compressor > 3 || coder != 0) {
-        throw InputError("compressor " + std::to_string(compressor) + " with coder " + std::to_string(coder) +
-                         " of its points is not read");
+        throw InputError("compressor ", compressor, " with coder ", coder, " of its points is not read");
       }
       packing.is_layered = compressor == 3;
       packing.is_chunked = compressor != 1;
@@ -544,8 +543,8 @@ SharedBytes unpack_laz(const SharedBytes& file, const LasPoints& points, bool ha
   constexpr std::uint64_t kBelievedPoints = 2'000'000;
   constexpr std::uint64_t kBelievedPerByte = 5;
   if (points.count > kBelievedPoints + kBelievedPerByte * file.bytes.size()) {
-    throw InputError("the header counts " + std::to_string(points.count) + " points in " +
-                     std::to_string(file.bytes.size()) + " bytes, more than they are believed to hold");
+    throw InputError("the header counts ", points.count, " points in ", file.bytes.size(),
+                     " bytes, more than they are believed to hold");
   }
   std::uint64_t offset = points.first_offset;
   std::vector<std::uint32_t> table;

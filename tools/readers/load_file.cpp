@@ -44,7 +44,7 @@ class Descriptor {
       throw ShortageError("cannot be opened: " + reason(errno));
     }
     if (fd_ < 0) {
-      throw InputError("cannot be opened: " + reason(errno));
+      throw InputError("cannot be opened: ", reason(errno));
     }
   }
   Descriptor(const Descriptor&) = delete;
@@ -55,7 +55,7 @@ class Descriptor {
   std::uint64_t size_hint_bytes() const {
     struct stat status {};
     if (::fstat(fd_, &status) != 0) {
-      throw InputError("cannot be examined: " + reason(errno));
+      throw InputError("cannot be examined: ", reason(errno));
     }
     if (S_ISDIR(status.st_mode)) {
       throw InputError("is a directory, not a file");
@@ -83,7 +83,7 @@ class Descriptor {
         continue;
       }
       if (got < 0) {
-        throw InputError("cannot be read: " + reason(errno));
+        throw InputError("cannot be read: ", reason(errno));
       }
       if (got == 0) {
         break;
@@ -129,7 +129,7 @@ class FileBuffer {
   void grew_from(std::uint64_t packed_bytes, std::size_t count) {
     grew(count);
     if (bytes_.size_ > kBelievedBytes && bytes_.size_ / kBelievedRatio > packed_bytes) {
-      throw InputError("inflates to more than 256 MiB, more than " + std::to_string(kBelievedRatio) +
+      throw InputError("inflates to more than 256 MiB, more than ", kBelievedRatio,
                        " times what it takes packed");
     }
   }
@@ -142,7 +142,7 @@ class FileBuffer {
     return std::move(bytes_);
   }
   [[noreturn]] static void refuse(std::uint64_t limit_bytes) {
-    throw InputError("holds more than the limit of " + std::to_string(limit_bytes) + " bytes");
+    throw InputError("holds more than the limit of ", limit_bytes, " bytes");
   }
 
  private:
@@ -156,7 +156,7 @@ class FileBuffer {
     refuse_for_memory();
   }
   [[noreturn]] void refuse_for_memory() const {
-    throw InputError("does not fit the memory that is left on this machine: " + std::to_string(bytes_.size_) +
+    throw InputError("does not fit the memory that is left on this machine: ", bytes_.size_,
                      " bytes of it did");
   }
   bool resize(std::uint64_t capacity) {
@@ -325,8 +325,7 @@ class Members {
       packed = packed.subspan(step.taken);
       taken_bytes_ += step.taken;
       if (step.fault != nullptr) {
-        throw InputError(std::string(packing_.name) + " data is damaged near byte offset " +
-                         std::to_string(taken_bytes_) + ": " + step.fault);
+        throw InputError(packing_.name, " data is damaged near byte offset ", taken_bytes_, ": ", step.fault);
       }
       out_.grew_from(taken_bytes_, step.made);
       looker_.at(out_.bytes(), false);
@@ -336,11 +335,11 @@ class Members {
   }
   void finish() const {
     if (!between_members_) {
-      throw InputError(std::string(packing_.name) + " data is truncated: the file ends at byte offset " +
-                       std::to_string(taken_bytes_) + " within a member");
+      throw InputError(packing_.name, " data is truncated: the file ends at byte offset ", taken_bytes_,
+                       " within a member");
     }
     if (out_.size() == 0) {
-      throw InputError(std::string(packing_.name) + " data holds no bytes");
+      throw InputError(packing_.name, " data holds no bytes");
     }
   }
 
@@ -353,8 +352,8 @@ class Members {
       return false;
     }
     if (packing_.begins.find(static_cast<char>(packed->front())) == std::string_view::npos) {
-      throw InputError(std::string(packing_.name) + " data ends at byte offset " +
-                       std::to_string(taken_bytes_) + " but something else follows it");
+      throw InputError(packing_.name, " data ends at byte offset ", taken_bytes_,
+                       " but something else follows it");
     }
     unpacker_->restart();
     return true;
@@ -405,8 +404,8 @@ FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, st
   FileBuffer out(limit_bytes);
   const Unpacker::Step last = inflate_into(out, packed, frame, UINT64_MAX);
   if (!last.is_end) {
-    throw InputError(place + (last.fault == nullptr ? ": the deflated data is truncated"
-                                                    : ": the deflated data is damaged"));
+    throw InputError(
+        place, last.fault == nullptr ? ": the deflated data is truncated" : ": the deflated data is damaged");
   }
   return out.finish();
 }
@@ -475,8 +474,8 @@ FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const Fi
   }
   for (const Packing& packing : kPackings) {
     if (path.ends_with(packing.ending)) {
-      throw InputError("its name ends in " + std::string(packing.ending) +
-                       " but it does not begin with the " + packing.name + " signature");
+      throw InputError("its name ends in ", packing.ending, " but it does not begin with the ", packing.name,
+                       " signature");
     }
   }
   looker.at(step.first(got), true);  // a pipe hands out less only at its end

@@ -22,14 +22,12 @@ class MtsGrid final : public VoxelGrid {
     reader.expect("MTSM", "Minetest schematic");
     const unsigned version = reader.u16_be();
     if (version < 1 || version > 4) {
-      throw InputError("version " + std::to_string(version) +
-                       " at byte offset 4 is not supported, only 1 to 4 are");
+      throw InputError("version ", version, " at byte offset 4 is not supported, only 1 to 4 are");
     }
     for (std::uint32_t& side : sides_) {
       side = reader.u16_be();
       if (side < 1 || side > kGridSideLimit) {
-        reader.fail("a side of " + std::to_string(side) + " nodes; there are 1 to " +
-                    std::to_string(kGridSideLimit));
+        reader.fail("a side of ", side, " nodes; there are 1 to ", kGridSideLimit);
       }
     }
     set_size(sides_[0], sides_[2], sides_[1]);
@@ -43,15 +41,14 @@ class MtsGrid final : public VoxelGrid {
     const std::uint64_t cells = std::uint64_t{sides_[0]} * sides_[1] * sides_[2];
     nodes_ = inflate_bytes(reader.take(reader.remaining()), Deflated::kZlib, cells * kNodeBytes, "the nodes");
     if (nodes_.size() != cells * kNodeBytes) {
-      throw InputError("the nodes take " + std::to_string(nodes_.size()) + " bytes, not 4 for each of " +
-                       std::to_string(cells));
+      throw InputError("the nodes take ", nodes_.size(), " bytes, not 4 for each of ", cells);
     }
     has_chances_ = version >= 2;
     chance_bits_ = version >= 4 ? 0x7FU : 0xFFU;
     for (std::uint64_t i = 0; i < cells; ++i) {
       if (number(i) >= colors_.size()) {
-        throw InputError("node " + std::to_string(i) + " has the number " + std::to_string(number(i)) +
-                         ", but there are " + std::to_string(colors_.size()) + " names");
+        throw InputError("node ", i, " has the number ", number(i), ", but there are ", colors_.size(),
+                         " names");
       }
     }
     check_solid("the schematic holds nothing but air");

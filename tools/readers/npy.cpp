@@ -5,7 +5,7 @@
 // - N x 3 to N x 9 numbers: points, unless `ArrayAs::kHeights`. Of 6, 7 or 9 columns the last three, of 8 the fourth
 //   to sixth are a colour where all of them are from 0 to 1 or whole numbers up to 255. Points that are not finite
 //   are left out.
-// - H x W numbers: heights, the first row the farthest (height_grid.h).
+// - H x W numbers: heights, the first row the farthest (height_grid.cpp).
 // - X x Y x Z: voxels, solid where a number is not 0 (a float: 0.5 or more).
 // - X x Y x Z x 3 bytes: colours, black is empty; x 4: empty where the fourth is 0.
 // Numbers are booleans, integers or floats of 2, 4 or 8 bytes, of either byte order, in C or Fortran order. In
@@ -16,7 +16,7 @@
 #include <cstring>
 
 #include "readers/color_scale.h"
-#include "readers/height_grid.h"
+#include "readers/formats.h"
 #include "readers/zip.h"
 
 namespace thimble::tools {
@@ -52,7 +52,7 @@ std::string_view value_of(std::string_view dictionary, std::string_view key) {
   const std::size_t at = dictionary.find("'" + std::string(key) + "'");
   const std::size_t colon = at == std::string_view::npos ? at : dictionary.find(':', at);
   if (colon == std::string_view::npos) {
-    throw InputError("the header has no " + quoted(key));
+    throw InputError("the header has no ", quoted(key));
   }
   std::string_view value = dictionary.substr(colon + 1);
   value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
@@ -68,7 +68,7 @@ void read_type(std::string_view value, NpyHeader& header) {
   const bool has_order = !text.empty() && std::string_view("<>|=").find(text[0]) != std::string_view::npos;
   const std::string_view type = text.substr(has_order ? 1 : 0);
   if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
-    throw InputError("the type of the array's numbers, " + quoted(value.substr(0, value.find(','))) +
+    throw InputError("the type of the array's numbers, ", quoted(value.substr(0, value.find(','))),
                      ", is none of booleans, integers, and floats of 2, 4 or 8 bytes");
   }
   header.type.kind = type[0] == '?' ? 'b' : type[0];
@@ -87,10 +87,10 @@ void read_shape(std::string_view value, NpyHeader& header) {
     const std::size_t length = std::min(value.find_first_of(" ,"), value.size());
     std::int64_t side = 0;
     if (!parse_integer(value.substr(0, length), side) || side < 0) {
-      throw InputError("the array's shape holds " + quoted(value.substr(0, length)) + ", which is no length");
+      throw InputError("the array's shape holds ", quoted(value.substr(0, length)), ", which is no length");
     }
     if (header.shape.size() == kMostDimensions) {
-      throw InputError("the array has more than " + std::to_string(kMostDimensions) + " dimensions");
+      throw InputError("the array has more than ", kMostDimensions, " dimensions");
     }
     header.shape.push_back(static_cast<std::uint64_t>(side));
     value.remove_prefix(length);
@@ -106,8 +106,7 @@ NpyHeader read_npy_header(std::span<const std::uint8_t> bytes) {
   const unsigned version = reader.u8();
   reader.skip(1);
   if (version < 1 || version > 3) {
-    throw InputError("version " + std::to_string(version) +
-                     " at byte offset 6 is not supported, only 1 to 3 are");
+    throw InputError("version ", version, " at byte offset 6 is not supported, only 1 to 3 are");
   }
   const std::string_view dictionary = reader.text(version == 1 ? reader.u16() : reader.u32());
   NpyHeader header;
@@ -127,9 +126,8 @@ struct Array {
   Array(NpyHeader read, SharedBytes file) : header(std::move(read)), bytes(std::move(file)) {
     const std::uint64_t room = (bytes.bytes.size() - header.data_offset) / header.type.size_bytes;
     if (numbers_of(header) > room) {
-      throw InputError("the array's shape takes " + std::to_string(numbers_of(header)) + " numbers of " +
-                       std::to_string(header.type.size_bytes) + " bytes, but the file has room for " +
-                       std::to_string(room));
+      throw InputError("the array's shape takes ", numbers_of(header), " numbers of ", header.type.size_bytes,
+                       " bytes, but the file has room for ", room);
     }
     strides.resize(header.shape.size());
     std::uint64_t stride = 1;
@@ -172,10 +170,10 @@ class ArrayPoints final : public PointCloud {
     }
     const std::uint64_t used = has_color_ ? 6 : 3;
     if (columns > used) {
-      notes.push_back("of the array's " + std::to_string(columns) + " columns, " +
-                      (has_color_ ? "1 to 3 are taken for places and " + std::to_string(first_color_ + 1) +
-                                        " to " + std::to_string(first_color_ + 3) + " for colors"
-                                  : "the first three are taken for places, none for colors"));
+      notes.push_back(concat("of the array's ", columns, " columns, ",
+                             has_color_ ? concat("1 to 3 are taken for places and ", first_color_ + 1, " to ",
+                                                 first_color_ + 3, " for colors")
+                                        : "the first three are taken for places, none for colors"));
     } else if (array_.header.type.kind != 'f' && options.as == ArrayAs::kByShape) {
       notes.emplace_back(
           "its rows of whole numbers are places; --as-voxels makes them voxels, --as-heights heights");
@@ -220,8 +218,7 @@ class ArrayGrid final : public VoxelGrid {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::uint64_t side = array_.header.shape[axis];
       if (side < 1 || side > kGridSideLimit) {
-        throw InputError("the array has a side of " + std::to_string(side) + " voxels; there are 1 to " +
-                         std::to_string(kGridSideLimit));
+        throw InputError("the array has a side of ", side, " voxels; there are 1 to ", kGridSideLimit);
       }
       size_[axis] = static_cast<std::int32_t>(side);
     }
@@ -286,7 +283,7 @@ Source source_of(Array array, const ReadOptions& options) {
     return std::make_unique<ArrayPoints>(std::move(array), options);
   }
   if (options.as == ArrayAs::kPoints) {
-    throw InputError("--as-points: points are N x 3 to N x 9 numbers, and this is " + shape_of(header));
+    throw InputError("--as-points: points are N x 3 to N x 9 numbers, and this is ", shape_of(header));
   }
   if (dimensions == 2) {
     return height_landscape(header.shape[1], header.shape[0], [&](std::uint64_t column, std::uint64_t row) {
@@ -299,7 +296,7 @@ Source source_of(Array array, const ReadOptions& options) {
     return std::make_unique<ArrayGrid>(std::move(array));
   }
   throw InputError(
-      "an array of " + shape_of(header) +
+      "an array of ", shape_of(header),
       " numbers is read as nothing; points are N x 3 to N x 9, heights H x W, voxels X x Y x Z, colours "
       "X x Y x Z x 3 or 4 bytes");
 }
@@ -357,7 +354,7 @@ NumberTable read_npy_table(const SharedBytes& file) {
   const auto array = std::make_shared<const Array>(array_of(file));
   const NpyHeader& header = array->header;
   if (header.shape.size() != 2) {
-    throw InputError("the array is " + shape_of(header) + ", no table of rows and columns");
+    throw InputError("the array is ", shape_of(header), ", no table of rows and columns");
   }
   return {header.shape[0], header.shape[1], [array](std::uint64_t row, std::uint64_t column) {
             return array->at(row * array->strides[0] + column * array->strides[1]);

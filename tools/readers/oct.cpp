@@ -30,8 +30,7 @@ std::uint64_t load32(std::span<const std::uint8_t> bytes, std::size_t at) {
 InputError another_version(const std::string& unknown) {
   const std::string_view text = kAnotherVersion;
   const std::size_t colon = text.find(':');
-  return InputError(std::string(text.substr(0, colon)) + " (" + unknown + ")" +
-                    std::string(text.substr(colon)));
+  return InputError(text.substr(0, colon), " (", unknown, ")", text.substr(colon));
 }
 
 // Whether each level has the nodes that the masks of the level above call for, down to the voxels, and the directory
@@ -90,22 +89,20 @@ Source read_oct(const SharedBytes& file, const ReadOptions&, const Progress&) {
     throw InputError("not a scene baked by thimble bake (its first bytes are not TMS)");
   }
   if (bytes.size() > kVersionOffset && bytes[kVersionOffset] != kBakedVersion) {
-    throw another_version(std::to_string(bytes[kVersionOffset]) + "; this one reads " +
-                          std::to_string(kBakedVersion));
+    throw another_version(concat(bytes[kVersionOffset], "; this one reads ", kBakedVersion));
   }
   if (bytes.size() >= kBakedHeaderBytes && load32(bytes, kSizeOffset) != bytes.size()) {
-    throw InputError("holds " + std::to_string(bytes.size()) + " bytes, its header says " +
-                     std::to_string(load32(bytes, kSizeOffset)) +
-                     (load32(bytes, kSizeOffset) > bytes.size() ? ": it is truncated" : ""));
+    throw InputError("holds ", bytes.size(), " bytes, its header says ", load32(bytes, kSizeOffset),
+                     load32(bytes, kSizeOffset) > bytes.size() ? ": it is truncated" : "");
   }
   const ConstBytes view{bytes.data(), bytes.size()};
   std::uint32_t place = 0;
   if (const char* fault = fault_of(view, &place)) {
     if (fault == std::string_view(kAnotherVersion)) {
-      throw another_version("with a section of kind " + std::to_string(load32(bytes, place)) +
-                            ", which this one does not know");
+      throw another_version(
+          concat("with a section of kind ", load32(bytes, place), ", which this one does not know"));
     }
-    throw InputError("damaged at " + std::to_string(place) + ": " + fault);
+    throw InputError("damaged at ", place, ": ", fault);
   }
   BakedFile result;
   result.file = file;
@@ -117,11 +114,10 @@ Source read_oct(const SharedBytes& file, const ReadOptions&, const Progress&) {
   if (lighting.data != nullptr) {
     if (const char* fault = BakedLighting::validate(lighting, result.scene.tree().level(), &place)) {
       if (fault == std::string_view(kAnotherVersion)) {
-        throw another_version("lighting of version " + std::to_string(lighting.data[place]) +
-                              "; this one reads " + std::to_string(kLightingVersion));
+        throw another_version(
+            concat("lighting of version ", lighting.data[place], "; this one reads ", kLightingVersion));
       }
-      throw InputError("damaged at " +
-                       std::to_string(static_cast<std::size_t>(lighting.data - view.data) + place) + ": " +
+      throw InputError("damaged at ", static_cast<std::size_t>(lighting.data - view.data) + place, ": ",
                        fault);
     }
   }

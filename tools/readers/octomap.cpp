@@ -26,8 +26,8 @@ class OctomapGrid final : public VoxelGrid {
   explicit OctomapGrid(const SharedBytes& file) : file_(file) {
     is_binary_ = file.text().starts_with(kBinaryMapMagic);
     if (!looks_like_octomap(file.bytes)) {
-      throw InputError("is no OctoMap file: it does not begin with \"" + std::string(kFullMapMagic) +
-                       "\" or \"" + std::string(kBinaryMapMagic) + "\"");
+      throw InputError("is no OctoMap file: it does not begin with \"", kFullMapMagic, "\" or \"",
+                       kBinaryMapMagic, "\"");
     }
     read_head();
     std::uint64_t voxels = 0;
@@ -46,9 +46,8 @@ class OctomapGrid final : public VoxelGrid {
     size_ = {high.x - low_.x, high.y - low_.y, high.z - low_.z};
     const std::int32_t longest = *std::max_element(size_.begin(), size_.end());
     if (longest > static_cast<std::int32_t>(kGridSideLimit) || voxels > kMostMapVoxels) {
-      throw InputError("the occupied leaves are " + std::to_string(voxels) + " voxels and " +
-                       std::to_string(longest) + " long; the limits are " + std::to_string(kMostMapVoxels) +
-                       " and " + std::to_string(kGridSideLimit));
+      throw InputError("the occupied leaves are ", voxels, " voxels and ", longest, " long; the limits are ",
+                       kMostMapVoxels, " and ", kGridSideLimit);
     }
   }
 
@@ -74,7 +73,7 @@ class OctomapGrid final : public VoxelGrid {
     // Files from before classes had names say 1.
     has_color_ = id == "ColorOcTree" && !is_binary_;
     if (id != "OcTree" && id != "1" && id != "ColorOcTree" && id != "OcTreeStamped") {
-      throw InputError("holds a tree of class " + quoted(id) +
+      throw InputError("holds a tree of class ", quoted(id),
                        "; OcTree, ColorOcTree and OcTreeStamped are read");
     }
     nodes_offset_ = lines.offset();
@@ -104,8 +103,7 @@ class OctomapGrid final : public VoxelGrid {
       return;
     }
     if (level == 0) {
-      reader.fail("a node below the last of " + std::to_string(kMapLevels) + " levels, before byte offset " +
-                  std::to_string(reader.offset()));
+      reader.fail("a node below the last of ", kMapLevels, " levels, before byte offset ", reader.offset());
     }
     const std::int32_t half = std::int32_t{1} << (level - 1);
     for (unsigned octant = 0; octant < 8; ++octant) {

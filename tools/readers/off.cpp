@@ -75,15 +75,18 @@ class OffParser {
     vertices();
     faces();
     if (const std::string_view word = words_.next(); !word.empty()) {
-      mesh_.notes.push_back("line " + std::to_string(words_.line()) + ": " + quoted(word) +
-                            " and what follows comes after the last face and is not read");
+      mesh_.notes.push_back(concat("line ", words_.line(), ": ", quoted(word),
+                                   " and what follows comes after the last face and is not read"));
     }
     (face_colors_.empty() ? scale_ : face_scale_).add_note(mesh_.notes);
     return mesh_or_points(std::move(mesh_), face_count_);
   }
 
  private:
-  [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(words_.line(), sentence); }
+  template <class... Pieces>
+  [[noreturn]] void fail(const Pieces&... pieces) const {
+    fail_at_line(words_.line(), pieces...);
+  }
 
   void header() {
     const std::string_view word = words_.next();
@@ -92,14 +95,13 @@ class OffParser {
       throw InputError("the file is empty or holds only comments");
     }
     if (!keyword_.known) {
-      fail("the file begins with " + quoted(word) + ", not with OFF, COFF, NOFF, CNOFF or ST before these");
+      fail("the file begins with ", quoted(word), ", not with OFF, COFF, NOFF, CNOFF or ST before these");
     }
     vertex_count_ = keyword_.count.empty() ? count("vertices") : count("vertices", keyword_.count);
     face_count_ = count("faces");
     count("edges");
     if (vertex_count_ > kMeshVertexLimit) {
-      fail("the mesh has " + std::to_string(vertex_count_) + " vertices, the limit is " +
-           std::to_string(kMeshVertexLimit));
+      fail("the mesh has ", vertex_count_, " vertices, the limit is ", kMeshVertexLimit);
     }
     // The shortest vertex is "0 0 0" with what separates it from the next, the shortest face "0".
     check_room(vertex_count_, 6, "vertices");
@@ -122,7 +124,7 @@ class OffParser {
       fail("binary OFF is not supported");
     }
     if (!parse_integer(word, value) || value < 0) {
-      fail(std::string("the number of ") + what + " is " + quoted(word));
+      fail("the number of ", what, " is ", quoted(word));
     }
     return static_cast<std::uint64_t>(value);
   }
@@ -130,20 +132,20 @@ class OffParser {
   void check_room(std::uint64_t declared, std::uint64_t least_bytes, const char* what) const {
     const std::uint64_t room = (std::uint64_t{words_.remaining()} + 1) / least_bytes;
     if (declared > room) {
-      throw InputError("the header declares " + std::to_string(declared) + " " + what +
-                       ", but the file has room for " + std::to_string(room) + " at most");
+      throw InputError("the header declares ", declared, " ", what, ", but the file has room for ", room,
+                       " at most");
     }
   }
 
   double number(const char* what, std::uint64_t vertex) {
     const std::string_view word = words_.next();
     if (word.empty()) {
-      fail("the file ends in vertex " + std::to_string(vertex) + " of " + std::to_string(vertex_count_));
+      fail("the file ends in vertex ", vertex, " of ", vertex_count_);
     }
     double value = 0;
     if (parse_number(word, value) != NumberKind::kFinite) {
       // The sentence is made only when it is needed: this runs for every coordinate.
-      finite_number(word, words_.line(), std::string(what) + " of vertex " + std::to_string(vertex));
+      finite_number(word, words_.line(), concat(what, " of vertex ", vertex));
     }
     return value;
   }
@@ -186,10 +188,10 @@ class OffParser {
     const std::string_view word = words_.next();
     std::int64_t value = 0;
     if (word.empty()) {
-      fail("the file ends in face " + std::to_string(face) + " of " + std::to_string(face_count_));
+      fail("the file ends in face ", face, " of ", face_count_);
     }
     if (!parse_integer(word, value)) {
-      fail(quoted(word) + " in face " + std::to_string(face) + " is not a whole number");
+      fail(quoted(word), " in face ", face, " is not a whole number");
     }
     return value;
   }
@@ -199,15 +201,15 @@ class OffParser {
     for (std::uint64_t face = 0; face < face_count_; ++face) {
       const std::int64_t corners = integer(face);
       if (corners < 0) {
-        fail("face " + std::to_string(face) + " has " + std::to_string(corners) + " corners");
+        fail("face ", face, " has ", corners, " corners");
       }
       const std::size_t before = mesh_.triangles.size();
       polygons_.begin();
       for (std::int64_t i = 0; i < corners; ++i) {
         const std::int64_t index = integer(face);
         if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
-          fail("face " + std::to_string(face) + " has the index " + std::to_string(index) +
-               ", which is not one of the " + std::to_string(vertex_count_) + " vertices");
+          fail("face ", face, " has the index ", index, ", which is not one of the ", vertex_count_,
+               " vertices");
         }
         polygons_.add(static_cast<std::uint32_t>(index));
       }

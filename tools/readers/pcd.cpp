@@ -93,13 +93,13 @@ class PcdHeaderParser {
       each_field(line, [&](Field& field, std::string_view value) {
         field.type.size_bytes = number(value, 8);
         if (!std::has_single_bit(field.type.size_bytes)) {
-          fail("the size " + quoted(value) + " is not 1, 2, 4 or 8");
+          fail("the size ", quoted(value), " is not 1, 2, 4 or 8");
         }
       });
     } else if (word == "TYPE") {
       each_field(line, [&](Field& field, std::string_view value) {
         if (value != "F" && value != "U" && value != "I") {
-          fail("the type " + quoted(value) + " is not F, U or I");
+          fail("the type ", quoted(value), " is not F, U or I");
         }
         field.type.kind = static_cast<char>(value.front() - 'A' + 'a');
       });
@@ -120,7 +120,7 @@ class PcdHeaderParser {
         header_.is_turned = header_.is_turned || value != still;
       }
     } else if (!word.empty() && word.front() != '#' && word != "VERSION") {
-      fail(quoted(word) + " begins no line of a header");
+      fail(quoted(word), " begins no line of a header");
     }
   }
 
@@ -137,18 +137,21 @@ class PcdHeaderParser {
     } else if (word == "binary_compressed") {
       header_.encoding = PcdEncoding::kCompressed;
     } else if (word != "ascii") {
-      fail("the data " + quoted(word) + " is not ascii, binary or binary_compressed");
+      fail("the data ", quoted(word), " is not ascii, binary or binary_compressed");
     }
   }
 
   std::uint64_t number(std::string_view word, std::uint64_t most) const {
     std::int64_t value = 0;
     if (!parse_integer(word, value) || value < 0 || static_cast<std::uint64_t>(value) > most) {
-      fail(quoted(word) + " is no whole number from 0 to " + std::to_string(most));
+      fail(quoted(word), " is no whole number from 0 to ", most);
     }
     return static_cast<std::uint64_t>(value);
   }
-  [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(lines_.line_number(), sentence); }
+  template <class... Pieces>
+  [[noreturn]] void fail(const Pieces&... pieces) const {
+    fail_at_line(lines_.line_number(), pieces...);
+  }
 
   LineReader lines_;
   PcdHeader header_;
@@ -159,8 +162,8 @@ class PcdHeaderParser {
 std::string unpack_lzf(std::span<const std::uint8_t> packed, std::size_t size) {
   // A copy of three bytes makes at most 264.
   if (size / 88 > packed.size()) {
-    throw InputError("the compressed data announces " + std::to_string(size) + " bytes, which " +
-                     std::to_string(packed.size()) + " packed ones cannot hold");
+    throw InputError("the compressed data announces ", size, " bytes, which ", packed.size(),
+                     " packed ones cannot hold");
   }
   ByteReader reader(packed, "the compressed data");
   std::string out;
@@ -173,20 +176,18 @@ std::string unpack_lzf(std::span<const std::uint8_t> packed, std::size_t size) {
       const std::size_t length = 2 + ((control >> 5) == 7 ? 7 + std::size_t{reader.u8()} : control >> 5);
       const std::size_t distance = ((control & 31) << 8 | reader.u8()) + 1;
       if (distance > out.size()) {
-        reader.fail("a copy at byte " + std::to_string(reader.offset()) +
-                    " of it reaches before the beginning");
+        reader.fail("a copy at byte ", reader.offset(), " of it reaches before the beginning");
       }
       for (std::size_t i = 0; i < length; ++i) {
         out.push_back(out[out.size() - distance]);
       }
     }
     if (out.size() > size) {
-      reader.fail("it holds more than the " + std::to_string(size) + " bytes announced");
+      reader.fail("it holds more than the ", size, " bytes announced");
     }
   }
   if (out.size() != size) {
-    reader.fail("it holds " + std::to_string(out.size()) + " bytes, not the " + std::to_string(size) +
-                " announced");
+    reader.fail("it holds ", out.size(), " bytes, not the ", size, " announced");
   }
   return out;
 }
@@ -211,17 +212,15 @@ class PcdCloud final : public PointCloud {
       const std::uint32_t packed_bytes = data.u32();
       const std::uint32_t size_bytes = data.u32();
       if (count_ != size_bytes / record_ || size_bytes % record_ != 0) {
-        throw InputError("the header counts " + std::to_string(count_) + " points of " +
-                         std::to_string(record_) + " bytes, but the compressed data announces " +
-                         std::to_string(size_bytes) + " bytes");
+        throw InputError("the header counts ", count_, " points of ", record_,
+                         " bytes, but the compressed data announces ", size_bytes, " bytes");
       }
       file_ = SharedBytes::own(unpack_lzf(data.take(packed_bytes), size_bytes));
       data_offset_ = 0;
     }
     const std::uint64_t room = (file_.bytes.size() - data_offset_ + (is_text_ ? 1 : 0)) / record_;
     if (count_ > room) {
-      throw InputError("the header counts " + std::to_string(count_) + " points, but the file has room for " +
-                       std::to_string(room) + " at most");
+      throw InputError("the header counts ", count_, " points, but the file has room for ", room, " at most");
     }
     ProgressMeter meter(progress, file.bytes.size());
     std::uint64_t finite = 0;
@@ -287,15 +286,15 @@ class PcdCloud final : public PointCloud {
         }
       }
       if (field.type.kind == 'f' && field.type.size_bytes < 4) {
-        throw InputError("the field " + quoted(field.name) + " is of floats of " +
-                         std::to_string(field.type.size_bytes) + " bytes, which there are not");
+        throw InputError("the field ", quoted(field.name), " is of floats of ", field.type.size_bytes,
+                         " bytes, which there are not");
       }
       bytes += field.type.size_bytes * field.count;
       values += field.count;
     }
     for (std::size_t i = 0; i < kColor; ++i) {
       if (!found[i]) {
-        throw InputError("no field of the header is named " + std::string(kNames[i]));
+        throw InputError("no field of the header is named ", kNames[i]);
       }
     }
     has_color_ = found[kColor];
@@ -351,8 +350,7 @@ class PcdCloud final : public PointCloud {
     }
     for (std::uint64_t done = 0; done < count_;) {
       if (!lines.next(line)) {
-        throw InputError("the header counts " + std::to_string(count_) + " points, but the file holds " +
-                         std::to_string(done));
+        throw InputError("the header counts ", count_, " points, but the file holds ", done);
       }
       meter.at(data_offset_ + lines.offset());
       std::array<std::string_view, kUsed> words;
@@ -369,7 +367,7 @@ class PcdCloud final : public PointCloud {
       ++done;
       const std::uint64_t line_number = data_line_ + lines.line_number() - 1;
       if (at <= last) {
-        fail_at_line(line_number, std::to_string(at) + " values, but the fields of the header take more");
+        fail_at_line(line_number, at, " values, but the fields of the header take more");
       }
       give(
           line_number, [&](std::size_t column) { return number(words[column], line_number); },
@@ -380,7 +378,7 @@ class PcdCloud final : public PointCloud {
   static double number(std::string_view word, std::uint64_t line) {
     double value = std::numeric_limits<double>::quiet_NaN();
     if (parse_number(word, value) == NumberKind::kGarbage) {
-      fail_at_line(line, quoted(word) + " is not a number");
+      fail_at_line(line, quoted(word), " is not a number");
     }
     return value;
   }
@@ -393,7 +391,7 @@ class PcdCloud final : public PointCloud {
                  : Rgb{};
     }
     if (!(value >= INT32_MIN && value <= UINT32_MAX)) {
-      fail_at_line(line, "the color " + quoted(word) + " does not fit 32 bits");
+      fail_at_line(line, "the color ", quoted(word), " does not fit 32 bits");
     }
     return color_of(static_cast<std::uint32_t>(static_cast<std::int64_t>(value)));
   }

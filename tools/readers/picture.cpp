@@ -98,7 +98,7 @@ std::shared_ptr<std::uint8_t> decode_picture(std::span<const std::uint8_t> encod
       stbi_load_from_memory(encoded.data(), counted(encoded), &width, &height, &in_file, channels),
       free_block);
   if (decoded == nullptr) {
-    throw InputError(place + "is damaged: " + stbi_failure_reason());
+    throw InputError(place, "is damaged: ", stbi_failure_reason());
   }
   return decoded;
 }
@@ -110,8 +110,7 @@ Image read_picture(const std::string& path, std::int32_t width_px, std::int32_t 
     throw InputError("is no PNG, JPEG, PPM or PGM");
   }
   if (width != width_px || height != height_px) {
-    throw InputError("is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, not " +
-                     std::to_string(width_px) + " x " + std::to_string(height_px));
+    throw InputError("is ", width, " x ", height, " pixels, not ", width_px, " x ", height_px);
   }
   const std::shared_ptr<std::uint8_t> pixels = decode_picture(file.bytes(), 3);
   Image image{width, height, PixelFormat::kRgb888, {}};

@@ -80,7 +80,7 @@ class AsciiBody {
       case NumberKind::kGarbage:
         break;
     }
-    fail(quoted(word) + " is not a number");
+    fail(quoted(word), " is not a number");
   }
   void skip(const NumberType&, std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -93,7 +93,10 @@ class AsciiBody {
   std::uint64_t remaining() const { return std::uint64_t{words_.remaining()} + 1; }
   std::size_t offset() const { return start_ + words_.offset(); }
   std::uint64_t line() const { return words_.line(); }
-  [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(words_.line(), sentence); }
+  template <class... Pieces>
+  [[noreturn]] void fail(const Pieces&... pieces) const {
+    fail_at_line(words_.line(), pieces...);
+  }
   static bool skip_fixed(const PlyElement&) { return false; }
   /// Decides whether each of the element's records is a line.
   void begin(const PlyElement& element) {
@@ -128,8 +131,8 @@ class AsciiBody {
     const std::string_view word = words_.next();
     if (!word.empty()) {
       notes.push_back(
-          "line " + std::to_string(words_.line()) + ": " + quoted(word) +
-          " and what follows comes after the last value that the header declares and is not read");
+          concat("line ", words_.line(), ": ", quoted(word),
+                 " and what follows comes after the last value that the header declares and is not read"));
     }
   }
 
@@ -163,8 +166,7 @@ class BinaryBody {
   }
   void skip(const NumberType& type, std::uint64_t count) {
     if (count > remaining() / type.size_bytes) {
-      throw InputError("after byte offset " + std::to_string(next_) +
-                       ": the file ends before all that the header declares");
+      throw InputError("after byte offset ", next_, ": the file ends before all that the header declares");
     }
     next_ += static_cast<std::size_t>(count) * type.size_bytes;
   }
@@ -179,8 +181,9 @@ class BinaryBody {
   std::uint64_t remaining() const { return bytes_.size() - next_; }
   std::size_t offset() const { return next_; }
   static std::uint64_t line() { return 0; }
-  [[noreturn]] void fail(const std::string& sentence) const {
-    throw InputError("before byte offset " + std::to_string(next_) + ": " + sentence);
+  template <class... Pieces>
+  [[noreturn]] void fail(const Pieces&... pieces) const {
+    throw InputError("before byte offset ", next_, ": ", pieces...);
   }
   /// Passes over an element without lists at once; its count has been held against the bytes left.
   bool skip_fixed(const PlyElement& element) {
@@ -206,9 +209,8 @@ template <class Body>
 void begin_element(Body& body, const PlyElement& element) {
   const std::uint64_t least = Body::least_bytes(element);
   if (least != 0 && element.count > body.remaining() / least) {
-    throw InputError("the header declares " + std::to_string(element.count) + " of element " +
-                     tools::quoted(element.name) + ", but the file has room for " +
-                     std::to_string(body.remaining() / least) + " at most");
+    throw InputError("the header declares ", element.count, " of element ", tools::quoted(element.name),
+                     ", but the file has room for ", body.remaining() / least, " at most");
   }
   body.begin(element);
 }
@@ -222,7 +224,7 @@ std::uint64_t list_length(Body& body, const PlyProperty& property) {
   }
   const std::uint64_t most = body.remaining() / Body::least_bytes(property.type);
   if (length > static_cast<double>(most)) {
-    body.fail("a list of " + std::to_string(static_cast<std::uint64_t>(std::min(length, 1e18))) +
+    body.fail("a list of ", static_cast<std::uint64_t>(std::min(length, 1e18)),
               " entries is longer than the rest of the file");
   }
   return static_cast<std::uint64_t>(length);
@@ -337,8 +339,7 @@ std::int64_t read_index(Body& body, const NumberType& type, std::int64_t lowest,
   const double value = body.scalar(type);
   if (!(value >= static_cast<double>(lowest) && value < static_cast<double>(vertex_count)) ||
       value != std::floor(value)) {
-    body.fail(element.name + " " + std::to_string(record) + " has an index that is not one of the " +
-              std::to_string(vertex_count) + " vertices");
+    body.fail(element.name, " ", record, " has an index that is not one of the ", vertex_count, " vertices");
   }
   return static_cast<std::int64_t>(value);
 }
@@ -499,8 +500,7 @@ template <class Body>
 TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& vertices,
                        const ReadOptions& options, ProgressMeter& meter) {
   if (vertices.count > kMeshVertexLimit) {
-    throw InputError("the mesh has " + std::to_string(vertices.count) + " vertices, the limit is " +
-                     std::to_string(kMeshVertexLimit));
+    throw InputError("the mesh has ", vertices.count, " vertices, the limit is ", kMeshVertexLimit);
   }
   TriangleMesh mesh;
   Polygons polygons(mesh);
@@ -516,7 +516,7 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
       ColorParts parts(element, options);
       read_vertices(body, element, meter, [&](const PlyVertex& vertex) {
         if (!vertex.is_finite()) {
-          body.fail("a coordinate of vertex " + std::to_string(mesh.positions.size()) + " is not finite");
+          body.fail("a coordinate of vertex ", mesh.positions.size(), " is not finite");
         }
         parts.see(vertex);
         mesh.positions.push_back(vertex.position());
@@ -574,7 +574,7 @@ class PlyCloud final : public PointCloud {
     note_left_out(notes, vertices_.count - finite);
     parts_.add_note(notes);
     if (is_splat(vertices_)) {
-      const std::string clear = std::to_string(finite - drawn) + " of " + std::to_string(finite);
+      const std::string clear = concat(finite - drawn, " of ", finite);
       notes.push_back("Gaussian splats are drawn as points" +
                       (finite == drawn ? "" : "; " + clear + " are nearly clear and left out"));
     }

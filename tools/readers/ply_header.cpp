@@ -126,7 +126,10 @@ class PlyHeaderParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& sentence) const { fail_at_line(lines_.line_number(), sentence); }
+  template <class... Pieces>
+  [[noreturn]] void fail(const Pieces&... pieces) const {
+    fail_at_line(lines_.line_number(), pieces...);
+  }
 
   void format(std::string_view line) {
     const std::string_view word = take_word(line);
@@ -137,7 +140,7 @@ class PlyHeaderParser {
     } else if (word == "binary_big_endian") {
       header_.encoding = PlyEncoding::kBigEndian;
     } else {
-      fail("the format " + quoted(word) + " is not ascii, binary_little_endian or binary_big_endian");
+      fail("the format ", quoted(word), " is not ascii, binary_little_endian or binary_big_endian");
     }
     has_format_ = true;
   }
@@ -147,8 +150,7 @@ class PlyHeaderParser {
     const std::string_view count = take_word(line);
     std::int64_t value = 0;
     if (name.empty() || !parse_integer(count, value) || value < 0) {
-      fail("element " + quoted(name) + " has the count " + quoted(count) +
-           ", which is no number of elements");
+      fail("element ", quoted(name), " has the count ", quoted(count), ", which is no number of elements");
     }
     PlyElement added;
     added.name = name;
@@ -157,7 +159,7 @@ class PlyHeaderParser {
     if (added.kind != PlyElementKind::kOther) {
       for (const PlyElement& other : header_.elements) {
         if (other.kind == added.kind) {
-          fail("element " + quoted(name) + " is declared twice");
+          fail("element ", quoted(name), " is declared twice");
         }
       }
     }
@@ -188,7 +190,7 @@ class PlyHeaderParser {
     added.is_harmonic = is_splat(name);
     if (added.role != PlyRole::kUnused && has_role(element, added.role)) {
       if (added.role <= PlyRole::kZ || added.role == PlyRole::kIndices) {
-        fail("property " + quoted(name) + " is declared twice");
+        fail("property ", quoted(name), " is declared twice");
       }
       added.is_harmonic = false;
       added.role = PlyRole::kUnused;  // A second set of colours; the first one counts.
@@ -199,7 +201,7 @@ class PlyHeaderParser {
   NumberType type(std::string_view name) const {
     const std::optional<NumberType> found = type_named(name);
     if (!found) {
-      fail("the type " + quoted(name) + " is unknown");
+      fail("the type ", quoted(name), " is unknown");
     }
     return *found;
   }

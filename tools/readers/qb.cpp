@@ -86,7 +86,7 @@ class QubicleGrid final : public VoxelGrid {
     reader.expect("QBCL", "Qubicle project");
     reader.skip(4);  // the program's version
     if (const std::uint32_t version = reader.u32(); version != kProjectVersion) {
-      reader.fail("version " + std::to_string(version) + " of Qubicle's projects is not read, only 2 is");
+      reader.fail("version ", version, " of Qubicle's projects is not read, only 2 is");
     }
     const std::uint64_t thumbnail_width = reader.u32();
     reader.skip(4 * thumbnail_width * reader.u32());
@@ -125,8 +125,7 @@ class QubicleGrid final : public VoxelGrid {
           levels.push_back({reader.u32(), false});
         }
       } else {
-        reader.fail("there is no kind of node " + std::to_string(kind) + ", before byte offset " +
-                    std::to_string(reader.offset()));
+        reader.fail("there is no kind of node ", kind, ", before byte offset ", reader.offset());
       }
     }
   }
@@ -136,8 +135,8 @@ class QubicleGrid final : public VoxelGrid {
     for (std::uint32_t& side : matrix.size) {
       side = reader.u32();
       if (side > kGridSideLimit) {
-        reader.fail("matrix " + std::to_string(matrices_.size()) + " has a side of " + std::to_string(side) +
-                    " voxels, the limit is " + std::to_string(kGridSideLimit));
+        reader.fail("matrix ", matrices_.size(), " has a side of ", side, " voxels, the limit is ",
+                    kGridSideLimit);
       }
     }
     for (std::int64_t& coordinate : matrix.position) {
@@ -153,7 +152,7 @@ class QubicleGrid final : public VoxelGrid {
       // What a run repeats costs no byte, but time.
       cells_ += std::uint64_t{matrix.size[0]} * std::max(matrix.size[1], 1U) * matrix.size[2];
       if (cells_ > kMostCells) {
-        reader.fail("the matrices have more cells than the limit of " + std::to_string(kMostCells));
+        reader.fail("the matrices have more cells than the limit of ", kMostCells);
       }
     }
     walk(matrix, reader, [](auto, auto, auto, auto) {});
@@ -163,7 +162,7 @@ class QubicleGrid final : public VoxelGrid {
   static bool flag(ByteReader& reader, const char* what) {
     const std::uint32_t value = reader.u32();
     if (value > 1) {
-      reader.fail(std::string("the ") + what + " is " + std::to_string(value) + ", not 0 or 1");
+      reader.fail("the ", what, " is ", value, ", not 0 or 1");
     }
     return value == 1;
   }
@@ -201,8 +200,7 @@ class QubicleGrid final : public VoxelGrid {
           --left;
         }
         if (times > matrix.size[1] - y) {
-          groups.fail("column " + std::to_string(x) + "," + std::to_string(z) + " holds more than its " +
-                      std::to_string(matrix.size[1]) + " voxels");
+          groups.fail("column ", x, ",", z, " holds more than its ", matrix.size[1], " voxels");
         }
         for (const std::uint32_t end = y + times; y < end; ++y) {
           if (bits >> 24 != 0) {
@@ -226,8 +224,7 @@ class QubicleGrid final : public VoxelGrid {
     for (std::uint32_t z = 0; z < matrix.size[2]; ++z) {
       if (!is_packed_) {
         if (reader.remaining() / 4 < slice) {
-          reader.fail("the file ends in slice " + std::to_string(z) + " of " +
-                      std::to_string(matrix.size[2]));
+          reader.fail("the file ends in slice ", z, " of ", matrix.size[2]);
         }
         for (std::uint64_t index = 0; index < slice; ++index) {
           put(index, z, reader.u32());
@@ -239,8 +236,8 @@ class QubicleGrid final : public VoxelGrid {
         const std::uint32_t times = code == kRunFlag ? reader.u32() : 1;
         const std::uint32_t bits = code == kRunFlag ? reader.u32() : code;
         if (times > slice - index) {
-          reader.fail("slice " + std::to_string(z) + " holds more than its " + std::to_string(slice) +
-                      " voxels, before byte offset " + std::to_string(reader.offset()));
+          reader.fail("slice ", z, " holds more than its ", slice, " voxels, before byte offset ",
+                      reader.offset());
         }
         for (const std::uint64_t end = index + times; index < end; ++index) {
           put(index, z, bits);
@@ -270,8 +267,7 @@ class QubicleGrid final : public VoxelGrid {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t side = high[axis] - low_[axis];
       if (side > std::int64_t{kGridSideLimit}) {
-        throw InputError("the matrices reach over " + std::to_string(side) + " voxels, the limit is " +
-                         std::to_string(kGridSideLimit));
+        throw InputError("the matrices reach over ", side, " voxels, the limit is ", kGridSideLimit);
       }
       size_[kTurned[axis]] = static_cast<std::int32_t>(side);
     }

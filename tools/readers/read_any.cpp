@@ -41,9 +41,9 @@ ZipMember scene_member(std::span<const std::uint8_t> file) {
   if (scenes.empty()) {
     throw InputError("the archive holds no scene");
   }
-  throw InputError("the archive holds " + std::to_string(scenes.size()) + " scenes, " +
-                   quoted(scenes[0].name) + " and " + quoted(scenes[1].name) +
-                   (scenes.size() > 2 ? " among them" : "") + "; unpack the one that is meant");
+  throw InputError("the archive holds ", scenes.size(), " scenes, ", quoted(scenes[0].name), " and ",
+                   quoted(scenes[1].name), scenes.size() > 2 ? " among them" : "",
+                   "; unpack the one that is meant");
 }
 
 Source read_zip(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
@@ -104,13 +104,13 @@ const ReaderRow& row_for(std::string_view path, std::span<const std::uint8_t> by
 void check_text(std::span<const std::uint8_t> first, const char* name) {
   const auto zero = std::find(first.begin(), first.end(), std::uint8_t{0});
   if (zero != first.end()) {
-    throw InputError("holds a zero byte at byte offset " + std::to_string(zero - first.begin()) +
-                     ", and text, as which it would be read (" + name + "), holds none");
+    throw InputError("holds a zero byte at byte offset ", zero - first.begin(),
+                     ", and text, as which it would be read (", name, "), holds none");
   }
   const bool is_blank = std::all_of(first.begin(), first.end(),
                                     [](std::uint8_t byte) { return is_space(static_cast<char>(byte)); });
   if (is_blank && first.size() >= kFirstLookBytes) {
-    throw InputError("begins with " + std::to_string(first.size()) + " blanks and empty lines, and no text");
+    throw InputError("begins with ", first.size(), " blanks and empty lines, and no text");
   }
 }
 
@@ -156,19 +156,17 @@ void check_beginning(std::string_view path, std::span<const std::uint8_t> first)
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress) {
   const ReaderRow& row = row_for(options.path, file.bytes);
   if (options.frame && row.read != read_vox && row.read != read_zip) {
-    throw InputError("--frame and --frames are for .vox files with frames, and this is a " +
-                     std::string(row.name));
+    throw InputError("--frame and --frames are for .vox files with frames, and this is a ", row.name);
   }
   if (options.as != ArrayAs::kByShape && row.read != read_npy && row.read != read_zip) {
-    throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a " +
-                     std::string(row.name));
+    throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a ", row.name);
   }
   constexpr std::array kColorGuessers{read_las, read_npy, read_obj, read_off,
                                       read_pcd, read_ply, read_xyz, read_zip};
   if (options.full_color != 0 &&
       std::find(kColorGuessers.begin(), kColorGuessers.end(), row.read) == kColorGuessers.end()) {
-    throw InputError("--colors is for formats that do not say what a full color is, and this is a " +
-                     std::string(row.name));
+    throw InputError("--colors is for formats that do not say what a full color is, and this is a ",
+                     row.name);
   }
   Source source = row.read(file, options, progress);
   if (progress) {

@@ -33,15 +33,15 @@ struct Tinted {
 std::array<double, 3> direction(TextLine& line, const Word& word) {
   const std::string name(word.text);
   const std::array<double, 3> result = line.three_reals(name, -kMostDirection, kMostDirection);
-  if (is_zero(result)) {
-    fail_at(word.place, name + " 0 0 0 has no direction");
+  if (largest(result) == 0) {
+    fail_at(word.place, name, " 0 0 0 has no direction");
   }
   return result;
 }
 
 void read_light(TextLine& line, TextPlace place, SceneText* scene, bool is_point) {
   if (scene->lights.size() == kMaxLights) {
-    fail_at(place, "there are more lights than the limit of " + std::to_string(kMaxLights));
+    fail_at(place, "there are more lights than the limit of ", kMaxLights);
   }
   Clauses clauses(is_point ? "lamp" : "sun", &line);
   Light light;
@@ -58,7 +58,7 @@ void read_light(TextLine& line, TextPlace place, SceneText* scene, bool is_point
                      }});
   } else {
     known.push_back({"toward", [&](const Word& word) {
-                       light.place = scaled(direction(line, word), kMaxLightComponent);
+                       light.place = to_integers(direction(line, word), kMaxLightComponent);
                      }});
   }
   known.push_back(tinted.color(line));
@@ -101,14 +101,14 @@ void camera(TextLine& line, TextPlace place, SceneText* scene) {
   });
   clauses.need("eye");
   clauses.need("target");
-  const std::array<double, 3> forward{target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]};
+  const Real3 forward = minus(target, eye);
   result.eye = to_q8(eye);
   result.target = to_q8(target);
-  if (is_zero(forward)) {
+  if (largest(forward) == 0) {
     fail_at(place, "eye and target of the camera are the same point");
   }
-  result.forward = scaled(forward, kMaxViewComponent);
-  result.up = is_zero(up) ? Vec3i{} : scaled(up, kMaxViewComponent);
+  result.forward = to_integers(forward, kMaxViewComponent);
+  result.up = largest(up) == 0 ? Vec3i{} : to_integers(up, kMaxViewComponent);
   scene->camera = result;
   scene->camera_place = place;
 }
@@ -157,7 +157,7 @@ void occlusion(TextLine& line, TextPlace, SceneText* scene) {
               [&](const Word& word) {
                 const std::int32_t rays = line.whole("rays", 4, 32);
                 if (rays != 4 && rays != 8 && rays != 16 && rays != 32) {
-                  fail_at(word.place, "rays is " + std::to_string(rays) + ", it must be 4, 8, 16 or 32");
+                  fail_at(word.place, "rays is ", rays, ", it must be 4, 8, 16 or 32");
                 }
                 result.rays = static_cast<std::uint8_t>(rays);
               }},
@@ -170,7 +170,7 @@ void effects(TextLine& line, TextPlace, SceneText* scene) {
   constexpr EffectSet kEffectsOfLight = Effect::kShadows | Effect::kEmitterLight;
   const Word which = line.word();
   if (which.text != "on" && which.text != "off") {
-    fail_at(which.place, "effects needs on or off" + (which.empty() ? "" : ", not " + quoted(which.text)));
+    fail_at(which.place, "effects needs on or off", which.empty() ? "" : ", not " + quoted(which.text));
   }
   EffectSet& set = which.text == "on" ? scene->on : scene->off;
   bool any = false;
@@ -185,11 +185,11 @@ void effects(TextLine& line, TextPlace, SceneText* scene) {
     }
     if (found == Effect::kNone) {
       fail_at(word.place,
-              (word.empty() ? "the name of an effect is missing" : quoted(word.text) + " is no effect") +
-                  "; there are " + known);
+              word.empty() ? "the name of an effect is missing" : quoted(word.text) + " is no effect",
+              "; there are ", known);
     }
     if (((scene->on | scene->off) & found) != 0) {
-      fail_at(word.place, std::string(word.text) + " is turned on or off twice");
+      fail_at(word.place, word.text, " is turned on or off twice");
     }
     set |= found;
     if ((scene->off & Effect::kDirectLight) != 0 && (scene->on & kEffectsOfLight) != 0) {

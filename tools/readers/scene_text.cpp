@@ -58,26 +58,20 @@ void read_statement(TextLine line, FirstLines* first, SceneText* scene) {
       continue;
     }
     if (statement.once && (*first)[i] != 0) {
-      fail_at(word.place, std::string(word.text) + " is said twice; the first stands in line " +
-                              std::to_string((*first)[i]));
+      fail_at(word.place, word.text, " is said twice; the first stands in line ", (*first)[i]);
     }
     (*first)[i] = word.place.line;
     statement.read(line, word.place, scene);
     if (!line.at_end()) {
       const auto place = line.place();  // before the word is read
-      fail_at(place, "nothing more belongs into this line, but there is " + quoted(line.word().text));
+      fail_at(place, "nothing more belongs into this line, but there is ", quoted(line.word().text));
     }
     return;
   }
-  fail_at(word.place, quoted(word.text) + " is no statement; there are " + known);
+  fail_at(word.place, quoted(word.text), " is no statement; there are ", known);
 }
 
 }  // namespace
-
-void fail_at(const TextPlace& place, const std::string& sentence) {
-  throw InputError("line " + std::to_string(place.line) + ", column " + std::to_string(place.column) + ": " +
-                   sentence);
-}
 
 /// @throws InputError  naming line and column: a word that is not known, one that is missing, a number that
 ///   is none, not finite or out of its range, something said twice, a name that is not defined, more than a
@@ -89,7 +83,7 @@ Source read_scene_text(const SharedBytes& file, const ReadOptions&, const Progre
     text.remove_prefix(kMark.size());
   }
   if (text.size() > kSceneTextBytes) {
-    throw InputError("holds " + grouped(text.size()) + " bytes, the limit of a .scene file is " +
+    throw InputError("holds ", grouped(text.size()), " bytes, the limit of a .scene file is ",
                      grouped(kSceneTextBytes));
   }
   check_characters(text);

@@ -30,8 +30,11 @@ struct TextPlace {
   std::uint32_t line = 0;
   std::uint32_t column = 0;
 };
-/// Throws InputError "line L, column C: SENTENCE".
-[[noreturn]] void fail_at(const TextPlace& place, const std::string& sentence);
+/// Throws InputError "line L, column C: SENTENCE", a sentence of these pieces.
+template <class... Pieces>
+[[noreturn]] void fail_at(const TextPlace& place, const Pieces&... pieces) {
+  throw InputError("line ", place.line, ", column ", place.column, ": ", pieces...);
+}
 
 struct SceneText {
   struct NamedSurface {

@@ -34,18 +34,18 @@ int find(const SceneText& scene, std::string_view name) {
 std::size_t named_material(TextLine& line, const SceneText& scene, const char* what) {
   const Word word = line.word();
   if (word.empty()) {
-    fail_at(word.place, std::string(what) + " needs the name of a material");
+    fail_at(word.place, what, " needs the name of a material");
   }
   const int found = find(scene, word.text);
   if (found < 0) {
-    fail_at(word.place, "there is no material " + quoted(word.text) + " above this line");
+    fail_at(word.place, "there is no material ", quoted(word.text), " above this line");
   }
   return static_cast<std::size_t>(found);
 }
 
 SceneText::Part& add_part(SceneText* scene, SceneText::PartKind kind, TextPlace place) {
   if (scene->parts.size() == kSceneTextParts) {
-    fail_at(place, "there are more models, boxes and balls than the limit of " + grouped(kSceneTextParts));
+    fail_at(place, "there are more models, boxes and balls than the limit of ", grouped(kSceneTextParts));
   }
   SceneText::Part& part = scene->parts.emplace_back();
   part.kind = kind;
@@ -73,13 +73,13 @@ void replace(TextLine& line, const SceneText& scene, SceneText::Part* part, Repl
   const bool is_all = which.text == "all";
   std::int64_t number = 0;
   if (!is_all && (!parse_integer(which.text, number) || number < 0 || number > 255)) {
-    fail_at(which.place, "replace needs a palette index from 0 to 255, or all" +
-                             (which.empty() ? std::string() : ", not " + quoted(which.text)));
+    fail_at(which.place, "replace needs a palette index from 0 to 255, or all",
+            which.empty() ? std::string() : ", not " + quoted(which.text));
   }
   const auto index = static_cast<std::size_t>(number);
   bool& is_done = is_all ? so_far->all : so_far->done[index];
   if (is_done) {
-    fail_at(which.place, "replace " + std::string(which.text) + " is said twice in this model");
+    fail_at(which.place, "replace ", which.text, " is said twice in this model");
   }
   is_done = true;
   const auto material = static_cast<std::int16_t>(named_material(line, scene, "replace"));
@@ -121,21 +121,20 @@ void water(TextLine& line, TextPlace place, SceneText* scene) {
     clauses.need("to");
     clauses.need("from");
     if (plan[0] >= plan[2] || plan[1] >= plan[3]) {
-      fail_at(place, "water from " + std::to_string(plan[0]) + " " + std::to_string(plan[1]) + " to " +
-                         std::to_string(plan[2]) + " " + std::to_string(plan[3]) + " holds no column");
+      fail_at(place, "water from ", plan[0], " ", plan[1], " to ", plan[2], " ", plan[3], " holds no column");
     }
     area.from_to = plan;
   }
   area.level_q8 = to_fixed(level, Q8::kOne);
   if (area.level_q8 <= area.floor * Q8::kOne) {
-    fail_at(level_place, "the level of the water is not above its floor at " + std::to_string(area.floor));
+    fail_at(level_place, "the level of the water is not above its floor at ", area.floor);
   }
   scene->water = area;
 }
 
 void material(TextLine& line, TextPlace place, SceneText* scene) {
   if (scene->materials.size() == kSceneTextMaterials) {
-    fail_at(place, "there are more materials than the limit of " + std::to_string(kSceneTextMaterials));
+    fail_at(place, "there are more materials than the limit of ", kSceneTextMaterials);
   }
   const Word name = line.word();
   if (name.empty()) {
@@ -145,7 +144,7 @@ void material(TextLine& line, TextPlace place, SceneText* scene) {
     fail_at(name.place, "a material's name is one word");
   }
   if (find(*scene, name.text) >= 0) {
-    fail_at(name.place, "there is a material " + quoted(name.text) + " already");
+    fail_at(name.place, "there is a material ", quoted(name.text), " already");
   }
   SceneText::NamedSurface result;
   result.name = name.text;

@@ -38,8 +38,7 @@ enum class NbtKind : std::uint8_t {
 NbtKind kind_of(ByteReader& reader) {
   const unsigned kind = reader.u8();
   if (kind > static_cast<unsigned>(NbtKind::kLongs)) {
-    reader.fail("there is no tag of kind " + std::to_string(kind) + ", before byte offset " +
-                std::to_string(reader.offset()));
+    reader.fail("there is no tag of kind ", kind, ", before byte offset ", reader.offset());
   }
   return static_cast<NbtKind>(kind);
 }
@@ -77,8 +76,7 @@ std::span<const std::uint8_t> nbt_array(ByteReader& reader, NbtKind kind) {
   const std::int32_t count = reader.i32_be();
   const std::uint64_t each = kind == NbtKind::kBytes ? 1 : (kind == NbtKind::kInts ? 4 : 8);
   if (count < 0) {
-    reader.fail("an array of " + std::to_string(count) + " numbers, before byte offset " +
-                std::to_string(reader.offset()));
+    reader.fail("an array of ", count, " numbers, before byte offset ", reader.offset());
   }
   return reader.take(each * static_cast<std::uint64_t>(count));
 }
@@ -88,8 +86,7 @@ std::uint32_t nbt_list(ByteReader& reader, NbtKind* of) {
   *of = kind_of(reader);
   const std::int32_t count = reader.i32_be();
   if (count > 0 && *of == NbtKind::kEnd) {
-    reader.fail("a list of " + std::to_string(count) + " nothings, before byte offset " +
-                std::to_string(reader.offset()));
+    reader.fail("a list of ", count, " nothings, before byte offset ", reader.offset());
   }
   return static_cast<std::uint32_t>(std::max(count, 0));
 }
@@ -106,7 +103,7 @@ std::int64_t nbt_integer(ByteReader& reader, NbtKind kind) {
     case NbtKind::kLong:
       return static_cast<std::int64_t>(reader.u64_be());
     default:
-      reader.fail("a tag before byte offset " + std::to_string(reader.offset()) + " is no whole number");
+      reader.fail("a tag before byte offset ", reader.offset(), " is no whole number");
   }
 }
 
@@ -134,7 +131,7 @@ void nbt_skip(ByteReader& reader, NbtKind kind) {
       nbt_array(reader, what);
     }
     if (open.size() > kDeepest) {
-      reader.fail("tags are nested deeper than the limit of " + std::to_string(kDeepest));
+      reader.fail("tags are nested deeper than the limit of ", kDeepest);
     }
   };
   skip_one(kind);
@@ -179,8 +176,7 @@ struct BlockBox {
 
 std::uint32_t checked_side(std::string_view name, std::int64_t value) {
   if (value < 1 || value > std::int64_t{kGridSideLimit}) {
-    throw InputError(std::string(name) + " is " + std::to_string(value) + "; a side has 1 to " +
-                     std::to_string(kGridSideLimit) + " blocks");
+    throw InputError(name, " is ", value, "; a side has 1 to ", kGridSideLimit, " blocks");
   }
   return static_cast<std::uint32_t>(value);
 }
@@ -199,7 +195,7 @@ std::array<std::int32_t, 3> read_triple(ByteReader& reader, NbtKind kind) {
       }
     });
   } else if (kind != NbtKind::kList || nbt_list(reader, &of) != 3) {
-    reader.fail("no three numbers before byte offset " + std::to_string(reader.offset()));
+    reader.fail("no three numbers before byte offset ", reader.offset());
   } else {
     for (std::int32_t& number : out) {
       number = static_cast<std::int32_t>(nbt_integer(reader, of));
@@ -224,8 +220,8 @@ std::vector<std::optional<Rgb>> read_palette(ByteReader& reader) {
       });
     }
     if (block.empty()) {
-      reader.fail("entry " + std::to_string(palette.size()) +
-                  " of a palette has no Name, before byte offset " + std::to_string(reader.offset()));
+      reader.fail("entry ", palette.size(), " of a palette has no Name, before byte offset ",
+                  reader.offset());
     }
     palette.push_back(block_color(block));
   }
@@ -329,7 +325,7 @@ class SchematicGrid final : public VoxelGrid {
         }
       }
       if (count > 1) {
-        notes.push_back("of its " + std::to_string(count) + " palettes the first is shown");
+        notes.push_back(concat("of its ", count, " palettes the first is shown"));
       }
     } else {
       const std::size_t from = static_cast<std::size_t>(reader.offset());
@@ -365,9 +361,8 @@ class SchematicGrid final : public VoxelGrid {
       box.size[axis] = checked_side("Size of region " + quoted(name), side < 0 ? -side : side);
     }
     if (box.palette.empty() || box.blocks.size() / 8 < (box.cells() * box.bits() + 63) / 64) {
-      throw InputError("region " + quoted(name) + " has no room for " + std::to_string(box.cells()) +
-                       " blocks of " + std::to_string(box.palette.size()) + " kinds in " +
-                       std::to_string(box.blocks.size()) + " bytes");
+      throw InputError("region ", quoted(name), " has no room for ", box.cells(), " blocks of ",
+                       box.palette.size(), " kinds in ", box.blocks.size(), " bytes");
     }
     boxes_.push_back(std::move(box));
   }
@@ -375,7 +370,7 @@ class SchematicGrid final : public VoxelGrid {
   void add_to_palette(std::int64_t index, std::string_view block) {
     // Palettes are dense, and an entry takes at least seven bytes.
     if (index < 0 || static_cast<std::uint64_t>(index) > file_.bytes.size() / 7) {
-      throw InputError("the palette has the number " + std::to_string(index) + " for " + quoted(block) +
+      throw InputError("the palette has the number ", index, " for ", quoted(block),
                        ", more than the file has entries");
     }
     box_.palette.resize(std::max(box_.palette.size(), static_cast<std::size_t>(index) + 1));
@@ -419,9 +414,8 @@ class SchematicGrid final : public VoxelGrid {
     }
     if (code_ == BlockCode::kBytes ? box_.blocks.size() != cells
                                    : code_ == BlockCode::kVarints && box_.blocks.size() < cells) {
-      throw InputError("the blocks take " + std::to_string(box_.blocks.size()) + " bytes, but " +
-                       std::to_string(box_.size[0]) + " x " + std::to_string(box_.size[1]) + " x " +
-                       std::to_string(box_.size[2]) + " of them are announced");
+      throw InputError("the blocks take ", box_.blocks.size(), " bytes, but ", box_.size[0], " x ",
+                       box_.size[1], " x ", box_.size[2], " of them are announced");
     }
   }
 
@@ -452,8 +446,8 @@ class SchematicGrid final : public VoxelGrid {
 
   static const std::optional<Rgb>& palette_color(const BlockBox& box, std::uint64_t i, std::uint64_t number) {
     if (number >= box.palette.size()) {
-      throw InputError("block " + std::to_string(i) + " has the number " + std::to_string(number) +
-                       ", which is not among the " + std::to_string(box.palette.size()) + " of the palette");
+      throw InputError("block ", i, " has the number ", number, ", which is not among the ",
+                       box.palette.size(), " of the palette");
     }
     return box.palette[static_cast<std::size_t>(number)];
   }
@@ -462,8 +456,7 @@ class SchematicGrid final : public VoxelGrid {
     std::uint64_t number = 0;
     for (unsigned shift = 0;; shift += 7) {
       if (*at == box.blocks.size() || shift > 28) {
-        throw InputError("block " + std::to_string(i) + " of " + std::to_string(box.cells()) +
-                         " is cut off or too long");
+        throw InputError("block ", i, " of ", box.cells(), " is cut off or too long");
       }
       const std::uint8_t byte = box.blocks[(*at)++];
       number |= std::uint64_t{byte & 0x7FU} << shift;
@@ -507,7 +500,7 @@ class SchematicGrid final : public VoxelGrid {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         place[axis] = static_cast<std::uint64_t>(at[axis]);
         if (place[axis] >= box.size[axis]) {
-          throw InputError("block " + std::to_string(i) + " of the list is not within the size");
+          throw InputError("block ", i, " of the list is not within the size");
         }
       }
       take((place[1] * box.size[2] + place[2]) * box.size[0] + place[0],

@@ -72,7 +72,7 @@ class VoxelModel {
 inline constexpr std::uint64_t kMostGridVoxels = std::uint64_t{1} << 30;
 inline void check_grid_voxels(std::uint64_t voxels) {
   if (voxels > kMostGridVoxels) {
-    throw InputError("holds more than the limit of " + std::to_string(kMostGridVoxels) + " solid voxels");
+    throw InputError("holds more than the limit of ", kMostGridVoxels, " solid voxels");
   }
 }
 

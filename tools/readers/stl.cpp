@@ -39,8 +39,7 @@ void add(TriangleMesh& mesh, const std::array<std::array<double, 3>, 3>& corners
 void reserve(TriangleMesh& mesh, std::uint64_t triangles) {
   constexpr std::uint64_t kMost = UINT32_MAX / 3;
   if (triangles > kMost) {
-    throw InputError("the file holds " + std::to_string(triangles) + " triangles, the limit is " +
-                     std::to_string(kMost));
+    throw InputError("the file holds ", triangles, " triangles, the limit is ", kMost);
   }
   mesh.positions.reserve(static_cast<std::size_t>(3 * triangles));
   mesh.triangles.reserve(static_cast<std::size_t>(triangles));
@@ -51,8 +50,8 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
   reader.skip(kStlHeaderBytes);
   const std::uint32_t count = reader.u32();
   if (reader.remaining() / kTriangleBytes < count) {
-    throw InputError("the header counts " + std::to_string(count) + " triangles, but the file has room for " +
-                     std::to_string(reader.remaining() / kTriangleBytes));
+    throw InputError("the header counts ", count, " triangles, but the file has room for ",
+                     reader.remaining() / kTriangleBytes);
   }
   TriangleMesh mesh;
   reserve(mesh, count);
@@ -64,8 +63,7 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
       for (double& coordinate : corner) {
         coordinate = static_cast<double>(reader.f32());
         if (!std::isfinite(coordinate)) {
-          reader.fail("a coordinate of triangle " + std::to_string(i) +
-                      " is not finite, before byte offset " + std::to_string(reader.offset()));
+          reader.fail("a coordinate of triangle ", i, " is not finite, before byte offset ", reader.offset());
         }
       }
     }
@@ -74,16 +72,15 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
     meter.at(static_cast<std::size_t>(reader.offset()));
   }
   if (count == 0 && reader.remaining() != 0) {
-    throw InputError("the header counts no triangles, but " + std::to_string(reader.remaining()) +
-                     " bytes follow it");
+    throw InputError("the header counts no triangles, but ", reader.remaining(), " bytes follow it");
   }
   if (attributed != 0) {
     mesh.notes.push_back(counted(attributed, "triangle has", "triangles have") +
                          " attributes, which may be colors; they are not read");
   }
   if (reader.remaining() != 0) {
-    mesh.notes.push_back(std::to_string(reader.remaining()) + " bytes behind the last of the " +
-                         std::to_string(count) + " triangles that the header counts are not read");
+    mesh.notes.push_back(concat(reader.remaining(), " bytes behind the last of the ", count,
+                                " triangles that the header counts are not read"));
   }
   return mesh;
 }
@@ -126,7 +123,7 @@ TriangleMesh read_text(std::string_view text, ProgressMeter& meter) {
       count = 0;
     } else if (equals_ignoring_case(word, "endfacet")) {
       if (!in_facet || count != 3) {
-        fail_at_line(lines.line_number(), "the facet has " + std::to_string(count) + " corners, not three");
+        fail_at_line(lines.line_number(), "the facet has ", count, " corners, not three");
       }
       in_facet = false;
       add(mesh, corners);

@@ -22,10 +22,6 @@ bool is_too_small(std::string_view word) {
 
 }  // namespace
 
-void fail_at_line(std::uint64_t line, const std::string& sentence) {
-  throw InputError("line " + std::to_string(line) + ": " + sentence);
-}
-
 std::string quoted(std::string_view word) {
   constexpr std::size_t kLongest = 32;
   std::string out = "'";
@@ -65,14 +61,14 @@ double finite_number(std::string_view word, std::uint64_t line, const std::strin
     case NumberKind::kFinite:
       return value;
     case NumberKind::kNotFinite:
-      fail_at_line(line, what + " is " + quoted(word) + ", which is not finite");
+      fail_at_line(line, what, " is ", quoted(word), ", which is not finite");
     case NumberKind::kGarbage:
       break;
   }
   if (word.empty()) {
-    fail_at_line(line, what + " is missing");
+    fail_at_line(line, what, " is missing");
   }
-  fail_at_line(line, what + " is " + quoted(word) + ", which is not a number");
+  fail_at_line(line, what, " is ", quoted(word), ", which is not a number");
 }
 
 bool parse_integer(std::string_view word, std::int64_t& value) {

@@ -14,8 +14,11 @@
 
 namespace thimble::tools {
 
-/// Throws InputError "line LINE: SENTENCE".
-[[noreturn]] void fail_at_line(std::uint64_t line, const std::string& sentence);
+/// Throws InputError "line LINE: SENTENCE", a sentence of these pieces.
+template <class... Pieces>
+[[noreturn]] void fail_at_line(std::uint64_t line, const Pieces&... pieces) {
+  throw InputError("line ", line, ": ", pieces...);
+}
 
 /// `word` in single quotes for an error's sentence: cut to a length that fits on a line, bytes that do not
 /// print replaced by '?'.

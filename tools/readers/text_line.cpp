@@ -26,7 +26,7 @@ void check_characters(std::string_view text) {
     }
     const bool ends_line = byte == '\n' || byte == '\r';
     if ((byte < ' ' && byte != '\t' && !ends_line) || byte == 0x7F) {
-      fail_at(place, "byte " + std::to_string(byte) + " is a control character, not text");
+      fail_at(place, "byte ", byte, " is a control character, not text");
     }
     at += text.substr(at).starts_with("\r\n") ? 2 : length;
     place = ends_line ? TextPlace{place.line + 1, 1} : TextPlace{place.line, place.column + 1};
@@ -102,24 +102,24 @@ double TextLine::real(const std::string& what, double low, double high, bool is_
   const Word word = number(is_first);
   const std::string range = shortest(low) + " to " + shortest(high);
   if (word.text.empty()) {
-    fail_at(word.place, what + " is missing: a number from " + range + " is expected here");
+    fail_at(word.place, what, " is missing: a number from ", range, " is expected here");
   }
   double value = 0;
   const NumberKind kind = parse_number(word.text, value);
   if (kind != NumberKind::kFinite || !(value >= low && value <= high)) {
-    fail_at(word.place, what + " is " + quoted(word.text) +
-                            (kind == NumberKind::kFinite      ? ", it must be " + range
-                             : kind == NumberKind::kNotFinite ? ", which is not finite"
-                                                              : ", which is not a number"));
+    fail_at(word.place, what, " is ", quoted(word.text),
+            kind == NumberKind::kFinite      ? ", it must be " + range
+            : kind == NumberKind::kNotFinite ? ", which is not finite"
+                                             : ", which is not a number");
   }
   return value;
 }
 
 std::int32_t TextLine::whole(const std::string& what, std::int32_t low, std::int32_t high, bool is_first) {
   const Word word = number(is_first);
-  const std::string range = std::to_string(low) + " to " + std::to_string(high);
+  const std::string range = concat(low, " to ", high);
   if (word.text.empty()) {
-    fail_at(word.place, what + " is missing: a whole number from " + range + " is expected here");
+    fail_at(word.place, what, " is missing: a whole number from ", range, " is expected here");
   }
   std::int64_t value = 0;
   const bool is_whole = parse_integer(word.text, value);
@@ -127,8 +127,8 @@ std::int32_t TextLine::whole(const std::string& what, std::int32_t low, std::int
     double large = 0;  // beyond 64 bits
     const bool is_number =
         is_whole || (parse_number(word.text, large) == NumberKind::kFinite && std::abs(large) >= 9e18);
-    fail_at(word.place, what + " is " + quoted(word.text) +
-                            (is_number ? ", it must be " + range : ", which is not a whole number"));
+    fail_at(word.place, what, " is ", quoted(word.text),
+            is_number ? ", it must be " + range : ", which is not a whole number");
   }
   return static_cast<std::int32_t>(value);
 }
@@ -169,8 +169,7 @@ std::size_t TextLine::axis(const char* what) {
   const Word name = word();
   const std::size_t found = std::string_view("xyz").find(name.text);
   if (name.text.size() != 1 || found == std::string_view::npos) {
-    fail_at(name.place, std::string(what) + " needs an axis: x, y or z" +
-                            (name.empty() ? "" : ", not " + quoted(name.text)));
+    fail_at(name.place, what, " needs an axis: x, y or z", name.empty() ? "" : ", not " + quoted(name.text));
   }
   return found;
 }
@@ -185,11 +184,10 @@ void Clauses::read(const std::vector<Clause>& known) {
       for (std::size_t i = 1; i < known.size(); ++i) {
         names += (i + 1 < known.size() ? ", " : " and ") + std::string(known[i].word);
       }
-      fail_at(word.place,
-              quoted(word.text) + " is not known in " + std::string(statement_) + "; there are " + names);
+      fail_at(word.place, quoted(word.text), " is not known in ", statement_, "; there are ", names);
     }
     if (!clause->repeats && has(word.text)) {
-      fail_at(word.place, std::string(word.text) + " is said twice in this " + std::string(statement_));
+      fail_at(word.place, word.text, " is said twice in this ", statement_);
     }
     said_.push_back(word.text);
     clause->read(word);
@@ -203,33 +201,8 @@ bool Clauses::has(std::string_view word) const {
 void Clauses::need(std::string_view word) const {
   if (!has(word)) {
     line_->at_end();
-    fail_at(line_->place(), std::string(statement_) + " needs " + std::string(word));
+    fail_at(line_->place(), statement_, " needs ", word);
   }
-}
-
-std::int32_t to_fixed(double value, double one) {
-  return static_cast<std::int32_t>(std::lround(value * one));
-}
-
-Vec3Q8 to_q8(const std::array<double, 3>& point) {
-  Vec3Q8 result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result[axis] = Q8::from_raw(to_fixed(point[static_cast<std::size_t>(axis)], Q8::kOne));
-  }
-  return result;
-}
-
-Vec3i scaled(const std::array<double, 3>& vector, double largest) {
-  const double most = std::max({std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2])});
-  Vec3i result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result[axis] = to_fixed(vector[static_cast<std::size_t>(axis)] / most, largest);
-  }
-  return result;
-}
-
-bool is_zero(const std::array<double, 3>& vector) {
-  return vector[0] == 0 && vector[1] == 0 && vector[2] == 0;
 }
 
 }  // namespace thimble::tools

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "readers/real3.h"
 #include "readers/scene_text.h"
 
 namespace thimble::tools {
@@ -86,12 +87,5 @@ class Clauses {
 
 /// Fails where the bytes are not UTF-8 text, or hold control characters.
 void check_characters(std::string_view text);
-
-/// The nearest integer to `value` in units of 1 / `one`.
-std::int32_t to_fixed(double value, double one);
-Vec3Q8 to_q8(const std::array<double, 3>& point);
-/// The direction as integers up to `largest`. It is not zero.
-Vec3i scaled(const std::array<double, 3>& vector, double largest);
-bool is_zero(const std::array<double, 3>& vector);
 
 }  // namespace thimble::tools

@@ -171,8 +171,8 @@ std::shared_ptr<const Texture> Textures::inside(const std::string& key, std::spa
   const std::uint64_t bytes =
       std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   if (pixel_bytes_ + bytes > 64 * encoded_bytes_ + (std::uint64_t{64} << 20)) {
-    miss(key, "has " + std::to_string(width) + " x " + std::to_string(height) +
-                  " pixels, too many for a file of " + std::to_string(encoded.size()) + " bytes");
+    miss(key,
+         concat("has ", width, " x ", height, " pixels, too many for a file of ", encoded.size(), " bytes"));
     return texture;
   }
   std::shared_ptr<std::uint8_t> rgba;

@@ -32,9 +32,7 @@
 #include <vector>
 
 #include "readers/text.h"
-#include "readers/vox_chunk.h"
-#include "readers/vox_palette.h"
-#include "readers/vox_scene.h"
+#include "readers/vox_parts.h"
 
 namespace thimble::tools {
 
@@ -163,8 +161,8 @@ ChunkHead read_head(ByteReader& reader) {
   head.children_bytes = reader.u32();
   const std::uint64_t announced = std::uint64_t{head.content_bytes} + head.children_bytes;
   if (announced > reader.remaining()) {
-    throw InputError(vox_place(head.id, head.offset) + ": " + std::to_string(announced) +
-                     " bytes are announced and " + std::to_string(reader.remaining()) + " are there");
+    throw InputError(vox_place(head.id, head.offset), ": ", announced, " bytes are announced and ",
+                     reader.remaining(), " are there");
   }
   return head;
 }
@@ -174,12 +172,11 @@ void VoxFile::read_chunks(ProgressMeter& meter) {
   file.expect("VOX ", "MagicaVoxel file");
   const std::uint32_t version = file.u32();
   if (version != 150 && version != 200) {
-    throw InputError("version " + std::to_string(version) +
-                     " at byte offset 4 is not supported, only 150 and 200 are");
+    throw InputError("version ", version, " at byte offset 4 is not supported, only 150 and 200 are");
   }
   const ChunkHead main = read_head(file);
   if (main.id != "MAIN") {
-    throw InputError(vox_place(main.id, main.offset) + ": the first chunk must be MAIN");
+    throw InputError(vox_place(main.id, main.offset), ": the first chunk must be MAIN");
   }
   file.skip(main.content_bytes);
   ByteReader chunks = file.sub(main.children_bytes, vox_place(main.id, main.offset));
@@ -213,13 +210,13 @@ void VoxFile::read_chunks(ProgressMeter& meter) {
   }
   check_size_used();
   if (models_.empty()) {
-    throw InputError(vox_place(main.id, main.offset) + ": holds no model, no XYZI or TDCZ chunk is there");
+    throw InputError(vox_place(main.id, main.offset), ": holds no model, no XYZI or TDCZ chunk is there");
   }
 }
 
 void VoxFile::check_size_used() const {
   if (size_pending_) {
-    throw InputError(pending_place_ + ": no XYZI chunk follows before the next SIZE or the end");
+    throw InputError(pending_place_, ": no XYZI chunk follows before the next SIZE or the end");
   }
 }
 
@@ -228,8 +225,7 @@ void VoxFile::read_size(ByteReader& chunk) {
   for (std::uint32_t& side : pending_size_) {
     side = chunk.u32();
     if (side > kVoxModelSideLimit) {
-      chunk.fail("a side of " + std::to_string(side) + " voxels is over the limit of " +
-                 std::to_string(kVoxModelSideLimit));
+      chunk.fail("a side of ", side, " voxels is over the limit of ", kVoxModelSideLimit);
     }
   }
   size_pending_ = true;
@@ -263,8 +259,7 @@ void VoxFile::read_packed(ByteReader& chunk, ProgressMeter& meter) {
   }
   const FileBytes dense = inflate_bytes(chunk.take(chunk.remaining()), Deflated::kZlib, count, chunk.place());
   if (dense.bytes().size() != count) {
-    chunk.fail("it unpacks to " + std::to_string(dense.bytes().size()) + " voxels, not " +
-               std::to_string(count));
+    chunk.fail("it unpacks to ", dense.bytes().size(), " voxels, not ", count);
   }
   const auto solid =
       count - static_cast<std::uint64_t>(std::count(dense.bytes().begin(), dense.bytes().end(), 0));
@@ -289,8 +284,7 @@ void VoxFile::read_voxels(ByteReader& chunk, ProgressMeter& meter) {
   Model model = take_size(chunk);
   const std::uint32_t count = chunk.u32();
   if (chunk.remaining() / kVoxelBytes < count) {
-    chunk.fail(std::to_string(count) + " voxels of 4 bytes do not fit the " +
-               std::to_string(chunk.remaining()) + " bytes that are left");
+    chunk.fail(count, " voxels of 4 bytes do not fit the ", chunk.remaining(), " bytes that are left");
   }
   const std::uint64_t first_offset = chunk.offset();
   model.voxels = chunk.take(std::uint64_t{count} * kVoxelBytes);
@@ -298,9 +292,8 @@ void VoxFile::read_voxels(ByteReader& chunk, ProgressMeter& meter) {
     const std::uint8_t* voxel = model.voxels.data() + at;
     for (std::size_t i = 0; i < 3; ++i) {
       if (voxel[i] >= model.size[i]) {
-        chunk.fail("the voxel at byte offset " + std::to_string(first_offset + at) + " lies at " +
-                   std::to_string(voxel[i]) + " on the " + "xyz"[i] + " axis, outside its model of " +
-                   std::to_string(model.size[i]) + " voxels");
+        chunk.fail("the voxel at byte offset ", first_offset + at, " lies at ", voxel[i], " on the ",
+                   "xyz"[i], " axis, outside its model of ", model.size[i], " voxels");
       }
     }
     model.empty = model.empty && voxel[3] == 0;
@@ -316,8 +309,8 @@ void VoxFile::place_models() {
     frames_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(keys.back(), 0, UINT32_MAX - 1) + 1);
   }
   if (frame_ && *frame_ >= frames_) {
-    throw InputError("there is no frame " + std::to_string(*frame_) + "; the file has " +
-                     (frames_ == 1 ? "only frame 0" : "frames 0 to " + std::to_string(frames_ - 1)));
+    throw InputError("there is no frame ", *frame_, "; the file has ",
+                     frames_ == 1 ? "only frame 0" : "frames 0 to " + std::to_string(frames_ - 1));
   }
   if (scene_.empty()) {
     place_frames();
@@ -344,18 +337,18 @@ void VoxFile::place_scene() {
   const std::uint32_t visits = scene_.place_models(
       frame, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t offset) {
         if (number >= models_.size()) {
-          throw InputError(vox_place("nSHP", offset) + ": model " + std::to_string(number) +
-                           " is not among the " + std::to_string(models_.size()) + " models of this file");
+          throw InputError(vox_place("nSHP", offset), ": model ", number, " is not among the ",
+                           models_.size(), " models of this file");
         }
         if (instances_.size() == kVoxInstanceLimit) {
-          throw InputError(vox_place("nSHP", offset) + ": the scene places more than the limit of " +
-                           std::to_string(kVoxInstanceLimit) + " models");
+          throw InputError(vox_place("nSHP", offset), ": the scene places more than the limit of ",
+                           kVoxInstanceLimit, " models");
         }
         const Model& model = models_[number];
         placed_voxels += model.voxels.size() / kVoxelBytes;
         if (placed_voxels > kVoxPlacedVoxelLimit) {
-          throw InputError(vox_place("nSHP", offset) + ": the scene places more than the limit of " +
-                           std::to_string(kVoxPlacedVoxelLimit) + " voxels");
+          throw InputError(vox_place("nSHP", offset), ": the scene places more than the limit of ",
+                           kVoxPlacedVoxelLimit, " voxels");
         }
         instances_.push_back(make_instance(number, model, transform));
         add_to_frames(instances_.back());
@@ -367,9 +360,8 @@ void VoxFile::place_scene() {
         if (keys.size() > 1 && number < models_.size()) {
           add_to_frames(make_instance(number, models_[number], transform));
         } else if (keys.size() > 1 && notes.empty()) {
-          notes.push_back("frame " + std::to_string(key) + " is broken: it shows model " +
-                          std::to_string(number) + ", which is not among the " +
-                          std::to_string(models_.size()) + " models of this file");
+          notes.push_back(concat("frame ", key, " is broken: it shows model ", number,
+                                 ", which is not among the ", models_.size(), " models of this file"));
         }
       });
     }

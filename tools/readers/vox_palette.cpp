@@ -1,4 +1,4 @@
-#include "readers/vox_palette.h"
+#include "readers/vox_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-
-#include "readers/vox_chunk.h"
 
 namespace thimble::tools {
 
@@ -24,7 +22,7 @@ double in_range(std::optional<double> value, double low, double high, double fal
 /// unused entry.
 Material& material_of(std::int32_t id, const ByteReader& chunk, Palette& palette) {
   if (id < 0 || id > 256) {
-    chunk.fail("material " + std::to_string(id) + " is outside 0 to 256");
+    chunk.fail("material ", id, " is outside 0 to 256");
   }
   return palette[static_cast<std::size_t>(id) & 0xff];
 }

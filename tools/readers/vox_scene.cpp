@@ -1,4 +1,4 @@
-#include "readers/vox_scene.h"
+#include "readers/vox_parts.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,8 +6,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-
-#include "readers/vox_chunk.h"
 
 namespace thimble::tools {
 
@@ -32,8 +30,7 @@ std::array<std::int32_t, 3> parse_translation(std::string_view text, const ByteR
       chunk.fail("translation \"_t\" is not three whole numbers of 32 bits");
     }
     if (*number < -kVoxTranslationLimit || *number > kVoxTranslationLimit) {
-      chunk.fail("translation " + std::to_string(*number) + " is beyond the limit of +-" +
-                 std::to_string(kVoxTranslationLimit));
+      chunk.fail("translation ", *number, " is beyond the limit of +-", kVoxTranslationLimit);
     }
     coordinate = *number;
     rest.remove_prefix(word.size());
@@ -152,7 +149,7 @@ VoxScene::Node VoxScene::read_head(ByteReader& chunk, Kind kind, std::uint64_t o
   node.offset = offset;
   node.id = chunk.i32();
   if (node.id < 0) {
-    chunk.fail("node id " + std::to_string(node.id) + " is negative");
+    chunk.fail("node id ", node.id, " is negative");
   }
   vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
     if (key == "_hidden") {
@@ -191,8 +188,7 @@ void VoxScene::add_group(ByteReader& chunk, std::uint64_t offset) {
   Node node = read_head(chunk, Kind::kGroup, offset);
   const std::uint32_t count = chunk.u32();
   if (chunk.remaining() / 4 < count) {
-    chunk.fail(std::to_string(count) + " children do not fit the " + std::to_string(chunk.remaining()) +
-               " bytes that are left");
+    chunk.fail(count, " children do not fit the ", chunk.remaining(), " bytes that are left");
   }
   node.first_child = static_cast<std::uint32_t>(children_.size());
   node.child_count = count;
@@ -243,9 +239,9 @@ void VoxScene::sort_nodes() {
   std::stable_sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) { return a.id < b.id; });
   for (std::size_t i = 1; i < nodes_.size(); ++i) {
     if (nodes_[i].id == nodes_[i - 1].id) {
-      throw InputError(vox_place(kChunkNames[static_cast<std::size_t>(nodes_[i].kind)], nodes_[i].offset) +
-                       ": node id " + std::to_string(nodes_[i].id) +
-                       " is already that of the node at byte offset " + std::to_string(nodes_[i - 1].offset));
+      throw InputError(vox_place(kChunkNames[static_cast<std::size_t>(nodes_[i].kind)], nodes_[i].offset),
+                       ": node id ", nodes_[i].id, " is already that of the node at byte offset ",
+                       nodes_[i - 1].offset);
     }
   }
   std::sort(hidden_layers_.begin(), hidden_layers_.end());
@@ -261,18 +257,18 @@ std::uint32_t VoxScene::place_models(std::int64_t frame, const Place& place) {
   std::vector<Step> path;
   std::uint32_t visits = 0;
 
-  const auto fail = [](const Node& node, const std::string& sentence) {
-    throw InputError(vox_place(kChunkNames[static_cast<std::size_t>(node.kind)], node.offset) + ": " +
-                     sentence);
+  const auto fail = [](const Node& node, const auto&... sentence) {
+    throw InputError(vox_place(kChunkNames[static_cast<std::size_t>(node.kind)], node.offset), ": ",
+                     sentence...);
   };
   const auto enter = [&](std::uint32_t index, const VoxTransform& parent) {
     Node& node = nodes_[index];
     if (++visits > kVoxVisitLimit) {
-      fail(node, "the scene graph has more than the limit of " + std::to_string(kVoxVisitLimit) +
-                     " nodes, shared ones counted each time");
+      fail(node, concat("the scene graph has more than the limit of ", kVoxVisitLimit,
+                        " nodes, shared ones counted each time"));
     }
     if (node.on_path) {
-      fail(node, "node " + std::to_string(node.id) + " contains itself: the scene graph has a cycle");
+      fail(node, concat("node ", node.id, " contains itself: the scene graph has a cycle"));
     }
     if (node.hidden || std::binary_search(hidden_layers_.begin(), hidden_layers_.end(), node.layer)) {
       return;
@@ -289,8 +285,8 @@ std::uint32_t VoxScene::place_models(std::int64_t frame, const Place& place) {
             : parent;
     for (const std::int32_t coordinate : world.translation) {
       if (coordinate < -kVoxTranslationLimit || coordinate > kVoxTranslationLimit) {
-        fail(node, "nested translations add up to " + std::to_string(coordinate) +
-                       ", beyond the limit of +-" + std::to_string(kVoxTranslationLimit));
+        fail(node, concat("nested translations add up to ", coordinate, ", beyond the limit of +-",
+                          kVoxTranslationLimit));
       }
     }
     node.on_path = true;
@@ -314,7 +310,7 @@ std::uint32_t VoxScene::place_models(std::int64_t frame, const Place& place) {
     ++step.next_child;
     const std::uint32_t child = find(id);
     if (child == kNoNode) {
-      fail(node, "child " + std::to_string(id) + " is no node of this file");
+      fail(node, concat("child ", id, " is no node of this file"));
     }
     const VoxTransform world = step.world;  // `enter` may move the path
     enter(child, world);

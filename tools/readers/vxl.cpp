@@ -31,8 +31,7 @@ class VxlGrid final : public VoxelGrid {
       for (std::size_t axis = 0; axis < 2; ++axis) {
         sides_[axis] = reader.u32();
         if (sides_[axis] < 1 || sides_[axis] > kGridSideLimit) {
-          reader.fail("a side of " + std::to_string(sides_[axis]) + " columns; there are 1 to " +
-                      std::to_string(kGridSideLimit));
+          reader.fail("a side of ", sides_[axis], " columns; there are 1 to ", kGridSideLimit);
         }
       }
       reader.skip(kVoxlapCameraBytes);
@@ -47,8 +46,8 @@ class VxlGrid final : public VoxelGrid {
     sides_[2] = deepest <= kDepths[0] ? kDepths[0] : kDepths[1];
     set_size(sides_[0], sides_[1], sides_[2]);
     if (left != 0) {
-      notes.push_back(std::to_string(left) + " bytes behind the last of " + std::to_string(sides_[0]) +
-                      " x " + std::to_string(sides_[1]) + " columns are not read");
+      notes.push_back(
+          concat(left, " bytes behind the last of ", sides_[0], " x ", sides_[1], " columns are not read"));
     }
     check_solid("the map holds no voxels");
   }
@@ -90,10 +89,8 @@ class VxlGrid final : public VoxelGrid {
         if (top > end || end > sides_[2] ||
             (!is_first && (air < hidden || air > top || below > air - hidden)) ||
             (!is_last && words < 1 + end - top)) {
-          reader.fail("column " + std::to_string(x) + "," + std::to_string(y) + " has a span from " +
-                      std::to_string(top) + " to " + std::to_string(end) +
-                      " that its neighbours leave no room for, before byte offset " +
-                      std::to_string(reader.offset()));
+          reader.fail("column ", x, ",", y, " has a span from ", top, " to ", end,
+                      " that its neighbours leave no room for, before byte offset ", reader.offset());
         }
         if (!is_first) {
           take(x, y, hidden, air - below, nullptr);

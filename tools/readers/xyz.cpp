@@ -245,15 +245,15 @@ double coordinate(std::string_view word, std::uint64_t line, const char* name, c
   const std::string_view marks =
       separator == Separator::kBlanks ? ",;" : (separator == Separator::kComma ? " \t;" : " \t,");
   if (word.find_first_of(marks) != std::string_view::npos) {
-    fail_at_line(line, std::string(name) + " is " + quoted(word) +
-                           ", which is not a number with a decimal point (the columns of this file are "
-                           "separated by " +
-                           name_of(separator) + ")");
+    fail_at_line(line, name, " is ", quoted(word),
+                 ", which is not a number with a decimal point (the columns of this file are "
+                 "separated by ",
+                 name_of(separator), ")");
   }
   if (kind == NumberKind::kGarbage && layout.title_line != 0 && !word.empty()) {
-    fail_at_line(line, std::string(name) + " is " + quoted(word) +
-                           ", which is not a number (the first three columns are read, since line " +
-                           std::to_string(layout.title_line) + " names no columns x, y and z)");
+    fail_at_line(line, name, " is ", quoted(word),
+                 ", which is not a number (the first three columns are read, since line ", layout.title_line,
+                 " names no columns x, y and z)");
   }
   return finite_number(word, line, name);
 }
@@ -514,8 +514,8 @@ void check_columns(std::string_view line, std::uint64_t number, Layout& layout) 
                     (columns.ends_open() && count + 1 == layout.model_columns) ||
                     (layout.model_ends_open && count == layout.model_columns + 1);
   if (!fits) {
-    fail_at_line(number, counted(count, "column") + ", but line " + std::to_string(layout.model_line) +
-                             " has " + std::to_string(layout.model_columns));
+    fail_at_line(number, counted(count, "column"), ", but line ", layout.model_line, " has ",
+                 layout.model_columns);
   }
   // A header that names the columns has settled it by their number.
   const bool has_names = layout.model_line < layout.first_point_line;
@@ -583,8 +583,7 @@ Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progr
     throw InputError(count == 0 ? "the file holds no points" : "no point of the file is finite");
   }
   if (preamble.announced >= 0 && static_cast<std::uint64_t>(preamble.announced) != count) {
-    throw InputError("the first line announces " + std::to_string(preamble.announced) +
-                     " points, but the file holds " + std::to_string(count));
+    throw InputError("the first line announces ", preamble.announced, " points, but the file holds ", count);
   }
   if (names_color) {
     if (!survey.all_numbers) {
@@ -620,23 +619,21 @@ Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progr
     layout.scale.add_note(cloud->notes);
   }
   if (layout.title_line != 0) {
-    cloud->notes.push_back("line " + std::to_string(layout.title_line) +
-                           " names no columns x, y and z: the first three are taken for places");
+    cloud->notes.push_back(concat("line ", layout.title_line,
+                                  " names no columns x, y and z: the first three are taken for places"));
   } else if (layout.unread_columns != 0 && !layout.is_catalogue()) {
-    cloud->notes.push_back("the column " + quoted(layout.unread) +
-                           (layout.unread_columns == 1
-                                ? " is"
-                                : " and " + std::to_string(layout.unread_columns - 1) + " more are") +
-                           " not read");
+    cloud->notes.push_back(
+        "the column " + quoted(layout.unread) +
+        (layout.unread_columns == 1 ? " is" : concat(" and ", layout.unread_columns - 1, " more are")) +
+        " not read");
   }
   if (layout.has_elements) {
     cloud->notes.push_back("it is a molecule: its atoms are points, their elements are not shown");
   } else if (columns > (layout.has_color ? 6U : 3U)) {
     const std::size_t color = layout.columns[3] + 1;
-    cloud->notes.push_back(
-        "no line names the " + std::to_string(columns) + " columns: 1 to 3 are taken for places, " +
-        (layout.has_color ? std::to_string(color) + " to " + std::to_string(color + 2) : "none") +
-        " for colors");
+    cloud->notes.push_back(concat("no line names the ", columns, " columns: 1 to 3 are taken for places, ",
+                                  layout.has_color ? concat(color, " to ", color + 2) : "none",
+                                  " for colors"));
   }
   return cloud;
 }

@@ -38,9 +38,9 @@ std::vector<ZipMember> zip_members(std::span<const std::uint8_t> file) {
   whole.skip(directory_offset);
   std::vector<ZipMember> members;
   for (unsigned i = 0; i < count; ++i) {
-    const std::string place = "entry " + std::to_string(i + 1) + " of the archive's directory";
+    const std::string place = concat("entry ", i + 1, " of the archive's directory");
     if (whole.u32() != kEntrySignature) {
-      throw InputError(place + " is none, before byte offset " + std::to_string(whole.offset()));
+      throw InputError(place, " is none, before byte offset ", whole.offset());
     }
     whole.skip(4);
     const unsigned flags = whole.u16();
@@ -57,15 +57,14 @@ std::vector<ZipMember> zip_members(std::span<const std::uint8_t> file) {
     whole.skip(extra_bytes);
     if ((flags & 1U) != 0 || (method != 0 && method != 8) || member.size_bytes == UINT32_MAX ||
         packed_bytes == UINT32_MAX || local_offset == UINT32_MAX) {
-      throw InputError("the member " + quoted(member.name) +
-                       " is encrypted, larger than 4 GiB or packed in a way (" + std::to_string(method) +
-                       ") that is not read");
+      throw InputError("the member ", quoted(member.name),
+                       " is encrypted, larger than 4 GiB or packed in a way (", method, ") that is not read");
     }
     member.is_deflated = method == 8;
     ByteReader local(file, "the member " + quoted(member.name));
     local.skip(local_offset);
     if (local.u32() != kLocalSignature) {
-      local.fail("none is at byte offset " + std::to_string(local_offset));
+      local.fail("none is at byte offset ", local_offset);
     }
     local.skip(22);
     const std::uint64_t before = std::uint64_t{local.u16()} + local.u16();
@@ -82,8 +81,8 @@ FileBytes zip_unpack(const ZipMember& member) {
                                                        std::max<std::uint64_t>(1, member.size_bytes), place)
                                        : FileBytes::copy_of(member.packed);
   if (bytes.size() != member.size_bytes) {
-    throw InputError(place + " has " + std::to_string(bytes.size()) + " bytes, not the " +
-                     std::to_string(member.size_bytes) + " of the directory");
+    throw InputError(place, " has ", bytes.size(), " bytes, not the ", member.size_bytes,
+                     " of the directory");
   }
   return bytes;
 }

@@ -495,9 +495,9 @@ std::string too_large_text(const FlashLimit& limit, const Baked& baked, const Ba
                            int level) {
   const std::uint64_t most = options.limit_bytes.value_or(UINT64_MAX);
   const std::uint64_t over = baked.bytes.size() - most;
-  return (options.coarsen ? "even the coarsest tree takes " : "takes ") + grouped(baked.bytes.size()) +
-         " bytes at depth " + std::to_string(level) + ", " + limit_text(limit, baked.effects, most) + ": " +
-         counted(over, "byte") + " too many";
+  return concat(options.coarsen ? "even the coarsest tree takes " : "takes ", grouped(baked.bytes.size()),
+                " bytes at depth ", level, ", ", limit_text(limit, baked.effects, most), ": ",
+                counted(over, "byte"), " too many");
 }
 
 }  // namespace thimble::tools

@@ -324,8 +324,7 @@ class StructureBuilder {
       throw Shortage{};
     }
     if (status != Status::kOk) {
-      throw InputError("voxel " + std::to_string(voxel.x) + "," + std::to_string(voxel.y) + "," +
-                       std::to_string(voxel.z) + " lies outside the world");
+      throw InputError("voxel ", voxel.x, ",", voxel.y, ",", voxel.z, " lies outside the world");
     }
   }
 
@@ -439,8 +438,8 @@ std::string shortage_text(const SceneSource& source, const BuildOptions& options
     const Vec3i size = grid_size(extent_of(source), source.level());
     needed =
         used_before_structure(options.render_state_bytes, options.least_band_bytes) + dense_grid_bytes(size);
-    part = " (" + grouped(dense_grid_bytes(size)) + " of them the grid of " + std::to_string(size.x) + " x " +
-           std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels)";
+    part = concat(" (", grouped(dense_grid_bytes(size)), " of them the grid of ", size.x, " x ", size.y,
+                  " x ", size.z, " voxels)");
   } else {
     BuildOptions unlimited = options;
     unlimited.memory_bytes.reset();

@@ -201,9 +201,8 @@ void use_clay(Look* look) {
 
 std::string look_text(const SceneFacts& facts, const Look& look, bool own_light) {
   if (look.kind == LookKind::kStars) {
-    return "stars: " + std::to_string(facts.surface_share) + " % of the points have " +
-           std::to_string(kSurfaceNeighbours) + " neighbours, less than " + std::to_string(kSurfaceShare) +
-           " %";
+    return concat("stars: ", facts.surface_share, " % of the points have ", kSurfaceNeighbours,
+                  " neighbours, less than ", kSurfaceShare, " %");
   }
   std::string text = facts.has_colors ? "its colours" : "clay";
   text += own_light ? ", its own light" : ", a sun over the viewer's shoulder";

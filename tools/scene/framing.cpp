@@ -23,22 +23,7 @@ Real3 unit(const Real3& a) {
   return scaled(a, 1 / std::sqrt(dot(a, a)));
 }
 
-double largest(const Real3& v) {
-  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-}
-
-// A real vector as integers of 30 bits in the same direction.
-Vec3i to_integers(const Real3& vector) {
-  const double scale = largest(vector);
-  Vec3i result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result[axis] = static_cast<std::int32_t>(
-        std::lround(vector[static_cast<std::size_t>(axis)] / scale * kMaxViewComponent));
-  }
-  return result;
-}
-
-// The other way, components within -1 .. 1.
+// Of integers of 30 bits, components within -1 .. 1.
 Real3 to_reals(const Vec3i& vector) {
   return scaled(real_of(vector), 1.0 / kMaxViewComponent);
 }
@@ -48,23 +33,20 @@ struct Reach {
   explicit Reach(int level)
       : low(static_cast<double>(kMinOriginWorlds) * (1 << level)),
         high(static_cast<double>(kMaxOriginWorlds) * (1 << level)) {}
-  bool holds(double coordinate) const { return coordinate >= low && coordinate <= high; }
+  bool holds(const Real3& point) const {
+    return std::all_of(point.begin(), point.end(), [&](double at) { return at >= low && at <= high; });
+  }
 
   double low;
   double high;
 };
 
-Vec3Q8 to_q8(const Real3& point, const Reach& reach, const char* what) {
-  Vec3Q8 result;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double value = point[static_cast<std::size_t>(axis)];
-    if (!reach.holds(value)) {
-      throw InputError(std::string(what) + " " + text_of(point) + " is outside the accepted " +
-                       shortest(reach.low) + " to " + shortest(reach.high) + " (-4 to 5 world sizes)");
-    }
-    result[axis] = Q8::from_raw(static_cast<std::int32_t>(std::lround(value * Q8::kOne)));
+Vec3Q8 reachable_q8(const Real3& point, const Reach& reach, const char* what) {
+  if (!reach.holds(point)) {
+    throw InputError(what, " ", text_of(point), " is outside the accepted ", shortest(reach.low), " to ",
+                     shortest(reach.high), " (-4 to 5 world sizes)");
   }
-  return result;
+  return to_q8(point);
 }
 
 // The nearest point that can be written.
@@ -80,8 +62,7 @@ Vec3Q8 saturated_q8(const Real3& point) {
 
 Q14 span_q14(double voxels) {
   if (!(voxels * Q14::kOne <= INT32_MAX)) {
-    throw InputError("a picture " + shortest(voxels) +
-                     " voxels wide is beyond the limit of 131,071 (--span)");
+    throw InputError("a picture ", shortest(voxels), " voxels wide is beyond the limit of 131,071 (--span)");
   }
   return Q14::from_raw(static_cast<std::int32_t>(std::max(1L, std::lround(voxels * Q14::kOne))));
 }
@@ -91,13 +72,9 @@ double voxels_of(Q14 length) {
 }
 
 Corners corners_of(const VoxelBox& box) {
+  const std::array<Vec3i, 8> whole = box_corners(box);
   Corners corners{};
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    for (int axis = 0; axis < 3; ++axis) {
-      corners[corner][static_cast<std::size_t>(axis)] =
-          ((corner >> axis) & 1U) != 0 ? box.high[axis] : box.low[axis];
-    }
-  }
+  std::transform(whole.begin(), whole.end(), corners.begin(), [](const Vec3i& at) { return real_of(at); });
   return corners;
 }
 
@@ -113,7 +90,7 @@ Sight sight_of(const ViewWishes& wishes, const Reach& reach, const Corners& corn
   Sight sight;
   sight.target = wishes.target.value_or(scaled(plus(corners[0], corners[7]), 0.5));
   if (wishes.eye) {
-    to_q8(*wishes.eye, reach, "--eye");
+    reachable_q8(*wishes.eye, reach, "--eye");
   }
   const Real3 direction = wishes.eye ? minus(sight.target, *wishes.eye) : wishes.forward;
   if (largest(direction) == 0) {
@@ -122,8 +99,8 @@ Sight sight_of(const ViewWishes& wishes, const Reach& reach, const Corners& corn
   if (wishes.up && largest(*wishes.up) == 0) {
     throw InputError("--up 0,0,0 has no direction");
   }
-  sight.forward = to_integers(direction);
-  sight.up = wishes.up ? to_integers(*wishes.up) : default_up(sight.forward);
+  sight.forward = to_integers(direction, kMaxViewComponent);
+  sight.up = wishes.up ? to_integers(*wishes.up, kMaxViewComponent) : default_up(sight.forward);
   const Real3 forward = to_reals(sight.forward);
   const Real3 up = to_reals(sight.up);
   if (largest(cross(forward, up)) == 0) {
@@ -167,10 +144,6 @@ Room room_for(const Corners& corners, const Sight& sight, const Lens& lens, doub
   return room;
 }
 
-bool is_reachable(const Real3& eye, const Reach& reach) {
-  return std::all_of(eye.begin(), eye.end(), [&](double coordinate) { return reach.holds(coordinate); });
-}
-
 // The eye at `wanted` from the target, or, where a narrow view would want to stand farther back than rays may
 // start, as far as they may.
 Real3 eye_at(const Sight& sight, double wanted, const Reach& reach) {
@@ -184,7 +157,7 @@ Real3 eye_at(const Sight& sight, double wanted, const Reach& reach) {
     }
   }
   Real3 eye = minus(sight.target, scaled(forward, distance));
-  if (is_reachable(sight.target, reach) && distance < wanted) {
+  if (reach.holds(sight.target) && distance < wanted) {
     for (double& coordinate : eye) {  // what rounding may have added
       coordinate = std::clamp(coordinate, reach.low, reach.high);
     }
@@ -192,11 +165,14 @@ Real3 eye_at(const Sight& sight, double wanted, const Reach& reach) {
   return eye;
 }
 
-bool sees_all(const Corners& corners, const Real3& eye, const PictureAxes& axes, const Lens& lens) {
-  return std::none_of(corners.begin(), corners.end(), [&](const Real3& corner) {
-    const Real3 offset = minus(corner, eye);
-    const double reach_y = dot(offset, axes.forward) * lens.tan_y;
-    return std::abs(dot(offset, axes.up)) > reach_y ||
+// Whether a picture shows all points: in perspective, or of that half width.
+bool shows_all(std::span<const Vec3i> points, const Real3& eye, const PictureAxes& axes, const Lens& lens,
+               std::optional<double> half_width = {}) {
+  return std::none_of(points.begin(), points.end(), [&](const Vec3i& point) {
+    const Real3 offset = minus(real_of(point), eye);
+    const double depth = dot(offset, axes.forward);
+    const double reach_y = half_width ? *half_width / lens.aspect : depth * lens.tan_y;
+    return depth <= 0 || std::abs(dot(offset, axes.up)) > reach_y ||
            std::abs(dot(offset, axes.right)) > reach_y * lens.aspect;
   });
 }
@@ -206,7 +182,7 @@ void check(Status status, const std::string& advice) {
     throw InputError("--up is parallel to the direction of view");
   }
   if (status != Status::kOk) {
-    throw InputError(std::string("the camera: ") + status_text(status) + ": " + advice);
+    throw InputError("the camera: ", status_text(status), ": ", advice);
   }
 }
 
@@ -217,8 +193,8 @@ Status set_camera(const ViewWishes& wishes, int level, Framing* framing) {
 void set_perspective_camera(const ViewWishes& wishes, int level, Framing* framing) {
   const Status status = set_camera(wishes, level, framing);
   check(status, status == Status::kTooFine && wishes.direction_bits != 0
-                    ? "directions of " + std::to_string(wishes.direction_bits) +
-                          " bits are too coarse for this picture; leave out --direction-bits"
+                    ? concat("directions of ", wishes.direction_bits,
+                             " bits are too coarse for this picture; leave out --direction-bits")
                     : "directions of 20 bits cannot be kept within 1/8 pixel; a wider --fov or a smaller "
                       "--size helps");
 }
@@ -366,19 +342,6 @@ Real3 kept_q8(const Real3& point) {
   return {kept_q8(point[0]), kept_q8(point[1]), kept_q8(point[2])};
 }
 
-// Whether a picture shows everything occupied.
-bool shows_all(const Framing& framing, const SceneShape& shape, const Sight& sight, const Lens& lens) {
-  const Real3 eye = real_of(framing.kept.eye);
-  const double half = voxels_of(framing.kept.span) / 2;
-  return std::none_of(shape.corners.begin(), shape.corners.end(), [&](const Vec3i& corner) {
-    const Real3 offset = minus(real_of(corner), eye);
-    const double depth = dot(offset, sight.axes.forward);
-    const double reach_x = framing.kept.is_perspective ? depth * lens.tan_y * lens.aspect : half;
-    return depth <= 0 || std::abs(dot(offset, sight.axes.right)) > reach_x ||
-           std::abs(dot(offset, sight.axes.up)) > reach_x / lens.aspect;
-  });
-}
-
 // The eye and the span that show the corners so; the target keeps to the middle of the view.
 ViewWishes fitted(const ViewWishes& wishes, const SceneShape& shape, const Sight& sight) {
   const Lens lens(wishes);
@@ -503,7 +466,8 @@ ViewAngles angles_of(NamedView view) {
 
 Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   const std::int32_t side = std::int32_t{1} << level;
-  const Corners corners = corners_of(bounds.empty() ? VoxelBox{{0, 0, 0}, {side, side, side}} : bounds);
+  const VoxelBox box = bounds.empty() ? VoxelBox{{0, 0, 0}, {side, side, side}} : bounds;
+  const Corners corners = corners_of(box);
   const Reach reach(level);
   const Lens lens(wishes);
   const Sight sight = sight_of(wishes, reach, corners);
@@ -515,7 +479,7 @@ Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   SceneCamera& kept = framing.kept;
   kept.is_perspective = !wishes.orthographic;
   kept.direction_bits = static_cast<std::uint8_t>(wishes.direction_bits);
-  kept.eye = to_q8(eye, reach, wishes.eye ? "--eye" : "the eye for this --target,");
+  kept.eye = reachable_q8(eye, reach, wishes.eye ? "--eye" : "the eye for this --target,");
   kept.target = saturated_q8(sight.target);
   kept.forward = sight.forward;
   kept.up = wishes.up ? sight.up : Vec3i{};
@@ -526,7 +490,7 @@ Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   } else {
     set_perspective_camera(wishes, level, &framing);
     // What the margin gives away may be enough to see it all even from too near.
-    partial = !wishes.eye && !sees_all(corners, eye, sight.axes, lens);
+    partial = !wishes.eye && !shows_all(box_corners(box), eye, sight.axes, lens);
   }
   if (partial) {
     framing.note =
@@ -546,9 +510,8 @@ Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, int lev
   }
   const Status status = set_camera(framing.kept, wishes.width_px, wishes.height_px, level, &framing.camera);
   if (status != Status::kOk) {
-    throw InputError(std::string("the scene's own camera does not suit a picture of ") +
-                     std::to_string(wishes.width_px) + "x" + std::to_string(wishes.height_px) + ": " +
-                     status_text(status) +
+    throw InputError("the scene's own camera does not suit a picture of ", wishes.width_px, "x",
+                     wishes.height_px, ": ", status_text(status),
                      "; another --size, or a camera of your own (--eye, --target, --span), helps");
   }
   return framing;
@@ -569,7 +532,7 @@ Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
   const Reach reach(shape.level);
   const Sight sight = sight_of(wishes, reach, corners_of(shape.bounds));
   const ViewWishes placed_view = fitted(wishes, shape, sight);
-  if (is_reachable(*placed_view.eye, reach) && is_reachable(*placed_view.target, reach)) {
+  if (reach.holds(*placed_view.eye) && reach.holds(*placed_view.target)) {
     try {
       return frame_box(placed_view, shape.level, shape.bounds);
     } catch (const InputError&) {
@@ -577,7 +540,9 @@ Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
     }
   }
   Framing framing = frame_box(wishes, shape.level, shape.bounds);
-  if (shows_all(framing, shape, sight, Lens(wishes))) {
+  const SceneCamera& kept = framing.kept;
+  const auto half_width = kept.is_perspective ? std::nullopt : std::optional(voxels_of(kept.span) / 2);
+  if (shows_all(shape.corners, real_of(kept.eye), sight.axes, Lens(wishes), half_width)) {
     framing.note.clear();  // what its box lacks holds nothing
   }
   return framing;
@@ -665,8 +630,7 @@ Shading scene_shading(ShadeMode mode, Span<const Rgb8> palette, const Camera& ca
 ViewWishes finer(const ViewWishes& wishes, int across) {
   const std::int32_t most = kMaxPicturePx / across;
   if (wishes.width_px > most || wishes.height_px > most) {
-    throw InputError(std::to_string(across * across) + " samples a pixel want a picture of at most " +
-                     std::to_string(most) + " pixels a side");
+    throw InputError(across * across, " samples a pixel want a picture of at most ", most, " pixels a side");
   }
   ViewWishes fine = wishes;
   fine.width_px *= across;

@@ -62,8 +62,7 @@ std::uint64_t parse_in_range(const std::string& name, const std::string& text, s
                              std::uint64_t high) {
   const std::optional<std::uint64_t> value = parse_number(text);
   if (!value || *value < low || *value > high) {
-    throw InputError(name + " must be a whole number " + std::to_string(low) + ".." + std::to_string(high) +
-                     ", not \"" + text + "\"");
+    throw InputError(name, " must be a whole number ", low, "..", high, ", not \"", text, "\"");
   }
   return *value;
 }
@@ -81,10 +80,10 @@ void parse_options(const std::string& options, GeneratorSpec& spec) {
     const std::string value = option.substr(std::min(equals + 1, option.size()));
     bool* const seen = key == "seed" ? &has_seed : key == "depth" ? &has_depth : nullptr;
     if (seen == nullptr || equals == option.size()) {
-      throw InputError("unknown generator option \"" + option + "\"; there are seed=S and depth=L");
+      throw InputError("unknown generator option \"", option, "\"; there are seed=S and depth=L");
     }
     if (*seen) {
-      throw InputError("generator option " + key + " is given twice");
+      throw InputError("generator option ", key, " is given twice");
     }
     *seen = true;
     if (seen == &has_seed) {

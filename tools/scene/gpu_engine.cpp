@@ -16,7 +16,7 @@ auto told(Work&& work) {
   try {
     return work();
   } catch (const gpu::DeviceError& error) {
-    throw InputError(std::string("--engine gpu: ") + error.what());
+    throw InputError("--engine gpu: ", error.what());
   }
 }
 

@@ -82,8 +82,8 @@ std::string scene_path(const std::string& scene) {
     names += (names.empty() ? "" : ", ") + name;
     words.push_back(name);
   }
-  throw InputError("no such file, and no scene of that name" + suggestion(scene, words) +
-                   (names.empty() ? " (none is installed beside the program)" : "; there are " + names));
+  throw InputError("no such file, and no scene of that name", suggestion(scene, words),
+                   names.empty() ? " (none is installed beside the program)" : "; there are " + names);
 }
 
 std::string file_name(const std::string& path) {

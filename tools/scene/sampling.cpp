@@ -85,7 +85,7 @@ NodeColors take_node_colors(BuiltScene* built, const Quality& quality, const Sha
   const Bytes table = built->arena().take(size);
   if (table.empty()) {
     throw InputError(
-        "the mean colours of " + grouped(built->compact().node_count()) + " nodes need " + grouped(size) +
+        "the mean colours of ", grouped(built->compact().node_count()), " nodes need ", grouped(size),
         " bytes beside the scene, more than the budget has left; give it more, or another --shade");
   }
   if (NodeColors::make(built->compact(), shading.palette, shading.default_color, table, &colors) !=

@@ -175,17 +175,17 @@ class Columns {
   std::vector<Ends> ends_;
 };
 
-std::vector<Vec3i> box_corners(const VoxelBox& box) {
-  std::vector<Vec3i> corners;
-  for (unsigned corner = 0; corner < 8 && !box.empty(); ++corner) {
-    corners.push_back({(corner & 1U) != 0 ? box.high.x : box.low.x,
-                       (corner & 2U) != 0 ? box.high.y : box.low.y,
-                       (corner & 4U) != 0 ? box.high.z : box.low.z});
+}  // namespace
+
+std::array<Vec3i, 8> box_corners(const VoxelBox& box) {
+  std::array<Vec3i, 8> corners;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      corners[corner][axis] = ((corner >> axis) & 1U) != 0 ? box.high[axis] : box.low[axis];
+    }
   }
   return corners;
 }
-
-}  // namespace
 
 SceneShape shape_of(const CompactTree& tree) {
   SceneShape shape;
@@ -205,7 +205,10 @@ SceneShape shape_of(const BuiltScene& built) {
   SceneShape shape;
   shape.level = built.level();
   shape.bounds = built.bounds();
-  shape.corners = box_corners(shape.bounds);
+  if (!shape.bounds.empty()) {
+    const std::array<Vec3i, 8> corners = box_corners(shape.bounds);
+    shape.corners.assign(corners.begin(), corners.end());
+  }
   return shape;
 }
 

@@ -1,6 +1,7 @@
 /// What a scene occupies, as those who look for a place to see it from need it.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct SceneShape {
   int threads = 1;                            ///< that may look for a place
   std::shared_ptr<const BuiltScene> owner{};  ///< of `tree`, where it was built for the shape
 };
+
+std::array<Vec3i, 8> box_corners(const VoxelBox& box);
 
 /// One pass over the blocks. In worlds of more than 1,024 a side corners are rounded outwards, to a
 /// thousandth of the world. Memory for a while: 8 bytes a column of voxels, at most 8 MiB.

@@ -32,7 +32,7 @@ VoxelSink metered(const VoxelSink& sink, const Progress& progress, std::uint64_t
 
 void check_depth(int depth) {
   if (depth < kMinLevel || depth > kMaxLevel) {
-    throw InputError("--depth must be " + std::to_string(kMinLevel) + " to " + std::to_string(kMaxLevel));
+    throw InputError("--depth must be ", kMinLevel, " to ", kMaxLevel);
   }
 }
 
@@ -63,13 +63,11 @@ int level_for(const std::array<std::int32_t, 3>& size, std::optional<int> depth)
     ++needed;
   }
   if (needed > kMaxLevel) {
-    throw InputError("the scene is " + std::to_string(largest) + " voxels long; the largest world has " +
-                     std::to_string(1 << kMaxLevel));
+    throw InputError("the scene is ", largest, " voxels long; the largest world has ", 1 << kMaxLevel);
   }
   const int level = depth.value_or(needed);
   if (level < needed) {
-    throw InputError("the scene is " + std::to_string(largest) + " voxels long and needs --depth " +
-                     std::to_string(needed));
+    throw InputError("the scene is ", largest, " voxels long and needs --depth ", needed);
   }
   return level;
 }
@@ -78,8 +76,7 @@ std::unique_ptr<SceneSource> model_scene(std::unique_ptr<VoxelModel> read, std::
   const std::shared_ptr<const VoxelModel> model = std::move(read);
   SourceFacts facts;
   facts.frames = model->frames();
-  facts.kind =
-      facts.frames == 1 ? "voxel model" : "voxel model of " + std::to_string(facts.frames) + " frames";
+  facts.kind = facts.frames == 1 ? "voxel model" : concat("voxel model of ", facts.frames, " frames");
   facts.extent = model->size();
   facts.level = level_for(*facts.extent, depth);
   model->for_each([&](auto, auto, auto, auto) { ++facts.points; });
@@ -258,15 +255,15 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
   const double wide = std::max(extent_of(0), extent_of(1));
   if (!as_voxels && wide > 0 && extent_of(2) > kColumnSides * wide &&
       std::max(-world.low[0], world.high[0]) <= 180 && std::max(-world.low[1], world.high[1]) <= 90) {
-    scene->add_notes({printable(arguments.scene) + ": it is " +
-                      std::to_string(static_cast<long long>(std::min(extent_of(2) / wide, 1e9))) +
-                      " times as high as wide: x and y may be degrees, and z metres"});
+    scene->add_notes({concat(printable(arguments.scene), ": it is ",
+                             static_cast<long long>(std::min(extent_of(2) / wide, 1e9)),
+                             " times as high as wide: x and y may be degrees, and z metres")});
   }
   if (points->survey.left_out != 0) {
-    scene->add_notes({printable(arguments.scene) + ": " + std::to_string(points->survey.left_out) + " of " +
-                      std::to_string(points->survey.points) +
-                      (wishes.clip ? " points are outside of --clip and left out"
-                                   : " points are far from all others and left out; --fit 100 takes them")});
+    scene->add_notes(
+        {concat(printable(arguments.scene), ": ", points->survey.left_out, " of ", points->survey.points,
+                wishes.clip ? " points are outside of --clip and left out"
+                            : " points are far from all others and left out; --fit 100 takes them")});
   }
   return scene;
 }
@@ -337,7 +334,7 @@ std::unique_ptr<SceneSource> baked_scene(BakedFile read, std::optional<int> dept
   const BakedScene& scene = file->scene;
   const CompactTree& tree = scene.tree();
   if (depth && *depth != tree.level()) {
-    throw InputError("was baked with depth " + std::to_string(tree.level()) + "; --depth cannot change that");
+    throw InputError("was baked with depth ", tree.level(), "; --depth cannot change that");
   }
   SourceFacts facts;
   facts.kind = "baked scene";

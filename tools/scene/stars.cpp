@@ -56,11 +56,8 @@ class Sky {
         200LL, 1100LL);
     near_ = INT64_MAX;
     far_ = INT64_MIN;
-    const VoxelBox& box = canvas.tree->bounds();
-    for (unsigned corner = 0; corner < 8; ++corner) {
-      const std::int64_t depth =
-          depth_of({(corner & 1U) != 0 ? box.high.x : box.low.x, (corner & 2U) != 0 ? box.high.y : box.low.y,
-                    (corner & 4U) != 0 ? box.high.z : box.low.z});
+    for (const Vec3i& corner : box_corners(canvas.tree->bounds())) {
+      const std::int64_t depth = depth_of(corner);
       near_ = std::min(near_, depth);
       far_ = std::max(far_, depth);
     }

@@ -70,7 +70,7 @@ VoxelBox cut(const VoxelBox& box, std::int32_t side) {
 }
 
 std::string corner_text(const Vec3i& corner) {
-  return std::to_string(corner.x) + " " + std::to_string(corner.y) + " " + std::to_string(corner.z);
+  return concat(corner.x, " ", corner.y, " ", corner.z);
 }
 
 // What a scene text puts together, and how it streams.
@@ -233,35 +233,35 @@ class TextScene {
       if (!is_generated) {
         arguments.scene = path_beside(own_path, part.file);
       }
-      const std::string key = arguments.scene + '\n' + std::to_string(part.depth.value_or(0)) +
-                              (part.as_voxels ? "v" : "") + (part.z_up ? "z" : "");
+      const std::string key = concat(arguments.scene, '\n', part.depth.value_or(0), part.as_voxels ? "v" : "",
+                                     part.z_up ? "z" : "");
       std::shared_ptr<const OpenedModel>& kept = opening->opened[key];
       if (opening->opened.size() > kMostSceneModels) {
-        throw InputError("the scene opens more than the limit of " + grouped(kMostSceneModels) + " models");
+        throw InputError("the scene opens more than the limit of ", grouped(kMostSceneModels), " models");
       }
       if (kept == nullptr) {
         std::unique_ptr<SceneSource> opened = open_scene(arguments, opening, progress);
         opening->generated += is_generated ? opened->points() : 0;
         if (opening->generated > kMostGenerated) {
-          throw InputError("with this the scene's generators make more than the limit of " +
-                           grouped(kMostGenerated) + " points");
+          throw InputError("with this the scene's generators make more than the limit of ",
+                           grouped(kMostGenerated), " points");
         }
         kept = survey(std::move(opened), progress);
       }
       model.model = kept;
     } catch (const InputError& error) {
-      fail_at(part.file_place, printable(part.file) + ": " + error.what());
+      fail_at(part.file_place, printable(part.file), ": ", error.what());
     }
     // Scenes within scenes multiply.
     facts_.placements += model.model->source->placements();
     if (facts_.placements > kMostPlacements) {
-      fail_at(part.place, "with this the scene places more than the limit of " + grouped(kMostPlacements) +
-                              " models, boxes and balls");
+      fail_at(part.place, "with this the scene places more than the limit of ", grouped(kMostPlacements),
+              " models, boxes and balls");
     }
     surveyed_ += model.model->voxels;
     if (surveyed_ > kMostSceneVoxels) {
-      fail_at(part.place,
-              "with this the scene places more than the limit of " + grouped(kMostSceneVoxels) + " voxels");
+      fail_at(part.place, "with this the scene places more than the limit of ", grouped(kMostSceneVoxels),
+              " voxels");
     }
     model.size = model.model->source->extent();
     const VoxelBox& solid = model.model->solid;
@@ -313,8 +313,7 @@ class TextScene {
         ++level;
       }
       if (side() < largest) {
-        fail_at(largest_place, "this reaches to " + std::to_string(largest) + "; the largest world ends at " +
-                                   std::to_string(side()));
+        fail_at(largest_place, "this reaches to ", largest, "; the largest world ends at ", side());
       }
     }
   }
@@ -324,10 +323,9 @@ class TextScene {
       const VoxelBox& box = model.solid;
       const VoxelBox kept = cut(box, side());
       if (!model.part->crop && !(kept == box)) {
-        fail_at(model.part->place, "the model's voxels from " + corner_text(box.low) + " to " +
-                                       corner_text(box.high) + " leave the world of " +
-                                       std::to_string(side()) + " voxels a side (depth " +
-                                       std::to_string(facts_.level) + "); crop cuts them off");
+        fail_at(model.part->place, "the model's voxels from ", corner_text(box.low), " to ",
+                corner_text(box.high), " leave the world of ", side(), " voxels a side (depth ", facts_.level,
+                "); crop cuts them off");
       }
       take(kept, model.model->voxels);
     }
@@ -338,16 +336,16 @@ class TextScene {
       }
       const VoxelBox box = cut(box_of(part), side());
       if (box.empty()) {
-        fail_at(part.place, "all of this lies outside the world of " + std::to_string(side()) +
-                                " voxels a side (depth " + std::to_string(facts_.level) + ")");
+        fail_at(part.place, "all of this lies outside the world of ", side(), " voxels a side (depth ",
+                facts_.level, ")");
       }
       const std::uint64_t volume = std::uint64_t{1} * static_cast<std::uint64_t>(box.high.x - box.low.x) *
                                    static_cast<std::uint64_t>(box.high.y - box.low.y) *
                                    static_cast<std::uint64_t>(box.high.z - box.low.z);
       primitive_voxels += volume;
       if (primitive_voxels > kMostPrimitiveVoxels) {
-        fail_at(part.place, "boxes and balls up to here hold " + grouped(primitive_voxels) +
-                                " voxels, the limit is " + grouped(kMostPrimitiveVoxels));
+        fail_at(part.place, "boxes and balls up to here hold ", grouped(primitive_voxels),
+                " voxels, the limit is ", grouped(kMostPrimitiveVoxels));
       }
       take(box, volume);
     }
@@ -367,18 +365,18 @@ class TextScene {
       return raw >= kMinOriginWorlds * (Q8::kOne << facts_.level) &&
              raw <= kMaxOriginWorlds * (Q8::kOne << facts_.level);
     };
-    const std::string limits = std::to_string(kMinOriginWorlds * side()) + " to " +
-                               std::to_string(kMaxOriginWorlds * side()) + " (-4 to 5 world sizes)";
+    const std::string limits =
+        concat(kMinOriginWorlds * side(), " to ", kMaxOriginWorlds * side(), " (-4 to 5 world sizes)");
     for (const SceneText::PlacedLight& each : text_.lights) {
       const Vec3i at = each.light.place;
       if (each.light.is_point && !(in_reach(at.x) && in_reach(at.y) && in_reach(at.z))) {
-        fail_at(each.place, "the lamp is outside the accepted " + limits);
+        fail_at(each.place, "the lamp is outside the accepted ", limits);
       }
     }
     if (text_.camera) {
       const Vec3Q8& eye = text_.camera->eye;
       if (!(in_reach(eye.x.raw) && in_reach(eye.y.raw) && in_reach(eye.z.raw))) {
-        fail_at(text_.camera_place, "the eye of the camera is outside the accepted " + limits);
+        fail_at(text_.camera_place, "the eye of the camera is outside the accepted ", limits);
       }
       Camera camera;
       if (set_camera(*text_.camera, 1, 1, facts_.level, &camera) == Status::kBadArgument) {
@@ -389,8 +387,8 @@ class TextScene {
       const SceneText::WaterArea& water = *text_.water;
       const bool fits = !water.from_to || ((*water.from_to)[2] <= side() && (*water.from_to)[3] <= side());
       if (!fits || water.level_q8 > side() * Q8::kOne) {
-        fail_at(water.place, "the water leaves the world of " + std::to_string(side()) +
-                                 " voxels a side (depth " + std::to_string(facts_.level) + ")");
+        fail_at(water.place, "the water leaves the world of ", side(), " voxels a side (depth ", facts_.level,
+                ")");
       }
     }
   }
@@ -409,8 +407,8 @@ class TextScene {
     const auto found = std::find(begin, end, surface);
     if (found == end) {
       if (materials_ == kMaxSurfaces) {
-        fail_at(place, "with this the scene has more than the limit of " + std::to_string(kMaxSurfaces) +
-                           " different materials");
+        fail_at(place, "with this the scene has more than the limit of ", kMaxSurfaces,
+                " different materials");
       }
       facts_.lighting->surfaces[materials_] = surface;
       facts_.palette[materials_] = material_of(surface);
@@ -486,8 +484,7 @@ std::unique_ptr<SceneSource> open_text_scene(const SceneText& text, const SceneA
     throw InputError("this scene is a model of itself");
   }
   if (all->path.size() == kMostNestedScenes) {
-    throw InputError("scenes stand within scenes deeper than the limit of " +
-                     std::to_string(kMostNestedScenes));
+    throw InputError("scenes stand within scenes deeper than the limit of ", kMostNestedScenes);
   }
   all->path.push_back(path);
   const auto scene = std::make_shared<const TextScene>(text, arguments, all, progress);

@@ -1,18 +1,77 @@
-/// The scene graph of a `.vox` file: nTRN, nGRP and nSHP nodes, layers, and where they put the models.
-/// Internal to the `.vox` reader.
-///
-/// Node 0 is the root. An nTRN turns and moves its one child, an nGRP holds children, an nSHP shows a model.
-/// Nodes may be shared, so the graph is a directed one without cycles rather than a tree.
+/// What the `.vox` reader is made of: the pieces of its chunks, its colours and materials, its scene graph.
 #pragma once
 
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "readers/file_bytes.h"
+#include "readers/source.h"
 
 namespace thimble::tools {
+
+/// "XYZI chunk at byte offset 44": the place that errors name. Bytes of an id that do not print become `?`.
+inline std::string vox_place(std::string_view id, std::uint64_t offset) {
+  std::string place;
+  for (const char letter : id) {
+    place += letter >= ' ' && letter <= '~' ? letter : '?';
+  }
+  return concat(place, " chunk at byte offset ", offset);
+}
+
+/// A string: its length in bytes as 32 bits, then the bytes.
+inline std::string_view vox_string(ByteReader& reader) {
+  return reader.text(reader.u32());
+}
+
+/// A dictionary: the number of entries, then a key and a value each. Calls `entry(key, value)` for each; the
+/// count is not trusted, each string must be there.
+template <class Entry>
+void vox_dictionary(ByteReader& reader, const Entry& entry) {
+  const std::uint32_t count = reader.u32();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::string_view key = vox_string(reader);
+    const std::string_view value = vox_string(reader);
+    entry(key, value);
+  }
+}
+
+/// The number that is all of `text`, or nothing. Independent of the locale.
+template <class Number>
+std::optional<Number> vox_number(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return number;
+}
+
+// Colours and materials: RGBA, MATT (version 150) and MATL (version 200).
+
+/// MagicaVoxel's palette for files without RGBA. Entry 0 is the unused one and stays white.
+Palette vox_default_palette();
+
+/// RGBA: 256 times r, g, b, alpha. The first is colour index 1; the last stands for index 0, the empty voxel,
+/// and is ignored. Where there are fewer, the others stay as they are. Changes colours and alpha only, so
+/// that the order of RGBA and MATL does not matter.
+void vox_read_rgba(ByteReader& chunk, Palette& palette);
+
+/// MATT, obsolete since version 0.99: an id, a kind, a weight, a bit mask and one float a bit that is set.
+void vox_read_matt(ByteReader& chunk, Palette& palette);
+
+/// MATL: an id and a dictionary of texts. A value that is no number, or is NaN, leaves the default.
+void vox_read_matl(ByteReader& chunk, Palette& palette);
+
+// The scene graph: nTRN, nGRP and nSHP nodes, layers, and where they put the models.
+//
+// Node 0 is the root. An nTRN turns and moves its one child, an nGRP holds children, an nSHP shows a model.
+// Nodes may be shared, so the graph is a directed one without cycles rather than a tree.
 
 /// A rotation or mirror of the lattice, then a translation:
 /// world[i] = sign[i] * local[axis[i]] + translation[i].
