@@ -1,6 +1,7 @@
 // thimble accuracy: what each knob that trades a picture's error for time gives, and what a given time or
 // error calls for.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -62,16 +63,16 @@ struct SimulationRow : MedianTime {  ///< times: of all steps together
 constexpr int kMostSubsteps = 16;
 constexpr int kFinestBits = 15;
 
-// --- Particles
+using Values = std::vector<std::array<double, 2>>;
 
-struct Places {
-  std::vector<double> x;
-  std::vector<double> y;
-  std::uint64_t moves = 0;
+/// What a run came to.
+struct Outcome {
+  Values values;  ///< centres of the balls, cells; or heights from the rest level, voxels, and 0
+  std::uint64_t work = 0;
   double ms = 0;
 };
 
-Places run_particles(int substeps, int subpixel_bits) {
+Outcome run_particles(int substeps, int subpixel_bits) {
   WorldOptions options;
   options.subpixel_bits = subpixel_bits;
   options.substeps_log2 = 0;
@@ -80,37 +81,27 @@ Places run_particles(int substeps, int subpixel_bits) {
   }
   PopulatedWorld populated(options, std::nullopt);
   ParticleWorld& world = populated.world();
-  Places places;
+  Outcome outcome;
   const FrameWatch watch;
   for (int step = 0; step < kParticleSteps; ++step) {
     world.step();
-    places.moves += world.counters().moves;
+    outcome.work += world.counters().moves;
   }
-  places.ms = watch.ms();
+  outcome.ms = watch.ms();
   for_each_ball(world, [&](const Particle& ball) {
-    places.x.push_back(ball.x_q16 / 65536.0);
-    places.y.push_back(ball.y_q16 / 65536.0);
+    outcome.values.push_back({ball.x_q16 / 65536.0, ball.y_q16 / 65536.0});
   });
-  return places;
+  return outcome;
 }
-
-// --- Water
 
 constexpr std::int32_t kRestVoxels = 64;
 constexpr std::int32_t kPressedQ8 = 256;
-
-struct Basin {
-  int columns = 0;
-  std::vector<double> heights;  // from the rest level, voxels
-  std::uint64_t work = 0;
-  double ms = 0;
-};
 
 int water_steps(int columns, int wave_speed_q6) {
   return columns * 32 / wave_speed_q6;
 }
 
-Basin run_water(int columns, int wave_speed_q6) {
+Outcome run_water(int columns, int wave_speed_q6) {
   WaterConfig config;
   config.width = columns;
   config.depth = columns;
@@ -125,8 +116,7 @@ Basin run_water(int columns, int wave_speed_q6) {
       water.touch(side_q8 * 3 / 8, side_q8 * 7 / 16, side_q8 / 8, kPressedQ8) != Status::kOk) {
     throw InputError("internal error: the basin cannot be set up");
   }
-  Basin basin;
-  basin.columns = columns;
+  Outcome basin;
   const FrameWatch watch;
   for (int step = 0; step < water_steps(columns, wave_speed_q6); ++step) {
     water.step();
@@ -135,26 +125,29 @@ Basin run_water(int columns, int wave_speed_q6) {
   basin.work = water.columns_updated();
   for (int y = 0; y < columns; ++y) {
     for (int x = 0; x < columns; ++x) {
-      basin.heights.push_back(water.height_q16(x, y) / 65536.0 - kRestVoxels);
+      basin.values.push_back({water.height_q16(x, y) / 65536.0 - kRestVoxels, 0});
     }
   }
   return basin;
 }
 
-// The mean of the reference's columns where the coarse one stands.
-double mean_height(const Basin& reference, int columns, int x, int y) {
-  const int across = reference.columns / columns;
-  double sum = 0;
-  for (int j = y * across; j < (y + 1) * across; ++j) {
-    for (int i = x * across; i < (x + 1) * across; ++i) {
-      sum += reference.heights[static_cast<std::size_t>(j) * static_cast<std::size_t>(reference.columns) +
-                               static_cast<std::size_t>(i)];
+// The heights of the reference, as the means that so many columns a side stand for.
+Values mean_heights(const Values& reference, int columns) {
+  const int across = kWaterReference / columns;
+  Values means;
+  for (int y = 0; y < columns; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      double sum = 0;
+      for (int j = y * across; j < (y + 1) * across; ++j) {
+        for (int i = x * across; i < (x + 1) * across; ++i) {
+          sum += reference[static_cast<std::size_t>(j * kWaterReference + i)][0];
+        }
+      }
+      means.push_back({sum / (across * across), 0});
     }
   }
-  return sum / (across * across);
+  return means;
 }
-
-// --- Both
 
 void set_errors(std::vector<double> errors, SimulationRow* row) {
   double squares = 0;
@@ -203,34 +196,26 @@ double counted_error(SimulationWorld world, const SimulationRow& row) {
 std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds, const Progress& progress) {
   const bool is_water = world == SimulationWorld::kWater;
   std::vector<SimulationRow> rows = is_water ? water_rows() : particle_rows();
-  const Places places = is_water ? Places{} : run_particles(kMostSubsteps, kFinestBits);
-  const Basin basin = is_water ? run_water(kWaterReference, kMinWaveSpeedQ6) : Basin{};
+  const auto run_row = [&](const SimulationRow& row) {
+    return is_water ? run_water(row.columns, row.wave_speed_q6)
+                    : run_particles(row.substeps, row.subpixel_bits);
+  };
+  const Outcome finest =
+      is_water ? run_water(kWaterReference, kMinWaveSpeedQ6) : run_particles(kMostSubsteps, kFinestBits);
   std::vector<std::vector<double>> milliseconds(rows.size());
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       SimulationRow& row = rows[i];
-      std::vector<double> errors;
-      if (is_water) {
-        const Basin coarse = run_water(row.columns, row.wave_speed_q6);
-        milliseconds[i].push_back(coarse.ms);
-        row.work = coarse.work;
-        for (int y = 0; round == 0 && y < row.columns; ++y) {
-          for (int x = 0; x < row.columns; ++x) {
-            const double height =
-                coarse.heights[static_cast<std::size_t>(y) * static_cast<std::size_t>(row.columns) +
-                               static_cast<std::size_t>(x)];
-            errors.push_back(std::abs(height - mean_height(basin, row.columns, x, y)));
-          }
-        }
-      } else {
-        const Places coarse = run_particles(row.substeps, row.subpixel_bits);
-        milliseconds[i].push_back(coarse.ms);
-        row.work = coarse.moves;
-        for (std::size_t ball = 0; round == 0 && ball < places.x.size(); ++ball) {
-          errors.push_back(std::hypot(coarse.x[ball] - places.x[ball], coarse.y[ball] - places.y[ball]));
-        }
-      }
+      const Outcome coarse = run_row(row);
+      milliseconds[i].push_back(coarse.ms);
+      row.work = coarse.work;
       if (round == 0) {
+        const Values expected = is_water ? mean_heights(finest.values, row.columns) : finest.values;
+        std::vector<double> errors;
+        for (std::size_t k = 0; k < expected.size(); ++k) {
+          const auto& [x, y] = coarse.values[k];
+          errors.push_back(std::hypot(x - expected[k][0], y - expected[k][1]));
+        }
         set_errors(std::move(errors), &row);
       }
       if (progress) {

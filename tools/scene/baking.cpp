@@ -13,6 +13,7 @@
 #include "scene/generators.h"
 #include "scene/host_memory.h"
 #include "scene/named_scenes.h"
+#include "scene/tone_table.h"
 #include "thimble/light/render.h"
 #include "thimble/trace/ray.h"
 #include "thimble/tree/octree.h"
@@ -353,9 +354,9 @@ constexpr std::uint32_t kDimmedQ8 = 144;
 constexpr int kMostTurns = 4;
 
 // Greys of what the camera sees that is solid, and of the sky behind it.
-std::array<std::uint32_t, 256> seen_grays(const CompactTree& tree, const Camera& camera,
-                                          const Shading& shading, const LitScene& scene, EffectSet effects) {
-  std::array<std::uint32_t, 256> counts{};
+GrayCounts seen_grays(const CompactTree& tree, const Camera& camera, const Shading& shading,
+                      const LitScene& scene, EffectSet effects) {
+  GrayCounts counts;
   std::vector<std::uint8_t> row(static_cast<std::size_t>(camera.width_px()) * 3);
   for (std::int32_t y = 0; y < camera.height_px(); ++y) {
     const Band band{{row.data(), row.size()}, PixelFormat::kRgb888, 0, y, 1};
@@ -367,27 +368,11 @@ std::array<std::uint32_t, 256> seen_grays(const CompactTree& tree, const Camera&
       if ((effects & Effect::kSky) != 0 ||
           (closest_hit(tree, camera.ray(x, y), &hit) == Status::kOk && hit.kind == HitKind::kHit)) {
         const std::uint8_t* const pixel = row.data() + 3 * static_cast<std::size_t>(x);
-        counts[(77U * pixel[0] + 150U * pixel[1] + 29U * pixel[2]) >> 8] += 1;
+        ++counts.of[gray_of({pixel[0], pixel[1], pixel[2]})];
       }
     }
   }
   return counts;
-}
-
-// The grey that a share of what is seen, 1 in `part`, has or exceeds; 0 where nothing is seen.
-std::uint32_t bright_gray(const std::array<std::uint32_t, 256>& counts, std::uint64_t part) {
-  std::uint64_t total = 0;
-  for (const std::uint32_t count : counts) {
-    total += count;
-  }
-  std::uint64_t above = 0;
-  for (std::uint32_t gray = 256; total != 0 && gray-- > 0;) {
-    above += counts[gray];
-    if (part * above >= total) {
-      return std::max(1U, gray);
-    }
-  }
-  return 0;
 }
 
 }  // namespace

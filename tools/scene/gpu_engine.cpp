@@ -20,8 +20,9 @@ auto told(Work&& work) {
   }
 }
 
-gpu::Backdrop backdrop_of(const Ground& ground) {
+gpu::Backdrop backdrop_of(const Ground* given) {
   static_assert(kAroundCount == 32 && kAroundLength == 128);
+  const Ground ground = given != nullptr ? *given : Ground{};
   return {ground.is_there, ground.z, ground.reach, ground.toward_sun, kAround};
 }
 
@@ -47,20 +48,16 @@ class Device final : public GpuEngine {
     return told([&] { return renderer_.trace(rays, hits); });
   }
   Status render(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                const Band& band, LitCounts* counts) override {
-    return draw_lit({effects, camera, shading, scene}, band, {}, counts);
-  }
-  Status render_before(const Ground& ground, EffectSet effects, const Camera& camera, const Shading& shading,
-                       const LitScene& scene, const Band& band, Bytes shares, LitCounts* counts) override {
+                const Band& band, LitCounts* counts, const Ground* ground, Bytes shares) override {
     const gpu::Backdrop backdrop = backdrop_of(ground);
-    return draw_lit({effects, camera, shading, scene, &backdrop}, band, shares, counts);
+    return draw_lit({effects, camera, shading, scene, ground != nullptr ? &backdrop : nullptr}, band,
+                    ground != nullptr ? shares : Bytes(), counts);
   }
-
   Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
                        Span<const SamplePlace> places, const Ground* ground, Bytes rgb, Bytes shares,
                        LitCounts* /*counts*/) override {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const gpu::Backdrop backdrop = backdrop_of(ground != nullptr ? *ground : Ground{});
+    const gpu::Backdrop backdrop = backdrop_of(ground);
     words_.resize(places.size);
     std::transform(places.data, places.data + places.size, words_.begin(), [](const SamplePlace& place) {
       return static_cast<std::uint32_t>(place.x) | static_cast<std::uint32_t>(place.y) << 16;

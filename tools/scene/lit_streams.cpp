@@ -19,7 +19,7 @@ class WideLitStreams final : public LitStreams {
   int threads() const override { return threads_.count(); }
   double seconds() const override { return seconds_; }
   Status render(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                const Band& band, LitCounts* counts) override {
+                const Band& band, LitCounts* counts, const Ground* /*ground*/, Bytes /*shares*/) override {
     return wide::render_lit(effects, map_, camera, shading, scene, band, workspace_, &threads_, counts);
   }
   Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,

@@ -35,26 +35,20 @@ class LitStreams {
   virtual int threads() const = 0;
   /// What making it took.
   virtual double seconds() const = 0;
-  /// The pixels of `render_lit_band`, and its errors. The effects and lights are at most those of `make`. `counts` (may
-  /// be null) is added to.
-  virtual Status render(EffectSet effects, const Camera& camera, const Shading& shading,
-                        const LitScene& scene, const Band& band, LitCounts* counts) = 0;
-  // What an engine does not do is a kBadArgument, and then the core's.
-
-  /// As `render` in kRgb888; `shares` gets what `light_behind` (scene/backdrop.h) finds at each pixel. Where it
-  /// `finds_shares`.
+  /// Whether `ground` means anything to it.
   virtual bool finds_shares() const { return false; }
-  virtual Status render_before(const Ground& /*ground*/, EffectSet /*effects*/, const Camera& /*camera*/,
-                               const Shading& /*shading*/, const LitScene& /*scene*/, const Band& /*band*/,
-                               Bytes /*shares*/, LitCounts* /*counts*/) {
-    return Status::kBadArgument;
-  }
-
-  /// The same of single pixels, three bytes each; with `ground`, which may be null, as `render_before`. Where it
-  /// `finds_shares` nothing is counted.
+  /// The pixels of `render_lit_band`, and its errors. The effects and lights are at most those of `make`.
+  /// `counts` (may be null) is added to. With `ground`, in kRgb888, `shares` gets what `light_behind`
+  /// (scene/backdrop.h) finds at each pixel.
+  virtual Status render(EffectSet effects, const Camera& camera, const Shading& shading,
+                        const LitScene& scene, const Band& band, LitCounts* counts,
+                        const Ground* ground = nullptr, Bytes shares = {}) = 0;
+  /// The same of single pixels, three bytes each. Where it `finds_shares` nothing is counted.
   virtual Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading,
                                const LitScene& scene, Span<const SamplePlace> places, const Ground* ground,
                                Bytes rgb, Bytes shares, LitCounts* counts) = 0;
+  // What an engine does not do is a kBadArgument, and then the core's.
+
   /// Whether each ray meets anything, 1 or 0, as the core's `any_hit`. This and the next: any number of threads at a
   /// time, each with rays of its own. An error of a ray is the call's; the others are answered.
   virtual Status any_hit(Span<const Ray> /*rays*/, Span<std::uint8_t> /*hits*/) const {

@@ -38,12 +38,9 @@ Status LookRows::trace_colors(const Camera& camera, std::int32_t first_row, std:
   band.first_row = first_row;
   band.rows = rows;
   const EffectSet effects = canvas_.look->effects;
-  if (finds_shares_) {
-    return canvas_.streams->render_before(canvas_.look->ground, effects, camera, shading_, scene_, band,
-                                          shares, counts);
-  }
   return canvas_.streams != nullptr
-             ? canvas_.streams->render(effects, camera, shading_, scene_, band, counts)
+             ? canvas_.streams->render(effects, camera, shading_, scene_, band, counts,
+                                       finds_shares_ ? &canvas_.look->ground : nullptr, shares)
              : render_lit_band(effects, *canvas_.tree, camera, shading_, scene_, band, counts);
 }
 

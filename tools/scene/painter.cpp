@@ -22,92 +22,33 @@ const char* ray_engine(const TraceOptions& options) {
 constexpr std::int32_t kMostPixelsAtOnce = 1 << 18;
 constexpr std::int32_t kSquarePx = 32;
 
-// Lit pictures in bands of the scene's memory. Several samples a pixel are rows of the finer camera,
-// averaged. A pixel is a function of the scene alone, so threads take rows as they come.
-class LitPainter {
- public:
-  LitPainter(const BuiltScene& built, const Camera& camera, const Shading& shading, PixelFormat format,
-             const LitPicture& picture)
-      : built_(built),
-        camera_(camera),
-        shading_(shading),
-        picture_(picture),
-        width_px_(camera.width_px() / picture.across),
-        row_bytes_(row_bytes(format, width_px_)),
-        fine_bytes_(samples_bytes(width_px_, picture.across)) {}
-
-  int threads() const { return picture_.streams != nullptr ? picture_.streams->threads() : picture_.threads; }
-  std::int32_t most_rows() const {
-    if (picture_.across != 1 || !is_straight()) {
-      const std::size_t bytes =
-          std::max<std::size_t>(1, row_bytes_ + (picture_.across != 1 ? fine_bytes_ : 0));
-      return static_cast<std::int32_t>(built_.band().size / bytes);
-    }
-    const std::int32_t rows = std::max(1, kMostPixelsAtOnce / width_px_);
-    return rows < kSquarePx ? rows : rows / kSquarePx * kSquarePx;
+// Rows of a lit picture. A pixel is a function of the scene alone, so threads take rows as they come.
+Status draw_lit(const BuiltScene& built, const Camera& camera, const Shading& shading,
+                const LitPicture& picture, const Band& band, LitCounts* counts) {
+  if (picture.streams != nullptr) {
+    return picture.streams->render(picture.effects, camera, shading, picture.scene, band, counts);
   }
-  Bytes work() const { return is_straight() ? Bytes() : built_.band(); }
-  Status draw(const Band& band, PaintCounts* counts) const {
-    const Status status =
-        picture_.across == 1 ? draw_band(band, &counts->lit) : draw_samples(band, &counts->lit);
-    counts->all = totals_of(counts->lit);
-    return status;
+  const auto draw = [&](const Band& part, LitCounts* of_part) {
+    return render_lit_band(picture.effects, built.compact(), camera, shading, picture.scene, part, of_part);
+  };
+  if (picture.threads == 1) {
+    return draw(band, counts);
   }
-
- private:
-  // Streams need no band of the scene's memory: a pixel is written once.
-  bool is_straight() const { return picture_.streams != nullptr && picture_.across == 1; }
-  Status draw_rows(const Band& band, LitCounts* counts) const {
-    return render_lit_band(picture_.effects, built_.compact(), camera_, shading_, picture_.scene, band,
-                           counts);
+  const std::size_t line = row_bytes(band.format, camera.width_px());
+  std::vector<LitCounts> of_workers(static_cast<std::size_t>(picture.threads));
+  const Status status =
+      each_until_error(band.rows, picture.threads, [&](std::int32_t row, std::size_t worker) {
+        Band part = band;
+        part.first_row += row;
+        part.rows = 1;
+        part.pixels = band.pixels.subspan(line * static_cast<std::size_t>(row));
+        return draw(part, &of_workers[worker]);
+      });
+  for (const LitCounts& part : of_workers) {
+    add_counts(part, counts);
   }
-  Status draw_band(const Band& band, LitCounts* counts) const {
-    if (picture_.streams != nullptr) {
-      return picture_.streams->render(picture_.effects, camera_, shading_, picture_.scene, band, counts);
-    }
-    if (picture_.threads == 1) {
-      return draw_rows(band, counts);
-    }
-    const std::size_t line = row_bytes(band.format, camera_.width_px());
-    std::vector<LitCounts> of_workers(static_cast<std::size_t>(picture_.threads));
-    const Status status =
-        each_until_error(band.rows, picture_.threads, [&](std::int32_t row, std::size_t worker) {
-          Band part = band;
-          part.first_row += row;
-          part.rows = 1;
-          part.pixels = band.pixels.subspan(line * static_cast<std::size_t>(row));
-          return draw_rows(part, &of_workers[worker]);
-        });
-    for (const LitCounts& part : of_workers) {
-      add_counts(part, counts);
-    }
-    return status;
-  }
-  // The band's rows stand before those of its samples.
-  Status draw_samples(const Band& band, LitCounts* counts) const {
-    Band fine;
-    fine.first_row = band.first_row * picture_.across;
-    fine.rows = band.rows * picture_.across;
-    fine.format = PixelFormat::kRgb888;
-    fine.pixels = band.pixels.subspan(row_bytes_ * static_cast<std::size_t>(band.rows));
-    Status status = draw_band(fine, counts);
-    for (std::int32_t row = 0; row < band.rows && status == Status::kOk; ++row) {
-      const auto at = static_cast<std::size_t>(row);
-      status = average_samples(fine.pixels.subspan(fine_bytes_ * at, fine_bytes_), picture_.across, width_px_,
-                               band.first_row + row, band.format,
-                               band.pixels.subspan(row_bytes_ * at, row_bytes_));
-    }
-    return status;
-  }
-
-  const BuiltScene& built_;
-  const Camera& camera_;
-  const Shading& shading_;
-  LitPicture picture_;
-  std::int32_t width_px_;
-  std::size_t row_bytes_;
-  std::size_t fine_bytes_;  // of the samples of a row
-};
+  return status;
+}
 
 constexpr int kChannels = 3;
 
@@ -191,17 +132,11 @@ class EdgePainter {
   EdgeRows edges_;
 };
 
-// A painter of what is kept in `state`, which draws.
-template <class State>
-BandPainter painter_of(const char* engine, int threads, Bytes work, const std::shared_ptr<State>& state) {
-  return {engine, threads, state->most_rows(), work,
-          [state](const Band& band, PaintCounts* counts) { return state->draw(band, counts); }};
-}
-
 BandPainter edge_painter(const BuiltScene& built, const Camera& camera, const Camera& fine,
                          PixelFormat format, const EdgeEngine& engine) {
-  return painter_of(engine.name, engine.threads, built.band(),
-                    std::make_shared<EdgePainter>(built, camera, fine, format, engine));
+  const auto painter = std::make_shared<EdgePainter>(built, camera, fine, format, engine);
+  return {engine.name, engine.threads, painter->most_rows(), built.band(),
+          [painter](const Band& band, PaintCounts* counts) { return painter->draw(band, counts); }};
 }
 
 }  // namespace
@@ -257,9 +192,41 @@ BandPainter gpu_painter(GpuEngine* engine, const Camera& camera, const Shading& 
 
 BandPainter lit_painter(const BuiltScene& built, const Camera& camera, const Shading& shading,
                         PixelFormat format, const LitPicture& picture) {
-  const auto painter = std::make_shared<LitPainter>(built, camera, shading, format, picture);
-  return painter_of(picture.streams != nullptr ? picture.streams->name() : "lit", painter->threads(),
-                    painter->work(), painter);
+  const int across = picture.across;
+  const std::int32_t width_px = camera.width_px() / across;
+  const std::size_t line = row_bytes(format, width_px);
+  const std::size_t fine_lines = across == 1 ? 0 : samples_bytes(width_px, across);  // the samples of a row
+  // Several samples a pixel are rows of the finer camera, averaged: the band's rows stand before those of its samples.
+  const auto draw = [=, &built, &camera, &shading](const Band& band, PaintCounts* counts) {
+    Band fine = band;
+    if (across != 1) {
+      fine.first_row *= across;
+      fine.rows *= across;
+      fine.format = PixelFormat::kRgb888;
+      fine.pixels = band.pixels.subspan(line * static_cast<std::size_t>(band.rows));
+    }
+    Status status = draw_lit(built, camera, shading, picture, fine, &counts->lit);
+    for (std::int32_t row = 0; across != 1 && row < band.rows && status == Status::kOk; ++row) {
+      const auto at = static_cast<std::size_t>(row);
+      status = average_samples(fine.pixels.subspan(fine_lines * at, fine_lines), across, width_px,
+                               band.first_row + row, band.format, band.pixels.subspan(line * at, line));
+    }
+    counts->all = totals_of(counts->lit);
+    return status;
+  };
+  if (picture.streams == nullptr || across != 1) {
+    const std::size_t bytes = std::max<std::size_t>(1, line + fine_lines);
+    return {picture.streams == nullptr ? "lit" : picture.streams->name(),
+            picture.streams == nullptr ? picture.threads : picture.streams->threads(),
+            static_cast<std::int32_t>(built.band().size / bytes), built.band(), draw};
+  }
+  // Streams need no band of the scene's memory: a pixel is written once.
+  const std::int32_t rows = std::max(1, kMostPixelsAtOnce / width_px);
+  return {picture.streams->name(),
+          picture.streams->threads(),
+          rows < kSquarePx ? rows : rows / kSquarePx * kSquarePx,
+          {},
+          draw};
 }
 
 BandPainter lit_edge_painter(const BuiltScene& built, const Camera& camera, const Camera& fine,

@@ -103,21 +103,15 @@ std::vector<Box> median_cut(std::vector<Swatch>& swatches) {
     }
   }
   while (boxes.size() < kMaxColors) {
-    std::size_t best = 0;
-    std::uint64_t best_weight = 0;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const std::uint64_t weight = boxes[i].extent * boxes[i].count;
-      if (weight > best_weight) {
-        best = i;
-        best_weight = weight;
-      }
-    }
-    if (best_weight == 0) {
+    const auto best = std::max_element(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) {
+      return a.extent * a.count < b.extent * b.count;
+    });
+    if (best == boxes.end() || best->extent == 0) {
       break;
     }
-    const Box whole = boxes[best];
+    const Box whole = *best;
     const std::size_t middle = cut(swatches, whole);
-    boxes[best] = measure(swatches, whole.first, middle);
+    *best = measure(swatches, whole.first, middle);
     boxes.push_back(measure(swatches, middle, whole.last));
   }
   return boxes;

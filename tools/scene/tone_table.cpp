@@ -2,22 +2,25 @@
 
 namespace thimble::tools {
 
-uint32_t exposure_q8(const GrayCounts& counts) {
+uint32_t bright_gray(const GrayCounts& counts, uint64_t part) {
   uint64_t total = 0;
   for (const uint32_t count : counts.of) {
     total += count;
   }
-  if (total == 0) {
-    return 256;
-  }
   uint64_t above = 0;
-  uint32_t gray = 255;
-  while (gray > 1) {
+  for (uint32_t gray = 256; total != 0 && gray-- > 0;) {
     above += counts.of[gray];
-    if (10 * above >= total) {
-      break;
+    if (part * above >= total) {
+      return gray == 0 ? 1 : gray;
     }
-    --gray;
+  }
+  return 0;
+}
+
+uint32_t exposure_q8(const GrayCounts& counts) {
+  const uint32_t gray = bright_gray(counts, 10);
+  if (gray == 0) {
+    return 256;
   }
   const uint32_t exposure = kExposedGray * 256 * 2 / (3 * gray);
   return exposure < kLeastExposureQ8  ? kLeastExposureQ8

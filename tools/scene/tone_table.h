@@ -24,6 +24,8 @@ inline constexpr int32_t kExposurePx = 96;
 /// A pixel has four samples where those of the picture take at most so many rays, else one.
 inline constexpr uint64_t kMostLookRays = 100'000'000;
 
+/// The grey, 1 at least, that one pixel in `part` has or exceeds; 0 of a picture of nothing.
+uint32_t bright_gray(const GrayCounts& counts, uint64_t part);
 /// How much to brighten a picture of these greys, drawn at two thirds: 256 is not at all. A picture of nothing is
 /// not.
 uint32_t exposure_q8(const GrayCounts& counts);
