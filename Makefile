@@ -146,10 +146,10 @@ mutants: deps-test ## Change one place of src at a time: which COUNT=2000 of the
 	@python3 -B tests/mutants/run.py build/release/thimble_all_mutants \
 	  build/release/mutants/thimble_all_mutants --check
 
-bench: deps-bench ## Build and run the benchmarks
+bench: deps-bench ## Build the benchmarks, and run the table of peers (BENCH_ARGS)
 	@$(CONFIGURE) -B build/release -DTHIMBLE_BENCHMARKS=ON $(LEAN) >/dev/null
 	@.ci/build "benchmarks" build/release tests/benchmarks/all
-	@build/release/thimble_benchmarks $(BENCH_ARGS)
+	@build/release/thimble_peer_table $(BENCH_ARGS)
 
 # BOARD is a folder of platform/boards, APP a file of platform/apps, SCENE what `thimble bake` takes, EFFECTS its
 # --effects.

@@ -26,6 +26,16 @@ Voxel voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) {
 
 }  // namespace
 
+std::unique_ptr<tools::SceneSource> open_at(const std::string& scene_at_depth) {
+  const std::size_t at = scene_at_depth.rfind('@');
+  tools::SceneArguments arguments;
+  arguments.scene = scene_at_depth.substr(0, at);
+  if (at != std::string::npos) {
+    arguments.depth = std::stoi(scene_at_depth.substr(at + 1));
+  }
+  return tools::open_scene(arguments);
+}
+
 std::vector<Voxel> voxels_of(const tools::BuiltScene& built) {
   std::vector<Voxel> voxels;
   tools::for_each_block(built.compact(), [&](const Vec3i& at, int level, std::uint8_t) {
@@ -86,6 +96,7 @@ Contest::Contest(const std::string& kind, std::uint64_t points, int depth, std::
   for (const Maker& maker :
        {Maker{"raster in floats", make_raster, voxels * sizeof(Voxel)},
         Maker{"exact loop", make_loop, voxels * sizeof(Voxel)}, Maker{"Embree", make_embree, voxels * 200},
+        Maker{"textbook's octree", make_textbook, voxels * 400},
         Maker{"NanoVDB", make_nanovdb, std::min<std::uint64_t>(voxels * 3000, 5'000'000'000)}}) {
     if (maker.bytes + voxels * sizeof(Voxel) > most_bytes) {
       left_out_.emplace_back(maker.name);

@@ -73,6 +73,12 @@ class Contest {
   std::vector<std::uint8_t> pixels_;
 };
 
+/// A scene of the command's, and of a file its depth behind an @.
+std::unique_ptr<tools::SceneSource> open_at(const std::string& scene_at_depth);
+/// Without its folder.
+inline std::string short_name(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
 /// Every voxel of the tree, in its order.
 std::vector<Voxel> voxels_of(const tools::BuiltScene& built);
 /// All of a picture in greys.

@@ -141,10 +141,6 @@ class Table {
       std::vector<std::uint8_t>(kWidthPx* kHeightPx)};
 };
 
-std::string short_name(const std::string& world) {
-  return world.substr(world.rfind('/') + 1);
-}
-
 // The views of large and of real worlds, of which there are many.
 bool is_one_of_six(const std::string& view) {
   for (const char* name : {"outside", "near", "grazing", "along", "parallel", "parallel oblique"}) {

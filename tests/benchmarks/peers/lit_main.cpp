@@ -26,7 +26,7 @@ constexpr std::int32_t kHeightPx = 600;
 // A scene, its light and a view of it.
 class LitTrial {
  public:
-  LitTrial(const std::string& name, int threads) : source_(open(name)), built_(*source_, {}) {
+  LitTrial(const std::string& name, int threads) : source_(open_at(name)), built_(*source_, {}) {
     lit_ = source_->lighting();
     effects_ = tools::called_for(lit_, tools::used_materials(built_.compact()));
     if (effects_ == Effect::kNone) {
@@ -60,15 +60,6 @@ class LitTrial {
   }
 
  private:
-  static std::unique_ptr<tools::SceneSource> open(const std::string& name) {
-    const std::size_t at = name.rfind('@');
-    tools::SceneArguments arguments;
-    arguments.scene = name.substr(0, at);
-    if (at != std::string::npos) {
-      arguments.depth = std::stoi(name.substr(at + 1));
-    }
-    return tools::open_scene(arguments);
-  }
   static void check(Status status) {
     if (status != Status::kOk) {
       throw std::runtime_error("the picture cannot be drawn");
@@ -89,10 +80,6 @@ class LitTrial {
   std::unique_ptr<tools::LitStreams> streams_;
   std::size_t bytes_ = 0;
 };
-
-std::string short_name(const std::string& path) {
-  return path.substr(path.rfind('/') + 1);
-}
 
 int run(int count, char** words) {
   std::vector<std::string> names;

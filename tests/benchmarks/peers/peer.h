@@ -97,5 +97,7 @@ std::unique_ptr<Peer> make_embree(const std::vector<Voxel>& voxels);
 std::unique_ptr<Peer> make_embree_triangles(const std::vector<float>& corners);
 /// A hierarchical DDA over NanoVDB's active voxels; null where it is not installed.
 std::unique_ptr<Peer> make_nanovdb(const std::vector<Voxel>& voxels);
+/// An octree of pointers in double precision.
+std::unique_ptr<Peer> make_textbook(const std::vector<Voxel>& voxels);
 
 }  // namespace thimble::benchmarks

@@ -273,13 +273,7 @@ int run(int count, char** words) {
   std::printf("%-22s %-10s %-17s %9s %9s %8s %7s\n", "scene", "rays", "engine", "number", "Mrays/s",
               "to core", "wrong");
   for (const std::string& scene : scenes) {
-    tools::SceneArguments arguments;
-    const std::size_t at = scene.rfind('@');
-    arguments.scene = scene.substr(0, at);
-    if (at != std::string::npos) {
-      arguments.depth = std::stoi(scene.substr(at + 1));
-    }
-    const auto source = tools::open_scene(arguments);
+    const auto source = open_at(scene);
     const tools::BuiltScene built(*source, {});
     const std::size_t bytes = wide::RayMap::bytes(built.compact());
     const tools::HostMemory memory(bytes);
@@ -290,7 +284,7 @@ int run(int count, char** words) {
     if (status != Status::kOk) {
       throw std::runtime_error("no map");
     }
-    const std::string name = scene.substr(scene.rfind('/') + 1);
+    const std::string name = short_name(scene);
     std::printf("%s: map of %.1f MB (tree %.1f) in %.3f s\n", name.c_str(),
                 static_cast<double>(arena.used_bytes()) / 1e6, static_cast<double>(built.tree_bytes()) / 1e6,
                 seconds);
@@ -304,7 +298,7 @@ int run(int count, char** words) {
       view.eye = tools::Real3{300 * unit, -500 * unit, 560 * unit};
       view.target = tools::Real3{512 * unit, 512 * unit, 470 * unit};
       view.fov_degrees = 44;
-      peers = make_peers(arguments.scene, built);
+      peers = make_peers(scene.substr(0, scene.rfind('@')), built);
     }
     const Camera camera = tools::frame_box(view, built.level(), built.bounds()).camera;
     for (const Kind& kind : make_rays(built, camera)) {
