@@ -11,7 +11,6 @@ constexpr size_t kChecksumOffset = 12;
 
 // Voxels and two blocks in a world of 16; of several materials or one, coarsened or not.
 enum Kind : int { kPlain = 0, kMaterials = 1, kMerged = 2, kMergedMaterials = 3 };
-constexpr const char* kKindNames[] = {"plain", "materials", "merged", "merged, materials"};
 constexpr uint32_t kSmallNodes = 220;
 constexpr uint32_t kSmallBytes = 1768 + 800;
 
@@ -343,15 +342,9 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(bytes[28], 5);
        THIMBLE_EQUAL(bytes[34], 6);
      }},
-    {"what the header says -> what the octree holds", kSmallBytes, header_of, kPlain, kKindNames[0]},
-    {"what the header says -> what the octree holds", kSmallBytes, header_of, kMaterials, kKindNames[1]},
-    {"what the header says -> what the octree holds", kSmallBytes, header_of, kMerged, kKindNames[2]},
-    {"what the header says -> what the octree holds", kSmallBytes, header_of, kMergedMaterials,
-     kKindNames[3]},
+    {"what the header says -> what the octree holds", kSmallBytes, header_of, kPlain, "kind", 4},
     {"an output that is too small -> out of memory, the need, not a byte written", kSmallBytes, too_small,
-     kPlain, kKindNames[0]},
-    {"an output that is too small -> out of memory, the need, not a byte written", kSmallBytes, too_small,
-     kMergedMaterials, kKindNames[3]},
+     kPlain, "kind", 4},
     {"rank shifts beyond the limits -> out of range", 128,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 0, 3));
@@ -408,24 +401,11 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(CompactTree::make(one, out, nullptr, nullptr), Status::kOk);
      }},
     {"every truncation -> refused, the tree handed in as it was", kSmallBytes, every_truncation, kPlain,
-     kKindNames[0]},
-    {"every truncation -> refused, the tree handed in as it was", kSmallBytes, every_truncation,
-     kMergedMaterials, kKindNames[3]},
-    {"every bit of the header flipped -> found out", kSmallBytes, every_header_bit, kMergedMaterials,
-     kKindNames[3]},
-    {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kPlain, kKindNames[0]},
-    {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kMaterials, kKindNames[1]},
-    {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kMerged, kKindNames[2]},
-    {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kMergedMaterials,
-     kKindNames[3]},
-    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kPlain,
-     kKindNames[0]},
-    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kMaterials,
-     kKindNames[1]},
-    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kMerged,
-     kKindNames[2]},
-    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage,
-     kMergedMaterials, kKindNames[3]},
+     "kind", 4},
+    {"every bit of the header flipped -> found out", kSmallBytes, every_header_bit, kMergedMaterials},
+    {"bits behind the header flipped -> found out", kSmallBytes, some_body_bits, kPlain, "kind", 4},
+    {"damage under a sound checksum -> rays end within the bound", kSmallBytes, hidden_damage, kPlain, "kind",
+     4},
     {"counts beyond 2^32 bytes and a size of 0 -> refused", kSmallBytes,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_small(check, kMaterials));
@@ -465,13 +445,8 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(check.world.compact.size_bytes(), written);
        THIMBLE_CHECK(CompactTree::validate(bytes) == nullptr);
      }},
-    {"bytes at any address -> the same answers", kSmallBytes + 804, any_address, kMaterials, kKindNames[1]},
-    {"bytes at any address -> the same answers", kSmallBytes + 804, any_address, kMerged, kKindNames[2]},
-    {"rank shifts -> the pool's hits", kSmallBytes, rank_shift, 3, "8 nodes an entry"},
-    {"rank shifts -> the pool's hits", kSmallBytes, rank_shift, 4, "16 nodes an entry"},
-    {"rank shifts -> the pool's hits", kSmallBytes, rank_shift, 5, "32 nodes an entry"},
-    {"rank shifts -> the pool's hits", kSmallBytes, rank_shift, 7, "128 nodes an entry"},
-    {"rank shifts -> the pool's hits", kSmallBytes, rank_shift, 10, "1024 nodes an entry"},
+    {"bytes at any address -> the same answers", kSmallBytes + 804, any_address, kPlain, "kind", 4},
+    {"rank shifts -> the pool's hits", kSmallBytes, rank_shift, kMinRankShift, "shift", 8},
 };
 
 }  // namespace

@@ -197,7 +197,6 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(check.arena.rest().size, 56U);
      }},
 
-    {"crc32: no bytes -> 0", 0, [](Check& check, int) { THIMBLE_EQUAL(crc_of(""), 0U); }},
     {"crc32: 123456789 -> the published check value", 0,
      [](Check& check, int) { THIMBLE_EQUAL(crc_of("123456789"), 0xCBF43926U); }},
     {"crc32: random bytes -> the bitwise definition", 300,
@@ -220,16 +219,6 @@ constexpr Case kCases[] = {
        const Bytes bytes = random_bytes(check, 72);
        for (size_t offset = 1; offset < 8; ++offset) {
          THIMBLE_EQUAL(crc32(bytes.subspan(offset, 9)), bitwise_crc(bytes.subspan(offset, 9)));
-       }
-     }},
-    {"crc32: one bit flipped -> another", 16,
-     [](Check& check, int) {
-       const Bytes bytes = random_bytes(check, 16);
-       const uint32_t whole = crc32(bytes);
-       for (unsigned bit = 0; bit < 128; ++bit) {
-         bytes[bit / 8] = static_cast<uint8_t>(bytes[bit / 8] ^ 1U << (bit % 8));
-         THIMBLE_CHECK(crc32(bytes) != whole);
-         bytes[bit / 8] = static_cast<uint8_t>(bytes[bit / 8] ^ 1U << (bit % 8));
        }
      }},
 

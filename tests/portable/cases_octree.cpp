@@ -75,28 +75,6 @@ void fill_voxel_by_voxel(Check& check, int stride) {
   THIMBLE_EQUAL(pool.node(pool.root()).material, 9);
 }
 
-// Voxels in the order given and in reverse: one tree, one compact tree.
-void any_order(Check& check, int) {
-  THIMBLE_REQUIRE(make_pool(check, 100, 4));
-  for (int round = 0; round < 2; ++round) {
-    check.world.pool.clear();
-    for (int i = 0; i < 24; ++i) {
-      Random random{static_cast<uint32_t>(1 + 7 * (round == 0 ? i : 23 - i))};
-      static_cast<void>(random.next());
-      THIMBLE_REQUIRE_OK(check.world.pool.insert(random.vector(16), 1));
-    }
-    const size_t mark = check.arena.used_bytes();
-    THIMBLE_REQUIRE(make_compact(check));
-    const CompactTree& tree = check.world.compact;
-    check.note_bytes({tree.bytes(), tree.size_bytes()});
-    if (round == 1) {
-      THIMBLE_EQUAL(check.counts.rays, thimble::crc32({tree.bytes(), tree.size_bytes()}));
-    }
-    check.counts.rays = thimble::crc32({tree.bytes(), tree.size_bytes()});
-    check.arena.rewind(mark);
-  }
-}
-
 // Every pool from no node to one too few: an insertion that does not fit is refused and changes no byte.
 void full_pool(Check& check, int) {
   for (uint32_t nodes = 0; nodes < 12; ++nodes) {
@@ -121,30 +99,6 @@ void full_pool(Check& check, int) {
     }
     THIMBLE_CHECK(refused);
   }
-}
-
-void coarsen_to_every_size(Check& check, int) {
-  uint64_t last = 0;
-  for (uint32_t wanted = 40; wanted > 0; wanted -= wanted > 8 ? 8 : 1) {
-    check.arena.rewind(0);
-    THIMBLE_REQUIRE(make_pool(check, 120, 5));
-    Octree& pool = check.world.pool;
-    Random random{9};
-    for (int i = 0; i < 20; ++i) {
-      THIMBLE_REQUIRE_OK(pool.insert(random.vector(32), 0));
-    }
-    const uint64_t exact = pool.voxels();
-    THIMBLE_REQUIRE_OK(pool.coarsen_to(wanted));
-    THIMBLE_CHECK(pool.nodes_used() <= wanted);
-    THIMBLE_EQUAL(pool.voxels(), exact + pool.solid_added());
-    THIMBLE_CHECK(pool.voxels() >= last);
-    last = pool.voxels();
-    Random again{9};
-    for (int i = 0; i < 20; ++i) {
-      THIMBLE_CHECK(pool.test(again.vector(32)));
-    }
-  }
-  THIMBLE_EQUAL(last, 32768U);
 }
 
 void streaming(Check& check, int nodes) {
@@ -249,7 +203,6 @@ constexpr Case kCases[] = {
      }},
     {"a full world voxel by voxel -> one node", pool_bytes(73), fill_voxel_by_voxel, 1, "in order"},
     {"a full world voxel by voxel -> one node", pool_bytes(73), fill_voxel_by_voxel, 37, "in leaps"},
-    {"the same voxels in any order -> the same tree", pool_bytes(100) + 1024, any_order},
     {"random edits -> what a bit grid holds, at every step", pool_bytes(73) + 64, random_edits, 2,
      "world of 4"},
     {"random edits -> what a bit grid holds, at every step", pool_bytes(200) + 64, random_edits, 3,
@@ -344,8 +297,6 @@ constexpr Case kCases[] = {
        THIMBLE_EQUAL(pool.material({4095, 0, 4094}), -1);
      }},
 
-    {"coarsen: to every size -> at most that many nodes, all kept solid, more solid the smaller",
-     pool_bytes(120), coarsen_to_every_size},
     {"coarsen: to no node -> out of memory, unchanged", 64,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 5, 3));

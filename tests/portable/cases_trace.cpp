@@ -1,5 +1,5 @@
 // What holds for every ray: the answer of a brute force over few voxels, limits, statuses, visits, materials,
-// merged blocks, symmetries.
+// merged blocks.
 #include "portable/groups.h"
 #include "portable/scene.h"
 
@@ -275,44 +275,6 @@ void shifted(Check& check, int axis) {
   }
 }
 
-// Axes exchanged in voxels and ray: the hit with its axes exchanged.
-void turned(Check& check, int order) {
-  constexpr int8_t kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  const int8_t(&from)[3] = kOrders[order];
-  const Span<Vec3i> voxels = make_cloud(check, 3, 21);
-  THIMBLE_REQUIRE(voxels.size == kVoxels);
-  Random random{22};
-  for (int i = 0; i < 30; ++i) {
-    const Ray ray = random_ray(random, kAnywhere, 3);
-    THIMBLE_REQUIRE_OK(closest(check, 2, ray, check.options));
-    const Hit plain = check.hit;
-    Ray image;
-    for (int axis = 0; axis < 3; ++axis) {
-      image.origin[axis] = ray.origin[from[axis]];
-      image.direction[axis] = ray.direction[from[axis]];
-    }
-    // The turned world's voxels, one by one: the list is turned in place and back.
-    for (Vec3i& voxel : voxels) {
-      voxel = {voxel[from[0]], voxel[from[1]], voxel[from[2]]};
-    }
-    brute_force(check, voxels, image);
-    for (Vec3i& voxel : voxels) {
-      Vec3i back;
-      for (int axis = 0; axis < 3; ++axis) {
-        back[from[axis]] = voxel[axis];
-      }
-      voxel = back;
-    }
-    THIMBLE_EQUAL(check.hit.kind, plain.kind);
-    if (plain.kind == HitKind::kHit) {
-      THIMBLE_EQUAL(check.hit.voxel,
-                    (Vec3i{plain.voxel[from[0]], plain.voxel[from[1]], plain.voxel[from[2]]}));
-      THIMBLE_EQUAL(int64_t{check.hit.t_numerator} * plain.t_denominator,
-                    int64_t{plain.t_numerator} * check.hit.t_denominator);
-    }
-  }
-}
-
 // A voxel in each corner of the largest world, seen along its edges from as far as a ray may start.
 void along_edges(Check& check, int axis) {
   constexpr int32_t kLast = (1 << kMaxLevel) - 1;
@@ -455,10 +417,6 @@ constexpr Case kCases[] = {
        }
      }},
     {"moved by whole voxels -> the same hit, moved", 256, shifted, 0, "axis", 3},
-    {"axes exchanged -> the hit with its axes exchanged", cloud_bytes(3), turned, 1, "x z y"},
-    {"axes exchanged -> the hit with its axes exchanged", cloud_bytes(3), turned, 2, "y x z"},
-    {"axes exchanged -> the hit with its axes exchanged", cloud_bytes(3), turned, 3, "y z x"},
-    {"axes exchanged -> the hit with its axes exchanged", cloud_bytes(3), turned, 5, "z y x"},
     {"the voxel in front removed -> the next one", 256,
      [](Check& check, int) {
        THIMBLE_REQUIRE(make_pool(check, 24, 3));

@@ -45,21 +45,13 @@ bool same_hit(const Hit& one, const Hit& other);
 
 /// Two cameras along x in a world of level 6: of 2 x 2 pixels at 90 degrees, and of 4 x 2 pixels of a voxel each.
 constexpr PerspectiveView simple_perspective() {
-  PerspectiveView view;
-  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
-  view.forward = {1, 0, 0};
-  view.fov_degrees = Q16::saturate(90);
-  view.width_px = 2;
-  view.height_px = 2;
+  PerspectiveView view{
+      {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)}, {1, 0, 0}, {}, Q16::saturate(90), 2, 2};
   return view;
 }
 constexpr OrthographicView simple_orthographic() {
-  OrthographicView view;
-  view.eye = {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)};
-  view.forward = {1, 0, 0};
-  view.span = Q14::saturate(4);
-  view.width_px = 4;
-  view.height_px = 2;
+  OrthographicView view{
+      {Q8::saturate(32), Q8::saturate(32), Q8::saturate(32)}, {1, 0, 0}, {}, Q14::saturate(4), 4, 2};
   return view;
 }
 
