@@ -32,6 +32,18 @@ constexpr int highest_bit(uint32_t word) {
   return 31 - __builtin_clz(word);
 }
 
+// Whether an instruction counts leading zeros.
+#if (defined(__arm__) && !defined(__ARM_FEATURE_CLZ)) || (defined(__riscv) && !defined(__riscv_zbb))
+constexpr bool kCountsZeros = false;
+#else
+constexpr bool kCountsZeros = true;
+#endif
+
+// A number of 32 bits whose runs of five bits all differ, and where each run lies in it.
+constexpr uint32_t kRuns = 0x077CB531U;
+constexpr uint8_t kPlaceOfRun[32] = {0,  1,  28, 2,  29, 14, 24, 3, 30, 22, 20, 15, 25, 17, 4,  8,
+                                     31, 27, 13, 23, 21, 19, 16, 7, 26, 12, 18, 6,  11, 5,  10, 9};
+
 // Index of the lowest set bit of `word`, which is not 0.
 constexpr unsigned lowest_bit(uint32_t word) {
 #if defined(__ARM_ARCH_4T__) && !defined(__thumb__)
@@ -46,7 +58,8 @@ constexpr unsigned lowest_bit(uint32_t word) {
   }
   return bit;
 #else
-  return static_cast<unsigned>(__builtin_ctz(word));
+  return kCountsZeros ? static_cast<unsigned>(__builtin_ctz(word))
+                      : kPlaceOfRun[((word & (0U - word)) * kRuns) >> 27];
 #endif
 }
 

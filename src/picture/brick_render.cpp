@@ -10,7 +10,7 @@
 // Compiles this file and the headers that follow for speed, whatever the rest is optimised for. ("rename-registers"
 // saves one instruction in a hundred.)
 #if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
-#pragma GCC optimize("O2", "rename-registers")
+#pragma GCC optimize("O2", "rename-registers", "no-tree-loop-distribute-patterns")
 #endif
 
 #define THIMBLE_RECIPROCALS

@@ -471,20 +471,19 @@ bool BrickMap::belongs_to(const CompactTree& tree) const {
     return 0;
   }
   const uint8_t* masks = tree.masks() + first;
-  const unsigned own = masks[before];
-  if (own == 0) {
+  const unsigned shift = 8 * (before & 3U);
+  const uint32_t last = bits::load32(masks + (before & 4U));
+  if ((last >> shift & 255U) == 0) {
     uint32_t block = bits::load32(origin + 8);
     for (uint32_t child = 0; child < before; ++child) {
       block += masks[child] == 0 ? 1U : 0U;
     }
     return tree.material_of_block(block);
   }
-  uint32_t count = bits::load32(origin + 4) + bits::popcount8(own & ((1U << voxel) - 1));
+  uint32_t count = bits::load32(origin + 4) + bits::popcount32(last & ((1U << (shift + voxel)) - 1));
   if (before >= 4) {
     count += bits::popcount32(bits::load32(masks));
-    masks += 4;
   }
-  count += bits::popcount32(bits::load32(masks) & ((uint32_t{1} << 8 * (before & 3U)) - 1));
   return tree.voxel_material(tree.node_count() + count);
 }
 

@@ -10,7 +10,7 @@
 
 // As in brick_render.cpp.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
-#pragma GCC optimize("O2", "rename-registers")
+#pragma GCC optimize("O2", "rename-registers", "no-tree-loop-distribute-patterns")
 #endif
 
 #include "../../picture/bricks/face_light.h"

@@ -74,24 +74,37 @@ constexpr int kBrickShift = kCellShift + 2;
 constexpr int32_t kBeamBricks = 4;
 constexpr int32_t kDeepBeamBricks = 8;  // of level 9 and 10: a word has bits for the cells of so many
 
-// Divides for a slope, which is at most 2 either way: where the compiler's library would divide, code in fast RAM finds
-// the 12 bits one by one.
-[[THIMBLE_HOT]] int32_t slope_of(int32_t rise, int32_t run) {
-  if constexpr (!kFastRam) {
-    return rise / run;
+// Slopes of at most 2 either way, of several rises to one run of at most 15 bits, cut off. Without a divider they take one
+// division, by which they are, before that, too far from 0 by less than 1 where `away`, else too near by less than 1; code
+// in fast RAM, where the compiler's library would divide, finds the 12 bits of each one by one.
+class SlopeTo {
+ public:
+  [[gnu::always_inline]] SlopeTo(int32_t run, bool away)
+      : by_(kDivides || kFastRam ? run : (1 << kRunBits) / run + (away ? 1 : 0)) {}
+  [[gnu::always_inline]] int32_t operator()(int32_t rise) const {
+    return kDivides   ? rise * (1 << kSlopeBits) / by_
+           : kFastRam ? by_bits(rise, by_)
+                      : rise * by_ >> (kRunBits - kSlopeBits);
   }
-  uint32_t rest = static_cast<uint32_t>(rise < 0 ? -rise : rise);
-  int32_t quotient = 0;
+
+ private:
+  static constexpr int kRunBits = 28;
+  [[THIMBLE_HOT]] static int32_t by_bits(int32_t rise, int32_t run) {
+    uint32_t rest = static_cast<uint32_t>(rise < 0 ? -rise : rise) << kSlopeBits;
+    int32_t quotient = 0;
 #pragma GCC unroll 12
-  for (int bit = kSlopeBits + 1; bit >= 0; --bit) {
-    const uint32_t part = static_cast<uint32_t>(run) << bit;
-    if (rest >= part) {
-      rest -= part;
-      quotient += 1 << bit;
+    for (int bit = kSlopeBits + 1; bit >= 0; --bit) {
+      const uint32_t part = static_cast<uint32_t>(run) << bit;
+      if (rest >= part) {
+        rest -= part;
+        quotient += 1 << bit;
+      }
     }
+    return rise < 0 ? -quotient : quotient;
   }
-  return rise < 0 ? -quotient : quotient;
-}
+
+  int32_t by_;  // 2^28 by the run, or the run
+};
 
 // The interval of one axis that all rays of a fan stay in within a slab of voxels, in the box's own coordinates.
 struct Shadow {
@@ -122,11 +135,11 @@ struct Shadow {
   }
 };
 
-// The fan along c: its slowest and fastest ray, the distance from the origin to the first slab's plane (negative where
-// that lies behind it), and the same distance, but not below 0.
+// The fan along c: slopes to its slowest and to its fastest ray, the distance from the origin to the first slab's plane
+// (negative where that lies behind it), and the same distance, but not below 0.
 struct AlongC {
-  int32_t low;
-  int32_t high;
+  SlopeTo slow;
+  SlopeTo fast;
   int32_t plane;
   int32_t ahead;
 };
@@ -135,10 +148,10 @@ struct AlongC {
 // from the origin, whichever is wider.
 [[gnu::always_inline]] inline Shadow shadow_of(const BrickFrame& frame, const Fan& fan, const AlongC& c,
                                                int axis) {
-  const int32_t low = component(fan.low, axis) * (1 << kSlopeBits);
-  const int32_t high = component(fan.high, axis) * (1 << kSlopeBits);
-  const int32_t low_slope = slope_of(low, low < 0 ? c.low : c.high) - 1;
-  const int32_t high_slope = slope_of(high, high < 0 ? c.high : c.low) + 1;
+  const int32_t low = component(fan.low, axis);
+  const int32_t high = component(fan.high, axis);
+  const int32_t low_slope = (low < 0 ? c.slow : c.fast)(low)-1;
+  const int32_t high_slope = (high < 0 ? c.fast : c.slow)(high) + 1;
   const int32_t from = component(frame.eye, axis) * (1 << kSlopeBits);
   const int32_t low_step = low_slope * Q8::kOne;
   const int32_t high_step = high_slope * Q8::kOne;
@@ -224,13 +237,14 @@ template <int kC, bool kDeep>
   }
   const bool flipped = (course.mirrored >> along & 1U) != 0;
   const int32_t plane = slab * Q8::kOne - origin;
-  const AlongC c{flipped ? -component(fan.high, along) : component(fan.low, along),
-                 flipped ? -component(fan.low, along) : component(fan.high, along), plane,
-                 plane < 0 ? 0 : plane};
-  if (component(fan.high, axis_a) > 2 * c.low || component(fan.low, axis_a) < -2 * c.low ||
-      component(fan.high, axis_b) > 2 * c.low || component(fan.low, axis_b) < -2 * c.low) {
+  const int32_t slow = flipped ? -component(fan.high, along) : component(fan.low, along);
+  if (component(fan.high, axis_a) > 2 * slow || component(fan.low, axis_a) < -2 * slow ||
+      component(fan.high, axis_b) > 2 * slow || component(fan.low, axis_b) < -2 * slow) {
     return slab;
   }
+  const AlongC c{SlopeTo(slow, true),
+                 SlopeTo(flipped ? -component(fan.low, along) : component(fan.high, along), false), plane,
+                 plane < 0 ? 0 : plane};
   Shadow a = shadow_of(frame, fan, c, axis_a);
   Shadow b = shadow_of(frame, fan, c, axis_b);
   const int32_t last_a = component(frame.side, axis_a) - 1;

@@ -86,44 +86,66 @@ struct DeepCourse : Course {
   uint32_t empty_page;  // what the directory says of pages that are empty
 };
 
-// Sets all members but those that say where the rays start.
+// Origins lie so far outside on a and b.
+[[gnu::always_inline]] inline int32_t outside_q8(const Course& course, int axis) {
+  return axis == course.c ? 0 : kOutsideQ8;
+}
+
+// Sets all members but those that say where the rays start, for rays that go up on all axes.
 template <bool kDeep = false>
-[[THIMBLE_HOT]] void set_course(Course& course, unsigned mirrored, int c) {
+[[THIMBLE_HOT]] void set_course(Course& course, int c) {
   const BrickFrame& frame = *course.frame;
   const VoxelBox& box = frame.map.box();
   course.c = c;
   course.axis[0] = c == 0 ? 1 : 0;
   course.axis[1] = c == 2 ? 1 : 2;
   course.axis[2] = c;
-  course.mirrored = mirrored;
+  course.mirrored = 0;
   course.base = 0;
   course.base_left = 0;
   int32_t stride = 2;
   const Camera::Affine& affine = frame.camera.affine();
   for (int axis = 0; axis < 3; ++axis) {
-    const bool flipped = (mirrored >> axis & 1U) != 0;
     if constexpr (kDeep) {
       stride = deep_place::kStride[axis];
     }
     const int32_t side = frame.side[axis];
-    const int32_t origin = frame.camera.eye()[axis].raw;
-    const int32_t near_q8 = (flipped ? box.high[axis] : box.low[axis]) * (4 * Q8::kOne);
-    course.origin[axis] = (flipped ? near_q8 - origin : origin - near_q8) + (axis == c ? 0 : kOutsideQ8);
-    course.stride[axis] = flipped ? -stride : stride;
-    course.next_brick[axis] = course.stride[axis];
-    const int32_t from = axis == c ? 0 : -kOutsideCells / 4;
-    course.base += (flipped ? (side - 1) * stride : 0) + course.stride[axis] * from;
+    course.origin[axis] =
+        frame.camera.eye()[axis].raw - box.low[axis] * (4 * Q8::kOne) + outside_q8(course, axis);
+    course.stride[axis] = stride;
+    course.next_brick[axis] = stride;
+    const int32_t from = -outside_q8(course, axis) / (4 * Q8::kOne);
+    course.base += stride * from;
     course.base_left += static_cast<uint32_t>(512 - side + from) << 10 * axis;
-    course.flip[axis] = flipped ? 3 : 0;
+    course.flip[axis] = 0;
 #ifdef THIMBLE_FAST_RAM
-    course.last[axis] = flipped ? 0U : 3U << kPlaceShift[axis];
-    course.one_step[axis] = flipped ? -(1 << kPlaceShift[axis]) : 1 << kPlaceShift[axis];
+    course.last[axis] = 3U << kPlaceShift[axis];
+    course.one_step[axis] = 1 << kPlaceShift[axis];
 #endif
-    course.face[axis] = static_cast<uint32_t>(2 * axis) + (flipped ? 1U : 0U);
-    course.step_x[axis] = flipped ? -affine.step_x[axis] : affine.step_x[axis];
-    course.step_y[axis] = flipped ? -affine.step_y[axis] : affine.step_y[axis];
+    course.face[axis] = static_cast<uint32_t>(2 * axis);
+    course.step_x[axis] = affine.step_x[axis];
+    course.step_y[axis] = affine.step_y[axis];
     stride *= side;
   }
+}
+
+// Mirrors an axis of a course, or takes that back.
+[[THIMBLE_HOT]] void flip_axis(Course& course, int axis) {
+  const int32_t side = course.frame->side[axis];
+  const int32_t outside = outside_q8(course, axis);
+  course.mirrored ^= 1U << axis;
+  course.base += (side - 1 + outside / (2 * Q8::kOne)) * course.stride[axis];
+  course.origin[axis] = side * (4 * Q8::kOne) + 2 * outside - course.origin[axis];
+  course.stride[axis] = -course.stride[axis];
+  course.next_brick[axis] = course.stride[axis];
+  course.flip[axis] ^= 3U;
+#ifdef THIMBLE_FAST_RAM
+  course.last[axis] ^= 3U << kPlaceShift[axis];
+  course.one_step[axis] = -course.one_step[axis];
+#endif
+  course.face[axis] ^= 1U;
+  course.step_x[axis] = -course.step_x[axis];
+  course.step_y[axis] = -course.step_y[axis];
 }
 
 // Lets the rays start in slab `slab` of voxels along c.

@@ -13,11 +13,19 @@ struct Cells {
   uint32_t high;
 };
 
-// The voxels of a brick whose neighbour towards the eye is empty on axis a, on b, on c.
+// The voxels of a brick whose neighbour towards the eye is empty on axis a, on b, on c, slab by slab.
 struct Exposed {
+  static constexpr int kSlabs = 4;
   int32_t place;  // the brick's offset in the directory, or -1
-  Cells on[3];
+  alignas(4) Half on[3 * kSlabs];
 };
+
+// Puts the voxels of a brick slab by slab along c; `slabs` is aligned as a word.
+[[gnu::always_inline]] inline void put_slabs(const Cells& cells, Half* slabs) {
+  Word* const words = static_cast<Word*>(static_cast<void*>(slabs));
+  words[0] = bits::kBigEndian ? cells.low << 16 | cells.low >> 16 : cells.low;
+  words[1] = bits::kBigEndian ? cells.high << 16 | cells.high >> 16 : cells.high;
+}
 
 // Swaps the bits of `word` under `mask` with those `shift` above them.
 constexpr uint32_t swap_bits(uint32_t word, int shift, uint32_t mask) {
@@ -103,7 +111,8 @@ template <bool kDeep>
     const int axis = course.axis[k];
     const bool flipped = (course.mirrored >> axis & 1U) != 0;
     const Cells before = bricks[k] > 0 ? cells_of<kDeep>(course, place - course.stride[axis]) : Cells{0, 0};
-    exposed->on[k] = turned(uncovered_on(axis, flipped, own, before), course.mirrored, course.c);
+    put_slabs(turned(uncovered_on(axis, flipped, own, before), course.mirrored, course.c),
+              &exposed->on[Exposed::kSlabs * k]);
   }
 }
 

@@ -24,19 +24,21 @@ struct Pixels {
   uint32_t word[kTileWords];
 };
 
-// Loads four words: on an ARM7, by one instruction in half the time.
-[[gnu::always_inline]] inline Pixels words_of(const Pixels& pixels) {
+// Loads four words: on an ARM7, by one instruction in half the time. (Elsewhere a copy would be put on the stack.)
 #if defined(__ARM_ARCH_4T__) && !defined(__thumb__)
+[[gnu::always_inline]] inline Pixels words_of(const Pixels& pixels) {
   register uint32_t a asm("r0");
   register uint32_t b asm("r1");
   register uint32_t c asm("r2");
   register uint32_t d asm("r3");
   asm("ldmia %4, {r0-r3}" : "=r"(a), "=r"(b), "=r"(c), "=r"(d) : "r"(&pixels), "m"(pixels));
   return {{a, b, c, d}};
-#else
-  return pixels;
-#endif
 }
+#else
+[[gnu::always_inline]] inline const Pixels& words_of(const Pixels& pixels) {
+  return pixels;
+}
+#endif
 
 // The directions of a tile, mirrored and in the order a, b, c: base + rest + x * step_x + y * step_y, of which
 // `base` is whole and the others have `fraction_bits` behind the point.
@@ -100,7 +102,7 @@ constexpr bool kDividesEdges = kDivides || kHasReciprocals;
 
 bool divide_edge(int32_t f, int32_t fx, int32_t fy, int32_t bound, bool flip, HalfPlane* plane) {
   const int32_t ahead = bound - f;
-  if ((ahead < 0 ? -ahead : ahead) >> 5 > fx || (fy < 0 ? -fy : fy) >> 2 > fx || bound >> 2 > fx ||
+  if ((ahead < 0 ? -ahead : ahead) >> 6 >= fx || (fy < 0 ? -fy : fy) >> 4 > fx || bound >> 2 > fx ||
       fx < EdgeQuotient<kDivides>::kLeast) {
     return false;
   }

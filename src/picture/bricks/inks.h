@@ -104,7 +104,7 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
                                                   uint32_t voxel, uint32_t direction) {
   const int32_t bricks = static_cast<int32_t>(count_of(left, axis)) - (512 - course.frame->side[axis]);
   const uint32_t place = voxel >> 2 * axis & 3U;
-  const int32_t origin = course.origin[axis] - (axis == course.c ? 0 : kOutsideQ8);
+  const int32_t origin = course.origin[axis] - outside_q8(course, axis);
   const int32_t distance = (4 * bricks + static_cast<int32_t>(place ^ course.flip[axis])) * Q8::kOne - origin;
   const BrickFrame& frame = *course.frame;
   Ray ray;

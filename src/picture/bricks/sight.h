@@ -79,7 +79,7 @@ void find_point(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FaceP
     const int32_t place = static_cast<int32_t>(landing.voxel >> 2 * i & 3U);
     const int32_t flip = static_cast<int32_t>(course.flip[i]);
     point->voxel[i] = 4 * (flip != 0 ? side - 1 - brick : brick) + place;
-    way[i] = (4 * brick + (place ^ flip)) * Q8::kOne - (course.origin[i] - (i == course.c ? 0 : kOutsideQ8));
+    way[i] = (4 * brick + (place ^ flip)) * Q8::kOne - (course.origin[i] - outside_q8(course, i));
   }
   find_within(landing.axis, course, way, d, point);
 }
@@ -121,6 +121,7 @@ void find_point(const Course& course, const Vec3<uint32_t>& d, SeenFace* face) {
 // The pixels of a tile that show one face.
 struct SeenPixels {
   const Course& course;
+  const Sweep& sweep;
   const FirstDirection& first;
   const TilePlace& place;
   const Pixels& pixels;
@@ -128,7 +129,7 @@ struct SeenPixels {
   // The direction of one of the pixels, mirrored.
   Vec3<uint32_t> direction(uint32_t pixel) const {
     uint32_t turned[3];
-    find_direction(course, first, pixel, turned);
+    find_direction(sweep, first, pixel, turned);
     return in_world(course, turned);
   }
   static Vec3<uint32_t> in_world(const Course& course, const uint32_t (&turned)[3]) {
@@ -154,7 +155,7 @@ struct SightPaint {
 
   void paint_face(int32_t place, const int32_t (&cell)[3], int k, const Pixels& pixels) {
     SeenFace face;
-    face.voxel = voxel_of<kDeep>(course_, place, cell);
+    face.voxel = voxel_of<kDeep>(course_, sweep_, place, cell);
     face.point.axis = course_.axis[k];
     face.point.faces_up = course_.flip[face.point.axis] != 0;
     for (int m = 0; m < 3; ++m) {
@@ -162,7 +163,7 @@ struct SightPaint {
       face.way[axis] = distance_of(sweep_, m, cell[m]);
       face.point.voxel[axis] = course_.flip[axis] != 0 ? 4 * sweep_.side[m] - 1 - cell[m] : cell[m];
     }
-    sink_.face({course_, first_direction_, place_, pixels}, face);
+    sink_.face({course_, sweep_, first_direction_, place_, pixels}, face);
   }
 
   void paint_ray(uint32_t pixel, const uint32_t (&d)[3]) {

@@ -57,6 +57,16 @@ struct Reach {
   return room >= 0;
 }
 
+// A number with 32 bits behind the point in two parts, so that a few times it takes products of 32 bits: all from
+// 1/2^16 on, of which 16 bits stand before the point, and the 16 bits below.
+struct SplitQ32 {
+  uint32_t high;
+  uint32_t low;
+};
+SplitQ32 split(int64_t value) {
+  return {static_cast<uint32_t>(value >> 16), static_cast<uint32_t>(value) & 0xFFFFU};
+}
+
 // What the sweep keeps while it draws a tile, and from tile to tile of a band.
 struct Sweep {
   TileRays rays;
@@ -70,11 +80,12 @@ struct Sweep {
   int32_t base;       // the first brick's offset in the directory
   int32_t side[3];
   int32_t stride[3];
+  int place_shift[3];  // of a voxel's place on a, b and c among the six bits of its place in the brick
+  uint32_t flip;       // of these bits, where axes are mirrored
   uint32_t misses;
   RenderCounts* counts;
-  int32_t
-      step_x[3];  // a direction's change from pixel to pixel, with rays.fraction_bits, by the world's axes
-  int32_t step_y[3];
+  SplitQ32 step_x[3];  // a direction's change from pixel to pixel
+  SplitQ32 step_y[3];
 
   void begin(const BrickMap& map) {
     course = kNoCourse;
@@ -134,7 +145,7 @@ template <bool kDeep>
 
 // The direction of a tile's first pixel on a, b and c, mirrored, and a half: rounding is cutting off.
 struct FirstDirection {
-  uint64_t on[3];
+  SplitQ32 on[3];
 };
 
 FirstDirection first_direction(const Course& course, const Camera::Vec3Q32& value) {
@@ -142,25 +153,23 @@ FirstDirection first_direction(const Course& course, const Camera::Vec3Q32& valu
   for (int k = 0; k < 3; ++k) {
     const int axis = course.axis[k];
     const int64_t own = component(value, axis);
-    first.on[k] =
-        static_cast<uint64_t>((course.mirrored >> axis & 1U) != 0 ? -own : own) + (uint64_t{1} << 31);
+    first.on[k] = split((course.mirrored >> axis & 1U) != 0 ? -own : own);
+    first.on[k].high += 1U << 15;
   }
   return first;
 }
 
 // Finds a pixel's exact direction on a, b and c; the pixel's ray has the course's signs.
-[[THIMBLE_HOT]] void find_direction(const Course& course, const FirstDirection& first, uint32_t pixel,
+[[THIMBLE_HOT]] void find_direction(const Sweep& sweep, const FirstDirection& first, uint32_t pixel,
                                     uint32_t (&d)[3]) {
   const uint32_t x = pixel & (kTileAcrossPx - 1);
   const uint32_t y = pixel / kTileAcrossPx;
+#pragma GCC unroll(kFastRam ? 1 : 3)
   for (int k = 0; k < 3; ++k) {
-    const auto step_x = static_cast<uint64_t>(component(course.step_x, course.axis[k]));
-    const auto step_y = static_cast<uint64_t>(component(course.step_y, course.axis[k]));
-    uint64_t sum = first.on[k];
-    sum += wide_product_u(static_cast<uint32_t>(step_x), x);
-    sum += wide_product_u(static_cast<uint32_t>(step_y), y);
-    d[k] = static_cast<uint32_t>(sum >> 32) + static_cast<uint32_t>(step_x >> 32) * x +
-           static_cast<uint32_t>(step_y >> 32) * y;
+    const SplitQ32& step_x = sweep.step_x[k];
+    const SplitQ32& step_y = sweep.step_y[k];
+    const uint32_t low = first.on[k].low + x * step_x.low + y * step_y.low;
+    d[k] = (first.on[k].high + x * step_x.high + y * step_y.high + (low >> 16)) >> 16;
   }
 }
 
@@ -223,11 +232,6 @@ bool set_steps(const Camera& camera, Sweep* sweep) {
   rays.fraction_bits = bits;
   rays.unit = (1 << (bits - 1)) + (kTileAcrossPx + kTileDownPx) / 2;
   rays.reach = whole << bits;
-  const int64_t half = int64_t{1} << (31 - bits);
-  for (int axis = 0; axis < 3; ++axis) {
-    sweep->step_x[axis] = static_cast<int32_t>((affine.step_x[axis] + half) >> (32 - bits));
-    sweep->step_y[axis] = static_cast<int32_t>((affine.step_y[axis] + half) >> (32 - bits));
-  }
   return true;
 }
 
@@ -240,15 +244,24 @@ void set_sweep_course(const Course& course, Sweep* sweep) {
   sweep->course = static_cast<uint8_t>(id);
   sweep->forget_bricks();
   sweep->base = 0;
+  sweep->flip = 0;
   for (int k = 0; k < 3; ++k) {
     const int axis = course.axis[k];
     const bool flipped = (course.mirrored >> axis & 1U) != 0;
+    sweep->place_shift[k] = 2 * axis;
+    sweep->flip |= flipped ? 3U << 2 * axis : 0;
     sweep->side[k] = course.frame->side[axis];
     sweep->stride[k] = course.stride[axis];
     sweep->origin[k] = course.origin[axis] - (k == 2 ? 0 : kOutsideQ8);
     sweep->base -= flipped ? (sweep->side[k] - 1) * course.stride[axis] : 0;
-    sweep->rays.step_x[k] = flipped ? -sweep->step_x[axis] : sweep->step_x[axis];
-    sweep->rays.step_y[k] = flipped ? -sweep->step_y[axis] : sweep->step_y[axis];
+    sweep->step_x[k] = split(course.step_x[axis]);
+    sweep->step_y[k] = split(course.step_y[axis]);
+    const int cut = 16 - sweep->rays.fraction_bits;
+    const auto rounded = [cut](const SplitQ32& step) {
+      return (static_cast<int32_t>(step.high) + (1 << (cut - 1))) >> cut;
+    };
+    sweep->rays.step_x[k] = rounded(sweep->step_x[k]);
+    sweep->rays.step_y[k] = rounded(sweep->step_y[k]);
   }
 }
 
@@ -256,9 +269,9 @@ void set_sweep_course(const Course& course, Sweep* sweep) {
 void set_tile(const FirstDirection& first, int32_t across, int32_t down, Sweep* sweep) {
   TileRays& rays = sweep->rays;
   for (int k = 0; k < 3; ++k) {
-    const uint64_t own = first.on[k] - (uint64_t{1} << 31);
-    rays.base[k] = static_cast<int32_t>(own >> 32);
-    rays.rest[k] = static_cast<int32_t>(static_cast<uint32_t>(own) >> (32 - rays.fraction_bits));
+    const uint32_t own = first.on[k].high - (1U << 15);
+    rays.base[k] = static_cast<int32_t>(own) >> 16;
+    rays.rest[k] = static_cast<int32_t>((own & 0xFFFFU) >> (16 - rays.fraction_bits));
   }
   sweep->forget_planes();
   sweep->set_left(across, down);
@@ -279,7 +292,7 @@ struct CellFace {
 
 // keep_met drops pixels that certainly have not crossed the plane, keep_not_met those that have. Whether any are left.
 [[gnu::always_inline]] inline bool keep_met(Pixels& pixels, const HalfPlane& plane) {
-  const Pixels kept = words_of(plane.possible);
+  const Pixels& kept = words_of(plane.possible);
   uint32_t any = 0;
 #pragma GCC unroll 4
   for (int i = 0; i < kTileWords; ++i) {
@@ -289,7 +302,7 @@ struct CellFace {
   return any != 0;
 }
 [[gnu::always_inline]] inline bool keep_not_met(Pixels& pixels, const HalfPlane& plane) {
-  const Pixels lost = words_of(plane.certain);
+  const Pixels& lost = words_of(plane.certain);
   uint32_t any = 0;
 #pragma GCC unroll 4
   for (int i = 0; i < kTileWords; ++i) {
@@ -320,16 +333,14 @@ template <bool kDeep>
 
 // Names the voxel of a cell on a, b and c: 64 times the number of the brick at `place`, plus the voxel's bit.
 template <bool kDeep>
-[[gnu::always_inline]] inline uint32_t voxel_of(const Course& course, int32_t place,
+[[gnu::always_inline]] inline uint32_t voxel_of(const Course& course, const Sweep& sweep, int32_t place,
                                                 const int32_t (&cell)[3]) {
-  uint32_t voxel = 0;
+  uint32_t voxel = number_at<kDeep>(course.directory, place) << 6;
 #pragma GCC unroll 3
   for (int m = 0; m < 3; ++m) {
-    voxel |= (static_cast<uint32_t>(cell[m]) & 3U) << 2 * course.axis[m];
+    voxel |= (static_cast<uint32_t>(cell[m]) & 3U) << sweep.place_shift[m];
   }
-  const uint32_t flip =
-      3 * ((course.mirrored & 1U) | (course.mirrored & 2U) << 1 | (course.mirrored & 4U) << 2);
-  return number_at<kDeep>(course.directory, place) << 6 | (voxel ^ flip);
+  return voxel ^ sweep.flip;
 }
 
 // Stores the inks of what a sweep finds: of a face's pixels, and of single rays.
@@ -372,7 +383,7 @@ struct InkPaint {
   }
 
   uint32_t ink_of_face(int32_t place, const int32_t (&cell)[3], int k) const {
-    const uint32_t voxel = voxel_of<kDeep>(course_, place, cell);
+    const uint32_t voxel = voxel_of<kDeep>(course_, sweep_, place, cell);
     const int axis = course_.axis[k];
     const uint32_t key = voxel << 3 | course_.face[axis];
     const Inks::Seen& seen = course_.inks->face[Inks::slot(key)];
@@ -393,53 +404,39 @@ class TileSweep : private Paint {
   // number of slabs when those pixels miss everything.
   int32_t run(const Fan& fan, int32_t slab) {
     const int32_t slabs = 4 * sweep_.side[2];
-    if (!set_reach(fan, slab)) {
+    slab_ = slab;
+    if (!set_reach(fan)) {
       return slab;
     }
-    while (slab < slabs) {
-      const int32_t voxels = 4 - (slab & 3);
-      int32_t from[2];
-      int32_t to[2];
-      for (int k = 0; k < 2; ++k) {
-        const Reach& reach = reach_[k];
-        const int32_t last = sweep_.side[k] - 1;
-        from[k] = reach.low >> kBrickShift;
-        from[k] = from[k] < 0 ? 0 : from[k];
-        to[k] = (reach.high + (voxels - 1) * reach.high_step) >> kBrickShift;
-        if (from[k] > last) {
-          return slabs;
-        }
-        if (to[k] - from[k] >= kBeamBricks) {
-          return slab;
-        }
-        to[k] = to[k] > last ? last : to[k];
-      }
+    while (slab_ < slabs) {
       SweptBrick bricks[kBeamBricks * kBeamBricks];
-      const SweptBrick* const end = find_bricks(slab >> 2, from, to, bricks);
-      if (end != bricks) {
-        const int32_t cells = cells_at_once();
-        if (cells > kMostCells &&
-            !(sweep_.thin &&
-              is_sparse<kDeep>(course_, bricks, end, cells, (to[0] - from[0] + 1) * (to[1] - from[1] + 1)))) {
-          return slab;
-        }
-        if (!begun_) {
-          begin();
-        }
-        draw_layer(slab, from, bricks, end);
-        if (sweep_.done()) {
-          return slabs;
-        }
+      const SweptBrick* const end = next_layer(bricks);
+      if (end == bricks) {
+        break;
       }
-      slab += voxels;
-      if (end == bricks || !narrow(slab)) {
+      const int32_t cells = cells_at_once();
+      if (cells > kMostCells &&
+          !(sweep_.thin && is_sparse<kDeep>(course_, bricks, end, cells,
+                                            (to_[0] - from_[0] + 1) * (to_[1] - from_[1] + 1)))) {
+        break;
+      }
+      if (!begun_) {
+        begin();
+      }
+      draw_layer(bricks, end);
+      if (sweep_.done()) {
+        return slabs;
+      }
+      const int32_t voxels = 4 - (slab_ & 3);
+      slab_ += voxels;
+      if (!narrow()) {
         for (Reach& reach : reach_) {
           reach.low += voxels * reach.low_step;
           reach.high += voxels * reach.high_step;
         }
       }
     }
-    return slabs;
+    return slab_;
   }
 
  private:
@@ -458,7 +455,7 @@ class TileSweep : private Paint {
     return cells;
   }
 
-  bool set_reach(const Fan& fan, int32_t slab) {
+  bool set_reach(const Fan& fan) {
     int32_t low[3];
     int32_t high[3];
     for (int k = 0; k < 3; ++k) {
@@ -467,20 +464,21 @@ class TileSweep : private Paint {
       low[k] = flipped ? -fan.high[axis] : fan.low[axis];
       high[k] = flipped ? -fan.low[axis] : fan.high[axis];
     }
-    return set_reach(low, high, slab);
+    return set_reach(low, high);
   }
 
-  bool set_reach(const int32_t (&least)[3], const int32_t (&greatest)[3], int32_t slab) {
-    const int32_t plane = slab * Q8::kOne - sweep_.origin[2];
+  bool set_reach(const int32_t (&least)[3], const int32_t (&greatest)[3]) {
+    const int32_t plane = slab_ * Q8::kOne - sweep_.origin[2];
     // Some rays may hardly advance along c: their directions have few bits. Both axes or none: a shadow that is not
     // narrowed grows from slab to slab.
     if (least[2] < 1 || greatest[0] > 2 * least[2] || greatest[1] > 2 * least[2]) {
       return false;
     }
+    const SlopeTo slow(least[2], true);
+    const SlopeTo fast(greatest[2], false);
     for (int k = 0; k < 2; ++k) {
-      const int32_t low = least[k] < 0 ? 0 : least[k];
-      const int32_t low_slope = slope_of(low * (1 << kSlopeBits), greatest[2]);
-      const int32_t high_slope = slope_of(greatest[k] * (1 << kSlopeBits), least[2]) + 1;
+      const int32_t low_slope = fast(least[k] < 0 ? 0 : least[k]);
+      const int32_t high_slope = slow(greatest[k]) + 1;
       const int32_t at = sweep_.origin[k] * (1 << kSlopeBits);
       reach_[k] = {at + low_slope * plane - 1, at + high_slope * (plane + Q8::kOne) + 1, low_slope * Q8::kOne,
                    high_slope * Q8::kOne};
@@ -490,7 +488,7 @@ class TileSweep : private Paint {
 
   // Narrows the shadow to the pixels that are left. Returns false where that is not done: the rectangle around these
   // pixels has lost less than an eighth.
-  bool narrow(int32_t slab) {
+  bool narrow() {
     const Pixels& left = sweep_.left;
     uint32_t columns = 0;
     int32_t first = kTileWords;
@@ -525,145 +523,192 @@ class TileSweep : private Paint {
       low[k] = rays.base[k] + ((rays.rest[k] + least - rays.unit) >> rays.fraction_bits);
       high[k] = rays.base[k] + ((rays.rest[k] + most + rays.unit) >> rays.fraction_bits);
     }
-    return set_reach(low, high, slab);
+    return set_reach(low, high);
   }
 
-  // Finds the bricks of a layer that are not empty, the nearest first.
-  SweptBrick* find_bricks(int32_t layer, const int32_t (&from)[2], const int32_t (&to)[2],
-                          SweptBrick* bricks) const {
+  // Goes on to the first layer, from `slab_` on, in which bricks under the shadow are not empty: lists these, the nearest
+  // first, and returns their end. Where it lists none, rays take over at `slab_`.
+  [[gnu::noinline, THIMBLE_HOT]] const SweptBrick* next_layer(SweptBrick* bricks) {
+    Reach a = reach_[0];
+    Reach b = reach_[1];
+    const int32_t last_a = sweep_.side[0] - 1;
+    const int32_t last_b = sweep_.side[1] - 1;
     const int32_t stride_a = sweep_.stride[0];
     const int32_t stride_b = sweep_.stride[1];
-    int32_t row = sweep_.base + layer * sweep_.stride[2] + from[1] * stride_b + from[0] * stride_a;
-    for (int32_t b = from[1]; b <= to[1]; ++b, row += stride_b) {
-      int32_t place = row;
-      for (int32_t a = from[0]; a <= to[0]; ++a, place += stride_a) {
-        if (number_at<kDeep>(course_.directory, place) != 0) {
-          *bricks++ = {place, a, b};
+    const uint8_t* const directory = course_.directory;
+    const int32_t slabs = 4 * sweep_.side[2];
+    int32_t slab = slab_;
+    int32_t layer = sweep_.base + (slab >> 2) * sweep_.stride[2];
+    // The upper ends are those of a layer's last slab.
+    int32_t voxels = 4 - (slab & 3);
+    a.high += (voxels - 1) * a.high_step;
+    b.high += (voxels - 1) * b.high_step;
+    SweptBrick* end = bricks;
+    while (slab < slabs) {
+      int32_t from_a = a.low >> kBrickShift;
+      int32_t from_b = b.low >> kBrickShift;
+      from_a = from_a < 0 ? 0 : from_a;
+      from_b = from_b < 0 ? 0 : from_b;
+      if (from_a > last_a || from_b > last_b) {
+        slab = slabs;
+        break;
+      }
+      int32_t to_a = a.high >> kBrickShift;
+      int32_t to_b = b.high >> kBrickShift;
+      if (to_a - from_a >= kBeamBricks || to_b - from_b >= kBeamBricks) {
+        break;
+      }
+      to_a = to_a > last_a ? last_a : to_a;
+      to_b = to_b > last_b ? last_b : to_b;
+      int32_t row = layer + from_b * stride_b + from_a * stride_a;
+      for (int32_t at_b = from_b; at_b <= to_b; ++at_b, row += stride_b) {
+        int32_t place = row;
+        for (int32_t at_a = from_a; at_a <= to_a; ++at_a, place += stride_a) {
+          if (number_at<kDeep>(directory, place) != 0) {
+            *end++ = {place, at_a, at_b};
+          }
         }
       }
+      if (end != bricks) {
+        from_[0] = from_a;
+        from_[1] = from_b;
+        to_[0] = to_a;
+        to_[1] = to_b;
+        reach_[0].low = a.low;
+        reach_[1].low = b.low;
+        reach_[0].high = a.high - (voxels - 1) * a.high_step;
+        reach_[1].high = b.high - (voxels - 1) * b.high_step;
+        break;
+      }
+      a.low += voxels * a.low_step;
+      b.low += voxels * b.low_step;
+      a.high += 4 * a.high_step;
+      b.high += 4 * b.high_step;
+      slab += voxels;
+      voxels = 4;
+      layer += sweep_.stride[2];
     }
-    return bricks;
+    slab_ = slab;
+    return end;
   }
 
-  // Draws bricks of one layer from its slab `slab` on.
-  [[THIMBLE_HOT]] void draw_layer(int32_t slab, const int32_t (&from)[2], const SweptBrick* brick,
-                                  const SweptBrick* end) {
-    // The shadow's voxels as bits, from the first brick on. All rays have entered the lowest of them before the slab
-    // begins, so none enters it by a plane of a or of b: `entered` leaves it out.
-    uint32_t cells[2][4];
-    uint32_t entered[2][4];
+  // Draws bricks of one layer from slab `slab_` on.
+  [[THIMBLE_HOT]] void draw_layer(const SweptBrick* brick, const SweptBrick* end) {
+    const int32_t slab = slab_;
+    // The shadow's voxels as bits, from the one before the first brick on; bit 0 is set where the shadow begins before
+    // the box. All rays have entered the lowest of them before the slab begins, and leave the highest after it ends.
+    uint32_t under[2][4];
     const int32_t first_slab = slab & 3;
     for (int k = 0; k < 2; ++k) {
-      int32_t low = reach_[k].low;
-      int32_t high = reach_[k].high;
+      int32_t low = reach_[k].low - (4 * from_[k] - 1) * (1 << kCellShift);
+      int32_t high = reach_[k].high - (4 * from_[k] - 2) * (1 << kCellShift);
       for (int32_t i = first_slab; i < 4; ++i) {
-        first_[k][i] = low >> kCellShift;
-        last_[k][i] = high >> kCellShift;
-        const int32_t first = first_[k][i] - 4 * from[k];
-        const int32_t end_cell = last_[k][i] - 4 * from[k] + 1;
-        const uint32_t under = (1U << (end_cell < 0 ? 0 : end_cell)) - (1U << (first < 0 ? 0 : first));
-        cells[k][i] = under;
-        entered[k][i] = first < 0 ? under : under & (under - 1);
+        under[k][i] = (1U << bit_at(high >> kCellShift)) - (1U << bit_at(low >> kCellShift));
         low += reach_[k].low_step;
         high += reach_[k].high_step;
       }
     }
     for (; brick != end; ++brick) {
       Exposed& exposed =
-          sweep_.exposed[static_cast<uint32_t>(brick->place) * 0x9E3779B1U >> 16 & (kExposedKept - 1)];
+          sweep_.exposed[((brick->a & 3) | (brick->b & 1) << 2 | (slab & 4) << 1) & (kExposedKept - 1)];
       if (exposed.place != brick->place) {
         find_exposed<kDeep>(course_, brick->place, {brick->a, brick->b, slab >> 2}, &exposed);
       }
-      const int shift_a = 4 * (brick->a - from[0]);
-      const int shift_b = 4 * (brick->b - from[1]);
-      const Cells any{exposed.on[0].low | exposed.on[1].low | exposed.on[2].low,
-                      exposed.on[0].high | exposed.on[1].high | exposed.on[2].high};
-      for (int32_t i = first_slab; i < 4; ++i) {
-        const int shift = 16 * (i & 1);
-        const uint32_t exposed_here = (i < 2 ? any.low : any.high) >> shift & 0xFFFFU;
-        if (exposed_here == 0) {
+      const int shift_a = 4 * (brick->a - from_[0]);
+      const int shift_b = 4 * (brick->b - from_[1]);
+      const Half* on = exposed.on + first_slab;
+      for (int32_t i = first_slab; i < 4; ++i, ++on) {
+        const uint32_t faces_a = on[0];
+        const uint32_t faces_b = on[Exposed::kSlabs];
+        const uint32_t faces_c = on[2 * Exposed::kSlabs];
+        if ((faces_a | faces_b | faces_c) == 0) {
           continue;
         }
-        const uint32_t rows = kRows[cells[1][i] >> shift_b & 15U];
-        const uint32_t across = cells[0][i] >> shift_a & 15U;
-        const uint32_t under = across * rows;
-        if ((exposed_here & under) == 0) {
+        // From the voxel before the brick to the one behind it.
+        const uint32_t on_a = under[0][i] >> shift_a;
+        const uint32_t on_b = under[1][i] >> shift_b;
+        const uint32_t across = on_a >> 1 & 15U;
+        const uint32_t rows = kRows[on_b >> 1 & 15U];
+        if (((faces_a | faces_b | faces_c) & across * rows) == 0) {
           continue;
         }
-        const auto faces = [&](int k) { return (i < 2 ? exposed.on[k].low : exposed.on[k].high) >> shift; };
-        const uint32_t on_c = faces(2) & under;
-        const uint32_t on_a = faces(0) & ((entered[0][i] >> shift_a & 15U) * rows);
-        const uint32_t on_b = faces(1) & (across * kRows[entered[1][i] >> shift_b & 15U]);
-        if ((on_a | on_b | on_c) != 0) {
-          draw_cells(*brick, 4 * (slab >> 2) + i, on_a, on_b, on_c);
-          if (sweep_.done()) {
-            return;
-          }
+        // Voxels that rays may enter by a plane of a, or of b, and those that they may leave by one.
+        const uint32_t enter_a = (on_a & on_a >> 1 & 15U) * rows;
+        const uint32_t enter_b = across * kRows[on_b & on_b >> 1 & 15U];
+        const int32_t c = 4 * (slab >> 2) + i;
+        if ((faces_c & across * rows) != 0 && distance_of(sweep_, 2, c) > 0) {
+          draw_across(*brick, c, faces_c & across * rows, enter_a, enter_b,
+                      (on_a >> 1 & on_a >> 2 & 15U) * rows, across * kRows[on_b >> 1 & on_b >> 2 & 15U]);
+        }
+        draw_along(*brick, c, faces_a & enter_a, faces_b & enter_b);
+        if (sweep_.done()) {
+          return;
         }
       }
     }
   }
 
-  // Draws faces of a brick's voxels in one slab.
-  [[THIMBLE_HOT]] void draw_cells(const SweptBrick& brick, int32_t slab, uint32_t on_a, uint32_t on_b,
-                                  uint32_t on_c) {
-    for (uint32_t any = on_a | on_b | on_c; any != 0; any &= any - 1) {
-      const uint32_t bit = bits::lowest_bit(any);
-      const int32_t cell[3] = {4 * brick.a + static_cast<int32_t>(bit & 3U),
-                               4 * brick.b + static_cast<int32_t>(bit >> 2), slab};
-      draw_cell(brick.place, cell, on_a >> bit & 1U, on_b >> bit & 1U, on_c >> bit & 1U);
-    }
+  static constexpr int32_t bit_at(int32_t cell) { return cell < 0 ? 0 : cell > 31 ? 31 : cell; }
+
+  [[gnu::always_inline]] const HalfPlane* plane(Family family, int32_t i, int32_t j) {
+    return &half_plane<kDeep>(sweep_, family, i, j);
   }
 
-  // Draws faces of one voxel. A half-plane is made only while pixels are left to the face.
-  [[gnu::always_inline]] void draw_cell(int32_t place, const int32_t (&cell)[3], uint32_t on_a, uint32_t on_b,
-                                        uint32_t on_c) {
-    const int32_t a = cell[0];
-    const int32_t b = cell[1];
-    const int32_t c = cell[2];
-    Sweep& sweep = sweep_;
-    const auto plane = [&sweep](Family family, int32_t i, int32_t j) {
-      return &half_plane<kDeep>(sweep, family, i, j);
-    };
-    if (on_c != 0 && distance_of(sweep, 2, c) > 0) {
-      const int32_t in_brick = c & 3;
-      Pixels possible = words_of(sweep.left);
+  // Draws faces across c of a brick's voxels in one slab. No other face of the slab hides them: rays that meet them have
+  // just come into it. A half-plane is made only while pixels are left to the face, and where rays may have met its plane
+  // within the slab before, or may not have met it.
+  [[gnu::always_inline]] void draw_across(const SweptBrick& brick, int32_t c, uint32_t faces,
+                                          uint32_t enter_a, uint32_t enter_b, uint32_t leave_a,
+                                          uint32_t leave_b) {
+    for (; faces != 0; faces &= faces - 1) {
+      const uint32_t bit = bits::lowest_bit(faces);
+      const int32_t a = 4 * brick.a + static_cast<int32_t>(bit & 3U);
+      const int32_t b = 4 * brick.b + static_cast<int32_t>(bit >> 2);
+      Pixels possible = words_of(sweep_.left);
       const HalfPlane* met_a = &kAllPixels;
       const HalfPlane* met_b = &kAllPixels;
       const HalfPlane* past_a = &kNoPixels;
       const HalfPlane* past_b = &kNoPixels;
-      if ((a == first_[0][in_brick] || keep_met(possible, *(met_a = plane(kAc, a, c)))) &&
-          (b == first_[1][in_brick] || keep_met(possible, *(met_b = plane(kBc, b, c)))) &&
-          (a == last_[0][in_brick] || keep_not_met(possible, *(past_a = plane(kAc, a + 1, c)))) &&
-          (b == last_[1][in_brick] || keep_not_met(possible, *(past_b = plane(kBc, b + 1, c))))) {
-        draw_face(place, cell, 2, {*met_a, *met_b, *past_a, *past_b, possible});
+      if (((enter_a >> bit & 1U) == 0 || keep_met(possible, *(met_a = plane(kAc, a, c)))) &&
+          ((enter_b >> bit & 1U) == 0 || keep_met(possible, *(met_b = plane(kBc, b, c)))) &&
+          ((leave_a >> bit & 1U) == 0 || keep_not_met(possible, *(past_a = plane(kAc, a + 1, c)))) &&
+          ((leave_b >> bit & 1U) == 0 || keep_not_met(possible, *(past_b = plane(kBc, b + 1, c))))) {
+        draw_face(brick.place, {a, b, c}, 2, {*met_a, *met_b, *past_a, *past_b, possible});
       }
     }
-    if (on_a != 0 && distance_of(sweep, 0, a) > 0) {
-      Pixels possible = words_of(sweep.left);
-      const HalfPlane& met_c = *plane(kAc, a, c + 1);
-      if (keep_met(possible, met_c)) {
-        const HalfPlane& met_b = *plane(kAb, a, b + 1);
-        if (keep_met(possible, met_b)) {
-          const HalfPlane& past_c = *plane(kAc, a, c);
-          const HalfPlane& past_b = *plane(kAb, a, b);
-          if (keep_not_met(possible, past_c) && keep_not_met(possible, past_b)) {
-            draw_face(place, cell, 0, {met_c, met_b, past_c, past_b, possible});
-          }
-        }
+  }
+
+  // Draws faces across a and across b of a brick's voxels in one slab.
+  [[gnu::always_inline]] void draw_along(const SweptBrick& brick, int32_t c, uint32_t on_a, uint32_t on_b) {
+    for (uint32_t any = on_a | on_b; any != 0; any &= any - 1) {
+      const uint32_t bit = bits::lowest_bit(any);
+      const int32_t a = 4 * brick.a + static_cast<int32_t>(bit & 3U);
+      const int32_t b = 4 * brick.b + static_cast<int32_t>(bit >> 2);
+      if ((on_a >> bit & 1U) != 0) {
+        draw_one_along<0>(brick.place, a, b, c);
+      }
+      if ((on_b >> bit & 1U) != 0) {
+        draw_one_along<1>(brick.place, a, b, c);
       }
     }
-    if (on_b != 0 && distance_of(sweep, 1, b) > 0) {
-      Pixels possible = words_of(sweep.left);
-      const HalfPlane& met_c = *plane(kBc, b, c + 1);
-      if (keep_met(possible, met_c)) {
-        const HalfPlane& met_a = *plane(kAb, a, b);
-        if (keep_met(possible, met_a)) {
-          const HalfPlane& past_c = *plane(kBc, b, c);
-          const HalfPlane& past_a = *plane(kAb, a + 1, b);
-          if (keep_not_met(possible, past_c) && keep_not_met(possible, past_a)) {
-            draw_face(place, cell, 1, {met_c, met_a, past_c, past_a, possible});
-          }
+  }
+  template <int kAxis>
+  [[gnu::always_inline]] void draw_one_along(int32_t place, int32_t a, int32_t b, int32_t c) {
+    constexpr bool kOnA = kAxis == 0;
+    constexpr Family kOverC = kOnA ? kAc : kBc;
+    const int32_t own = kOnA ? a : b;
+    if (distance_of(sweep_, kAxis, own) <= 0) {
+      return;
+    }
+    Pixels possible = words_of(sweep_.left);
+    const HalfPlane& met_c = *plane(kOverC, own, c + 1);
+    if (keep_met(possible, met_c)) {
+      const HalfPlane& met = *plane(kAb, a, kOnA ? b + 1 : b);
+      if (keep_met(possible, met)) {
+        const HalfPlane& past_c = *plane(kOverC, own, c);
+        const HalfPlane& past = *plane(kAb, kOnA ? a : a + 1, b);
+        if (keep_not_met(possible, past_c) && keep_not_met(possible, past)) {
+          draw_face(place, {a, b, c}, kAxis, {met_c, met, past_c, past, possible});
         }
       }
     }
@@ -705,7 +750,7 @@ class TileSweep : private Paint {
     for (; open != 0; open &= open - 1) {
       const uint32_t bit = bits::lowest_bit(open);
       uint32_t d[3];
-      find_direction(course_, first_direction_, 32 * i + bit, d);
+      find_direction(sweep_, first_direction_, 32 * i + bit, d);
       const int where = place_on_face<kDeep>(sweep_, k, cell, d);
       if (where > 0) {
         mine |= 1U << bit;
@@ -732,7 +777,7 @@ class TileSweep : private Paint {
       for (uint32_t word = sweep_.left.word[i] & ~(quads * 0x000F000FU); word != 0; word &= word - 1) {
         const uint32_t pixel = 32 * i + bits::lowest_bit(word);
         uint32_t d[3];
-        find_direction(course_, first_direction_, pixel, d);
+        find_direction(sweep_, first_direction_, pixel, d);
         this->paint_ray(pixel, d);
       }
     }
@@ -744,14 +789,15 @@ class TileSweep : private Paint {
   using Paint::kDeep;
   using Paint::place_;
   using Paint::sweep_;
-  Reach reach_[2];  // in the next slab; `run` sets it
+  int32_t slab_;    // the next one
+  Reach reach_[2];  // there
+  // The bricks of the layer that is being drawn which lie under the shadow.
+  int32_t from_[2];
+  int32_t to_[2];
   // The rectangle that the shadow was last narrowed to: so many columns, and pairs of rows.
   int32_t columns_ = kTileAcrossPx;
   int32_t words_ = kTileWords;
   bool begun_ = false;
-  // The first and the last voxel of the shadow in each slab of a layer; `draw_layer` sets those that it draws.
-  int32_t first_[2][4];
-  int32_t last_[2][4];
 };
 
 // Whether a solid voxel touches the eye: then rays may begin in it or on its surface.

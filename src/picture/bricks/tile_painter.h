@@ -106,7 +106,8 @@ class TilePainter {
     if constexpr (OneCourse::kDeep) {
       course_.empty_page = empty_page_of(frame.side);
     }
-    set(0, 0);  // NOLINT: where rays start is set_start's
+    set_course<OneCourse::kDeep>(course_, 0);  // NOLINT: where rays start is set_start's
+    course_.set_signs();
   }
 
   // Calls `trace(direction)` for the pixels of a quad whose rays have different signs, row by row: each takes its own
@@ -170,7 +171,15 @@ class TilePainter {
   }
 
   void set(unsigned mirrored, int c) {
-    set_course<OneCourse::kDeep>(course_, mirrored, c);
+    if (c != course_.c) {
+      set_course<OneCourse::kDeep>(course_, c);
+    }
+    const unsigned differ = mirrored ^ course_.mirrored;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((differ >> axis & 1U) != 0) {
+        flip_axis(course_, axis);
+      }
+    }
     course_.set_signs();
   }
   void use(unsigned mirrored, int c) {

@@ -27,43 +27,40 @@ struct TilePlace {
   }
 }
 
-// Goes through pixels of kBytes each, four of a row at a time: `four(to)` stores all four, where `whole` are set, `one(to)`
-// a single one.
-template <size_t kBytes, class Four, class One>
-[[gnu::always_inline]] inline void store_fours(const TilePlace& place, const Pixels& pixels, uint32_t whole,
-                                               const Four& four, const One& one) {
-  uint8_t* line = place.line + static_cast<size_t>(place.x) * kBytes;
+// Goes through pixels of kBytes each, row by row, from right to left: the pixels of a row are the upper bits of a word,
+// which are shifted out. `four(to)` stores four pixels side by side where `fours(to)` allows that, `one(to)` a single one.
+template <size_t kBytes, class Fours, class Four, class One>
+[[gnu::always_inline]] inline void store_runs(const TilePlace& place, const Pixels& pixels,
+                                              const Fours& fours, const Four& four, const One& one) {
+  uint8_t* end = place.line + static_cast<size_t>(place.x + kTileAcrossPx) * kBytes;
   for (int i = 0; i < kTileWords; ++i) {
     uint32_t word = pixels.word[i];
     if (word == 0) {
-      line += 2 * place.stride;
+      end += 2 * place.stride;
       continue;
     }
-    for (int half = 0; half < 2; ++half, word >>= 16, line += place.stride) {
-      uint32_t row = word & 0xFFFFU;
-      if (row == 0) {
-        continue;
-      }
-      uint8_t* to = line;
-      for (; (row & 15U) == 0; row >>= 4) {
-        to += 4 * kBytes;
-      }
-      for (; row != 0; row >>= 4, to += 4 * kBytes) {
-        if ((row & 15U) == whole) {
+    for (int half = 0; half < 2; ++half, word >>= 16, end += place.stride) {
+      uint8_t* to = end;
+      for (uint32_t row = word << 16; row != 0;) {
+        if constexpr (bits::kCountsZeros) {
+          const int none = 31 - bits::highest_bit(row);
+          row <<= none;
+          to -= static_cast<size_t>(none) * kBytes;
+        } else {
+          for (; row >> 28 == 0; row <<= 4) {
+            to -= 4 * kBytes;
+          }
+          for (; row >> 31 == 0; row <<= 1) {
+            to -= kBytes;
+          }
+        }
+        for (; row >= 15U << 28 && fours(to); row <<= 4) {
+          to -= 4 * kBytes;
           four(to);
-          continue;
         }
-        if ((row & 1U) != 0) {
+        for (; row >> 31 != 0; row <<= 1) {
+          to -= kBytes;
           one(to);
-        }
-        if ((row & 2U) != 0) {
-          one(to + kBytes);
-        }
-        if ((row & 4U) != 0) {
-          one(to + 2 * kBytes);
-        }
-        if ((row & 8U) != 0) {
-          one(to + 3 * kBytes);
         }
       }
     }
@@ -75,8 +72,8 @@ template <class Pixel>
 [[gnu::noinline, THIMBLE_HOT]] void store_whole(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
   const Pixel value = bits::little(static_cast<Pixel>(ink));
   const auto pixel = [](uint8_t* to) { return static_cast<Pixel*>(static_cast<void*>(to)); };
-  store_fours<sizeof(Pixel)>(
-      place, pixels, kFastRam ? 16 : 15,
+  store_runs<sizeof(Pixel)>(
+      place, pixels, [](const uint8_t*) { return !kFastRam; },
       [&](uint8_t* to) {
         pixel(to)[0] = value;
         pixel(to)[1] = value;
@@ -86,15 +83,12 @@ template <class Pixel>
       [&](uint8_t* to) { *pixel(to) = value; });
 }
 
-// Stores pixels of three bytes.
+// Stores pixels of three bytes; four of them by words, where these are aligned.
 [[gnu::noinline]] void store_triples(const TilePlace& place, const Pixels& pixels, uint32_t ink) {
   const uint32_t four[3] = {bits::little(ink | ink << 24), bits::little(ink >> 8 | ink << 16),
                             bits::little(ink >> 16 | ink << 8)};
-  // Four pixels of a row are stored by words, where these are aligned.
-  const bool aligned =
-      ((reinterpret_cast<size_t>(place.line + 3 * static_cast<size_t>(place.x)) | place.stride) & 3U) == 0;
-  store_fours<3>(
-      place, pixels, aligned ? 15 : 16,
+  store_runs<3>(
+      place, pixels, [](const uint8_t* to) { return (reinterpret_cast<size_t>(to) & 3U) == 0; },
       [&](uint8_t* to) {
         Word* const whole = static_cast<Word*>(static_cast<void*>(to));
         whole[0] = four[0];
