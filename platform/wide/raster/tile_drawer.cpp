@@ -181,7 +181,7 @@ void TileDrawer::draw() {
     ++batch_->counts.nodes;
     const bool is_tabled = has_table(block);
     const BlockNode& node = lists_.nodes()[block.node];
-    if (!faces_eye(block, node) || is_hidden(block, is_tabled)) {
+    if (is_hidden(block) || !faces_eye(block, node)) {
       continue;
     }
     const unsigned mask = lists_.children(block.node);
@@ -204,10 +204,10 @@ bool TileDrawer::faces_eye(const Block& block, const BlockNode& node) const {
   return (lists_.facing(node) & ways_to(frame_.eye_cell, corner, uint32_t{1} << block.level)) != 0;
 }
 
-// Whether all pixels of the block are known to be covered. Small blocks with tables look that up while they are drawn.
-bool TileDrawer::is_hidden(const Block& block, bool is_tabled) const {
-  return by_blocks_ && (!is_tabled || width_of(block.place.where) > kTablePx) &&
-         all_covered(depths_, block.place.where, full_);
+// Whether all pixels of the block are known to be covered. Then neither its node nor its boxes are read: half of the
+// blocks of a large cloud.
+bool TileDrawer::is_hidden(const Block& block) const {
+  return by_blocks_ && all_covered(depths_, block.place.where, full_);
 }
 
 bool TileDrawer::has_table(const Block& block) const {

@@ -64,7 +64,7 @@ class TileDrawer {
 
   bool is_leaf(const Block& block, const BlockNode& node, unsigned mask, bool is_tabled) const;
   bool faces_eye(const Block& block, const BlockNode& node) const;
-  bool is_hidden(const Block& block, bool is_tabled) const;
+  bool is_hidden(const Block& block) const;
   bool has_table(const Block& block) const;
   bool is_flat(const Block& block) const;
   float voxel_px(const Block& block) const;
