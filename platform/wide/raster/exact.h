@@ -24,11 +24,14 @@ inline uint32_t x_of(uint32_t entry) {
 /// whose bits are set in `down`.
 uint32_t mirrored_key(const uint32_t (&corner)[3], int32_t level, uint32_t down);
 
-/// The sum of a voxel's coordinates within its cube, mirrored in the axes of `down`: 0 .. 3 * 1023.
-inline uint32_t mirrored_sum(uint32_t entry, uint32_t down) {
+/// Mirrors a coordinate: the largest world is so many voxels long, less one.
+inline constexpr uint32_t kMirror = 4095;
+
+/// The sum of the coordinates of a voxel of the cube at `cube` (voxels), mirrored in the axes of `down`: 0 .. 3 * 4095.
+inline uint32_t mirrored_sum(uint32_t entry, const uint32_t (&cube)[3], uint32_t down) {
   uint32_t sum = 0;
   for (unsigned axis = 0; axis < 3; ++axis) {
-    sum += (entry >> (10 * axis) & 1023U) ^ ((down >> axis & 1U) != 0 ? 1023U : 0U);
+    sum += (cube[axis] | (entry >> (10 * axis) & 1023U)) ^ ((down >> axis & 1U) != 0 ? kMirror : 0U);
   }
   return sum;
 }

@@ -51,7 +51,7 @@ void ask_core(const WideFrame& frame, const Depths& depths, int32_t x, int32_t y
   const size_t at = depths.pixel(x, y);
   if (depths.gray_scale != nullptr) {
     const uint32_t entry = within[0] | within[1] << 10 | within[2] << 20;
-    depths.nearest_sum[at] = static_cast<uint16_t>(mirrored_sum(entry, down));
+    depths.nearest_sum[at] = static_cast<uint16_t>(mirrored_sum(entry, corner, down));
     depths.gray[at] = code_of(depths.gray_scale->code, hit, ray, *frame.camera, *depths.shading);
   } else {
     depths.nearest[at] = cube_value(corner, down) | uint64_t{mirrored_key(within, 0, down)} << kEntryBits |
@@ -67,8 +67,9 @@ void ask_core_behind(const WideFrame& frame, const Depths& depths, int32_t x, in
   const size_t at = depths.pixel(x, y);
   if (holds_something(depths, x, y, at)) {
     const uint64_t value = batch->cube_value[down] | uint64_t{key} << kEntryBits;
-    const bool is_nearer = depths.gray_scale != nullptr ? depths.nearest_sum[at] <= mirrored_sum(entry, down)
-                                                        : depths.nearest[at] < value;
+    const bool is_nearer = depths.gray_scale != nullptr
+                               ? depths.nearest_sum[at] <= mirrored_sum(entry, batch->corner, down)
+                               : depths.nearest[at] < value;
     if (is_nearer) {
       return;
     }

@@ -51,7 +51,7 @@ const GrayScale* TilePainter::gray_scale() const {
   // Above this margin more than one pixel in twenty-five is found again in integers; finding all greys at the end then
   // takes less time.
   constexpr float kMostMargin = 0.02F;
-  if (lists_.has_blocks() || lists_.tree().level() > kCubeLevel) {
+  if (lists_.has_blocks()) {
     return nullptr;
   }
   const bool is_apt = gray_scale_.code == GrayScale::Code::kGray

@@ -65,7 +65,7 @@ class LargeBox {
                                                   x + lane, y, entry_, batch_->corner)
                                    : uint8_t{0};
         put(test, static_cast<uint32_t>(lane),
-            kGray ? mirrored_sum(entry_, down) : value_of(*batch_, key, down, number_), gray);
+            kGray ? mirrored_sum(entry_, batch_->corner, down) : value_of(*batch_, key, down, number_), gray);
         ++batch_->counts.hits;
       }
     }
@@ -130,7 +130,7 @@ class LargeBox {
  private:
   uint64_t value_for(uint32_t down) const {
     if (kGray) {
-      return uint64_t{mirrored_sum(entry_, down)};
+      return uint64_t{mirrored_sum(entry_, batch_->corner, down)};
     }
     const uint32_t corner[3] = {x_of(entry_), entry_ >> 10 & kWithin, entry_ >> 20 & kWithin};
     return value_of(*batch_, mirrored_key(corner, level_of(entry_), down), down, number_);

@@ -153,7 +153,7 @@ void test_unclear(const WideFrame& frame, const Depths& depths, bool* written, B
     batch->down[batch->hits] = down;
     batch->number[batch->hits] = pairs.number[i];
     if (depths.gray_scale != nullptr) {
-      batch->key[batch->hits] = mirrored_sum(pairs.entry[i], down);
+      batch->key[batch->hits] = mirrored_sum(pairs.entry[i], batch->corner, down);
       batch->number[batch->hits] = code_exactly(*frame.camera, *depths.shading, depths.gray_scale->code, x, y,
                                                 pairs.entry[i], batch->corner);
     }
@@ -211,11 +211,12 @@ HWY_INLINE void append_hits(hn::Mask<F32> hit, const Unpacked<kUnit>& pairs, con
 #pragma GCC unroll 3
   for (int axis = 2; axis >= 0; --axis) {
     const auto is_down = hn::RebindMask(du, hn::Lt(aims.direction[axis], hn::Zero(d)));
-    auto mirrored = hn::Xor(pairs.low[axis], hn::IfThenElseZero(is_down, within));
     if (kGray) {
-      key = hn::Add(key, mirrored);
+      const auto place = hn::Or(pairs.low[axis], hn::Set(du, batch->corner[axis]));
+      key = hn::Add(key, hn::Xor(place, hn::IfThenElseZero(is_down, hn::Set(du, kMirror))));
       continue;
     }
+    auto mirrored = hn::Xor(pairs.low[axis], hn::IfThenElseZero(is_down, within));
     if (!kUnit) {
       const auto side_mask = hn::Neg(hn::BitCast(di, hn::Shl(hn::Set(du, 1U), pairs.level)));
       mirrored = hn::And(mirrored, hn::BitCast(du, side_mask));
