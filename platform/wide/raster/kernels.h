@@ -22,7 +22,7 @@ namespace thimble::wide {
 /// node where their paths part, the ray passes the children in the order of their mirrored numbers. So
 /// depths are compared exactly, as integers.
 ///
-/// Where a pixel shows only a grey by depth or a face, of single voxels in one cube, it keeps that as a code
+/// Where a pixel shows only a grey by depth or a face, of single voxels, it keeps that as a code
 /// (GrayScale::Code) in place of the voxel's number; the code is found when the ray hits the voxel. In place of the key
 /// it keeps the sum of the voxel's mirrored coordinates: from voxel to voxel a ray raises one or more of these and
 /// lowers none. That takes 3 bytes a pixel instead of 8, and nothing is left to look up.
@@ -112,9 +112,9 @@ inline constexpr int kPlaceBits = 14;
 
 /// The map of a block of short entries to the picture, in fixed point modulo 2^16: a voxel's first pixel is at
 ///
-///     a + a b 2^-16 + base,   a = x step[0] + y step[1] + z step[2] + last,   b = x bend[0] + ... + bend_last
+///     a + a b 2^-16 + base,   a = e step[0] + (e >> 5) step[1] + (e >> 10) step[2] + last,   b = e bend[0] + ...
 ///
-/// with x, y and z the entry's own; a is the distance from the block's middle in parts of a pixel, and there is b only in
+/// with e the entry; a is the distance from the block's middle in parts of a pixel, and there is b only in
 /// perspective, while `base` is part of `last` otherwise.
 struct ShortMap {
   struct Axis {

@@ -62,6 +62,16 @@ HWY_INLINE hn::Vec<U32> squeeze(hn::Vec<U32> v, hn::Mask<U32> mask) {
 }
 #endif
 
+// Keeps a constant of a loop in a register, or as a whole vector on the stack: gcc 12 would broadcast it from a number
+// again for each vector.
+template <class V>
+HWY_INLINE V held(V v) {
+#if HWY_ARCH_X86
+  __asm__("" : "+v"(v.raw));
+#endif
+  return v;
+}
+
 constexpr uint32_t kWithin = 1023;  // masks a coordinate within a cube of entries
 
 // Points, one a lane.

@@ -34,6 +34,11 @@ void widen(const ShortEntries& from, uint32_t count, uint32_t* entries) {
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 
+// Cuts a number off to its lowest 16 bits.
+HWY_INLINE int16_t low_bits(double value) {
+  return static_cast<int16_t>(static_cast<int32_t>(value));
+}
+
 // Rounds the steps of a row of Linear. Returns the middle of the block by them.
 HWY_INLINE float round_steps(const float (&row)[4], float one, const float (&center)[3], int16_t (&step)[3]) {
   float middle = 0;
@@ -42,17 +47,15 @@ HWY_INLINE float round_steps(const float (&row)[4], float one, const float (&cen
     step[axis] = static_cast<int16_t>(rounded);
     middle += rounded * center[axis];
   }
+  // An entry is x + 32 y + 1024 z. It is multiplied whole, and shifted by 5 and by 10 bits: no bits are cut out.
+  step[2] = low_bits(step[2] - 32 * step[1]);
+  step[1] = low_bits(step[1] - 32 * step[0]);
   return middle;
 }
 
 // The distance from the block's middle to its farthest voxel on one axis, by a row of Linear.
 HWY_INLINE float farthest_of(const float (&row)[4], float h) {
   return (__builtin_fabsf(row[0]) + 1024 * __builtin_fabsf(row[1]) + __builtin_fabsf(row[2])) * h;
-}
-
-// Cuts a number off to its lowest 16 bits.
-HWY_INLINE int16_t low_bits(double value) {
-  return static_cast<int16_t>(static_cast<int32_t>(value));
 }
 
 // Finds the map of a block but for its place. Returns false where a voxel might cover more than one pixel, or the block
@@ -168,25 +171,42 @@ class ShortTable {
 
 // Finds the places of voxels, as fixed-point numbers that count from the table's first pixel.
 template <bool kPerspective>
-HWY_INLINE void find_short_places(const ShortMap& map, hn::Vec<I16> entry, hn::Vec<I16>* low_x,
-                                  hn::Vec<I16>* low_y) {
-  const I16 d;
-  const auto within = hn::Set(d, 31);
-  const auto x = hn::And(entry, within);
-  const auto y = hn::And(hn::ShiftRight<5>(entry), within);
-  const auto z = hn::ShiftRight<10>(entry);
-  const auto sum = [&](const int16_t(&step)[3], int16_t last) {
-    return hn::Add(hn::Add(hn::Mul(x, hn::Set(d, step[0])), hn::Mul(y, hn::Set(d, step[1]))),
-                   hn::Add(hn::Mul(z, hn::Set(d, step[2])), hn::Set(d, last)));
-  };
-  *low_x = sum(map.x.step, map.x.last);
-  *low_y = sum(map.y.step, map.y.last);
-  if (kPerspective) {
-    const auto bend = sum(map.bend, map.bend_last);
-    *low_x = hn::Add(hn::Add(*low_x, hn::MulHigh(*low_x, bend)), hn::Set(d, map.x.base));
-    *low_y = hn::Add(hn::Add(*low_y, hn::MulHigh(*low_y, bend)), hn::Set(d, map.y.base));
+class ShortPlaces {
+ public:
+  HWY_INLINE explicit ShortPlaces(const ShortMap& map)
+      : x_(map.x.step, map.x.last),
+        y_(map.y.step, map.y.last),
+        bend_(kPerspective ? map.bend : map.x.step, kPerspective ? map.bend_last : map.x.last),
+        base_x_(held(hn::Set(I16(), map.x.base))),
+        base_y_(held(hn::Set(I16(), map.y.base))) {}
+
+  HWY_INLINE void find(hn::Vec<I16> entry, hn::Vec<I16>* low_x, hn::Vec<I16>* low_y) const {
+    const auto yz = hn::ShiftRight<5>(entry);
+    const auto z = hn::ShiftRight<10>(entry);
+    *low_x = x_.of(entry, yz, z);
+    *low_y = y_.of(entry, yz, z);
+    if (kPerspective) {
+      const auto bend = bend_.of(entry, yz, z);
+      *low_x = hn::Add(hn::Add(*low_x, hn::MulHigh(*low_x, bend)), base_x_);
+      *low_y = hn::Add(hn::Add(*low_y, hn::MulHigh(*low_y, bend)), base_y_);
+    }
   }
-}
+
+ private:
+  struct Row {
+    hn::Vec<I16> step[3], last;
+    HWY_INLINE Row(const int16_t (&steps)[3], int16_t last_one)
+        : step{held(hn::Set(I16(), steps[0])), held(hn::Set(I16(), steps[1])),
+               held(hn::Set(I16(), steps[2]))},
+          last(held(hn::Set(I16(), last_one))) {}
+    HWY_INLINE hn::Vec<I16> of(hn::Vec<I16> entry, hn::Vec<I16> yz, hn::Vec<I16> z) const {
+      return hn::Add(hn::Add(hn::Mul(entry, step[0]), hn::Mul(yz, step[1])),
+                     hn::Add(hn::Mul(z, step[2]), last));
+    }
+  };
+  Row x_, y_, bend_;
+  hn::Vec<I16> base_x_, base_y_;
+};
 
 // Finds the voxels of a run that cover an open pixel; stores their entries, and returns how many those are.
 template <bool kPerspective, int kFraction>
@@ -195,7 +215,10 @@ HWY_NOINLINE uint32_t pick_short(const ShortEntries& from, uint32_t count, const
   const I16 d;
   const U16 du;
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
+  const ShortPlaces<kPerspective> places(map);
   const auto fraction = hn::Set(d, (1 << kFraction) - 1);
+  const auto least_x = held(hn::Set(d, map.x.least));
+  const auto least_y = held(hn::Set(d, map.y.least));
   const uint32_t* ahead = batch->ahead;
   const uint32_t* const ahead_end = batch->ahead_end;
   // Vectors with such voxels are taken apart afterwards: a branch for each vector would be mispredicted.
@@ -207,11 +230,11 @@ HWY_NOINLINE uint32_t pick_short(const ShortEntries& from, uint32_t count, const
     ahead += ahead < ahead_end ? lanes / 2 : 0;
     hn::Vec<I16> low_x;
     hn::Vec<I16> low_y;
-    find_short_places<kPerspective>(map, hn::BitCast(d, hn::LoadU(du, from.entries + at)), &low_x, &low_y);
+    places.find(hn::BitCast(d, hn::LoadU(du, from.entries + at)), &low_x, &low_y);
     const auto column = hn::ShiftRight<kFraction>(hn::BitCast(du, low_x));
     const auto row = hn::ShiftRight<kFraction>(hn::BitCast(du, low_y));
-    const auto seen = hn::And(hn::Gt(hn::And(low_x, fraction), hn::Set(d, map.x.least)),
-                              hn::Gt(hn::And(low_y, fraction), hn::Set(d, map.y.least)));
+    const auto seen =
+        hn::And(hn::Gt(hn::And(low_x, fraction), least_x), hn::Gt(hn::And(low_y, fraction), least_y));
     masks[kept] = table.template open_of<kFraction>(seen, column, row);
     starts[kept] = at;
     kept += masks[kept] != 0 ? 1 : 0;
@@ -222,8 +245,18 @@ HWY_NOINLINE uint32_t pick_short(const ShortEntries& from, uint32_t count, const
   }
   uint32_t number = 0;
   for (uint32_t i = 0; i < kept; ++i) {
-    for (uint32_t left = masks[i]; left != 0; left &= left - 1) {
-      picked[number++] = from.entries[starts[i] + static_cast<uint32_t>(__builtin_ctz(left))];
+    uint32_t left = masks[i];
+    const auto pick = [&] {
+      picked[number] = from.entries[starts[i] + static_cast<uint32_t>(__builtin_ctz(left | 1U << 31))];
+      number += left != 0 ? 1 : 0;
+      left &= left - 1;
+    };
+    // Few vectors have more than three. How many of these there are would be mispredicted, too.
+    pick();
+    pick();
+    pick();
+    while (left != 0) {
+      pick();
     }
   }
   return number;
@@ -241,6 +274,7 @@ HWY_NOINLINE void pair_short(const WideFrame& frame, const Run& run, const Short
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
   const auto first = hn::Set(d32, (static_cast<uint32_t>(run.place.where.y0 - OpenTable::kMargin) << 16) +
                                       static_cast<uint32_t>(run.place.where.x0 - OpenTable::kMargin));
+  const ShortPlaces<kPerspective> of(map);
   bool written = false;
   Pairs& waiting = batch->waiting;
   for (uint32_t at = 0; at < count; at += lanes) {
@@ -249,7 +283,7 @@ HWY_NOINLINE void pair_short(const WideFrame& frame, const Run& run, const Short
     }
     hn::Vec<I16> low_x;
     hn::Vec<I16> low_y;
-    find_short_places<kPerspective>(map, hn::BitCast(d, hn::LoadU(du, picked + at)), &low_x, &low_y);
+    of.find(hn::BitCast(d, hn::LoadU(du, picked + at)), &low_x, &low_y);
     const auto column = hn::ShiftRight<kFraction>(hn::BitCast(du, low_x));
     const auto row = hn::ShiftRight<kFraction>(hn::BitCast(du, low_y));
     uint32_t* const places = waiting.place + waiting.count;
