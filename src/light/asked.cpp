@@ -55,10 +55,11 @@ void ask_on(AskedFrame& frame, const LightRay& light, const Leg& leg) {
     frame.note(Question::kOn, light.ray, leg.from, leg.medium.material);
   } else if (leg.from.t_numerator != 0) {
     frame.note(Question::kOn, light.ray, leg.from);
-  } else {
+  } else if (light.is_point) {
     // What is met at the light itself counts, what is behind it does not.
-    frame.note(light.is_point ? Question::kBefore : Question::kClosest, light.ray,
-               {light.place.t_numerator + 1, light.place.t_denominator});
+    frame.note(Question::kBefore, light.ray, {light.place.t_numerator + 1, light.place.t_denominator});
+  } else {
+    frame.note(Question::kClosest, light.ray, {});
   }
 }
 

@@ -211,13 +211,8 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
       no_later[i] = {};
     }
   }
-  CHECK(wide::first_unnamed_hit(map, rays, {no_later.data(), count}, to_hits) == Status::kOk);
-  check_each("first_unnamed_hit", batch, [&](std::size_t i) {
-    if (hits[i].kind == HitKind::kHit) {
-      hits[i].material = wide::unnamed_material(map, hits[i]);
-    }
-    return same_hit(hits[i], batch.first[i]);
-  });
+  CHECK(wide::first_hit_from(map, rays, {no_later.data(), count}, to_hits) == Status::kOk);
+  check_each("first_hit_from", batch, [&](std::size_t i) { return same_hit(hits[i], batch.first[i]); });
   // One bound for all rays; of a merged block the t counts, not how it is written.
   const RayPoint reach = batch.before.front();
   for (const std::uint8_t* classes : {static_cast<const std::uint8_t*>(nullptr), batch.classes}) {

@@ -92,7 +92,10 @@ void put_hits(const Hit* hits, lit::Asked* asked, lit::Answer* answers) {
 void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits, MediumExit* exits,
                  lit::Answer* answers) {
   lit::Asked& closest = questions[static_cast<int>(lit::Question::kClosest)];
-  (void)first_hit(map, {closest.rays, closest.count}, {hits, closest.count});
+  const Span<const Ray> rays{closest.rays, closest.count};
+  (void)(closest.before == nullptr
+             ? first_hit(map, rays, {hits, closest.count})
+             : first_hit_from(map, rays, {closest.before, closest.count}, {hits, closest.count}));
   put_hits(hits, &closest, answers);
   lit::Asked& before = questions[static_cast<int>(lit::Question::kBefore)];
   (void)first_hit_before(map, {before.rays, before.count}, {before.before, before.count},

@@ -16,7 +16,6 @@ struct LitFace {
   Vec3Q8 at;
   uint32_t pixel;  ///< for the caller's use
   uint8_t face;  ///< 2 * axis, and 1 more where it looks to larger coordinates; 6 more: the ray began inside
-  uint8_t material;  ///< only OpaqueStream uses it
 };
 
 /// How large the arrays for so many faces are.

@@ -13,15 +13,8 @@ namespace {
 constexpr uint32_t kSlots = 1024;
 constexpr uint32_t kLeastSlots = 64;
 
-// The stream of any set within this one fits into these bytes, so a workspace for a set of effects serves those, too.
-size_t most_bytes(EffectSet effects, const LitScene& scene, uint32_t slots) {
-  const size_t opaque = OpaqueShape(effects, scene, slots).bytes();
-  return is_opaque(effects) ? opaque : std::max(StreamShape(effects, scene, slots).bytes(), opaque);
-}
-
-template <class Stream, class Shape>
-Status draw_by(const lit::Frame& frame, const RayMap& map, PixelQueue* queue, Bytes workspace,
-               Threads* threads, LitCounts* counts) {
+Status draw(const lit::Frame& frame, const RayMap& map, PixelQueue queue, Bytes workspace, Threads* threads,
+            LitCounts* counts) {
   // As many threads as there is room for; then as many pixels at once as there is room for.
   size_t workers = threads == nullptr ? 1 : static_cast<size_t>(threads->count());
   workers = std::min(workers, workspace.size / least_lit_workspace_bytes(frame.effects, frame.scene));
@@ -29,16 +22,17 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, PixelQueue* queue, By
     return Status::kOutOfMemory;
   }
   uint32_t slots = kSlots;
-  while (slots > kLeastSlots && Shape(frame.effects, frame.scene, slots).bytes() * workers > workspace.size) {
+  while (slots > kLeastSlots &&
+         StreamShape(frame.effects, frame.scene, slots).bytes() * workers > workspace.size) {
     slots /= 2;
   }
-  const Shape shape(frame.effects, frame.scene, slots);
-  queue->clear();
+  const StreamShape shape(frame.effects, frame.scene, slots);
+  queue.clear();
   std::atomic_flag adding;
   const auto work = [&](int worker) {
     Stream stream(frame, map, shape,
                   workspace.subspan(static_cast<size_t>(worker) * shape.bytes(), shape.bytes()));
-    stream.draw(queue);
+    stream.draw(&queue);
     while (adding.test_and_set()) {
     }
     if (counts != nullptr) {
@@ -52,13 +46,6 @@ Status draw_by(const lit::Frame& frame, const RayMap& map, PixelQueue* queue, By
     threads->each(static_cast<int>(workers), work);
   }
   return Status::kOk;
-}
-
-Status draw_by_either(const lit::Frame& frame, const RayMap& map, PixelQueue queue, Bytes workspace,
-                      Threads* threads, LitCounts* counts) {
-  return is_opaque(frame.effects)
-             ? draw_by<OpaqueStream, OpaqueShape>(frame, map, &queue, workspace, threads, counts)
-             : draw_by<Stream, StreamShape>(frame, map, &queue, workspace, threads, counts);
 }
 
 }  // namespace
@@ -76,10 +63,10 @@ LitMedia lit_media(EffectSet effects, const LitScene& scene) {
 }
 
 size_t lit_workspace_bytes(EffectSet effects, const LitScene& scene) {
-  return most_bytes(effects, scene, kSlots);
+  return StreamShape(effects, scene, kSlots).bytes();
 }
 size_t least_lit_workspace_bytes(EffectSet effects, const LitScene& scene) {
-  return most_bytes(effects, scene, kLeastSlots);
+  return StreamShape(effects, scene, kLeastSlots).bytes();
 }
 
 Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,
@@ -96,7 +83,7 @@ Status render_lit(EffectSet effects, const RayMap& map, const Camera& camera, co
   if (status != Status::kOk) {
     return status;
   }
-  return draw_by_either(frame, map, PixelQueue(frame, band, stride), workspace, threads, counts);
+  return draw(frame, map, PixelQueue(frame, band, stride), workspace, threads, counts);
 }
 
 Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& camera, const Shading& shading,
@@ -123,7 +110,7 @@ Status render_lit_pixels(EffectSet effects, const RayMap& map, const Camera& cam
   if (status != Status::kOk) {
     return status;
   }
-  return draw_by_either(frame, map, PixelQueue(frame, places, rgb), workspace, threads, counts);
+  return draw(frame, map, PixelQueue(frame, places, rgb), workspace, threads, counts);
 }
 
 }  // namespace thimble::wide

@@ -24,7 +24,7 @@ struct LitMedia {
 LitMedia lit_media(EffectSet effects, const LitScene& scene);
 
 /// The bytes of workspace with which each thread of `render_lit` is fast, and the least with which it works. Effects,
-/// rays of occlusion and lights decide, the picture's size does not matter (README.md beside this file): 0.3 to 2.6 MB,
+/// rays of occlusion and lights decide, the picture's size does not matter (README.md beside this file): 0.5 to 2.6 MB,
 /// with slopes 2.5 to 9.8 MB; the least is a sixteenth of that.
 size_t lit_workspace_bytes(EffectSet effects, const LitScene& scene);
 size_t least_lit_workspace_bytes(EffectSet effects, const LitScene& scene);

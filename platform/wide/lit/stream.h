@@ -1,5 +1,4 @@
-/// Draws one thread's share of a lit picture: keeps pixels under way, and the rays that they wait for; or, where no ray goes
-/// on, only pixels' places.
+/// Draws one thread's share of a lit picture: keeps pixels under way, and the rays that they wait for.
 #pragma once
 
 #include <stddef.h>
@@ -88,17 +87,18 @@ class Stream {
  private:
   // Begins the next pixel in a slot; returns false when none is left.
   bool begin(uint32_t slot, PixelReader* pixels);
-  // Begins the last of a pixel's pending rays.
-  void begin_ray(uint32_t number);
+  // Begins the last of a pixel's pending rays, which meets nothing before the point.
+  void begin_ray(uint32_t number, const RayPoint& from = {});
   void begin_step(uint32_t number, lit::AskedFrame* frame);
   // These take a pixel's steps, and return false when the pixel waits for answers. `shine` is for slopes; other faces
   // are only noted, and lit all together.
   bool go_on(uint32_t number);
   bool follow(uint32_t number);
   bool shine(uint32_t number);
-  void show_face(uint32_t number);
-  // Whether the ray, which has its first answer, sees only the sky or the background: then that is noted.
-  bool show_beyond(uint32_t number);
+  void show_face(uint32_t number, const lit::Spot& spot, lit::Weight weight);
+  // Whether the ray, which has its first answer, ends there: in the sky or the background, which are noted then, or at a
+  // face that sends no ray on.
+  bool show_end(uint32_t number);
   // Gives pixels what their rays were noted to show.
   void light_up();
   void answer();
@@ -115,6 +115,7 @@ class Stream {
   bool is_clear_material_[256] = {};
   bool is_smooth_;
   bool is_open_beyond_;  // nothing is between a ray's beginning and the sky that the tree does not hold
+  bool ends_at_[256];    // materials: a ray through the air ends where it meets one
   StreamParts parts_;
   ArrayArena arena_;
   MissShader misses_;
@@ -122,67 +123,6 @@ class Stream {
   FaceLights lights_;
   uint32_t face_count_ = 0;
   uint32_t beyond_count_ = 0;
-};
-
-// A picture in which each ray of a pixel ends where it first meets something: nothing is clear, nothing mirrors, and there is
-// no water, slope, fog, depth cue, edge or ripple. Most pictures are like this. No pixel asks twice, so only its place is
-// kept: the pixels of a share go through one short loop after another, and their rays through the map in between.
-
-/// Whether this stream draws pictures with these effects.
-bool is_opaque(EffectSet effects);
-
-/// How large a stream's arrays are.
-struct OpaqueShape {
-  OpaqueShape(EffectSet effects, const LitScene& scene, uint32_t slot_count);
-
-  size_t bytes() const;
-
-  uint32_t slots;  ///< pixels that are drawn at once
-  FaceLightsShape lights;
-};
-
-struct OpaqueParts {
-  void lay_out(const OpaqueShape& shape, ArrayArena* arena);
-
-  Ray* rays;       ///< the pixels' rays
-  RayPoint* from;  ///< where they can first meet something
-  Hit* hits;
-  uint32_t* beyond;    ///< the pixels that met nothing
-  SkyColumns sky;      ///< of these
-  PixelSlot* places;   ///< by pixel
-  lit::Color* colors;  ///< by pixel
-};
-
-class OpaqueStream {
- public:
-  /// `bytes` has shape.bytes(), at any address.
-  OpaqueStream(const lit::Frame& frame, const RayMap& map, const OpaqueShape& shape, Bytes bytes);
-
-  /// Draws pixels that it takes from the queue, until the queue ends.
-  void draw(PixelQueue* queue);
-  LitCounts counts() const;
-
- private:
-  struct Paint {
-    uint32_t albedo[3];
-    uint32_t emission[3];
-  };
-
-  void light_up(uint32_t count);
-  void find_faces(uint32_t count);
-  LitFace face_of_hit(uint32_t pixel);
-  void show_beyond(uint32_t count);
-  void paint();
-
-  lit::Frame frame_;
-  const RayMap& map_;
-  OpaqueShape shape_;
-  OpaqueParts parts_;
-  ArrayArena arena_;
-  MissShader misses_;
-  FaceLights lights_;
-  uint32_t face_count_ = 0;
-  Paint paints_[256];
 };
 
 }  // namespace thimble::wide

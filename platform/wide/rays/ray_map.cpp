@@ -340,8 +340,8 @@ Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits) {
   return run(map, rays, {.hits = hits.data});
 }
 
-Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits) {
-  return run(map, rays, {.points = from.data, .bound = Bound::kFrom, .hits = hits.data, .names = false});
+Status first_hit_from(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits) {
+  return run(map, rays, {.points = from.data, .bound = Bound::kFrom, .hits = hits.data});
 }
 
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
@@ -383,11 +383,6 @@ Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint befo
 Status first_change(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from,
                     Span<const uint16_t> in, Span<MediumExit> exits) {
   return run(map, rays, {.points = from.data, .bound = Bound::kFrom, .exits = exits.data, .in = in.data});
-}
-
-uint8_t unnamed_material(const RayMap& map, const Hit& hit) {
-  const bool has_none = map.cells() != nullptr && map.cells()->has_tags;
-  return has_none ? block_at(map, hit.voxel).material : hit.material;
 }
 
 bool RayMap::material_at(const Vec3i& voxel, uint8_t* material) const {

@@ -94,12 +94,8 @@ Status any_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoi
 /// level.
 Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits);
 
-/// The same, but with material 0 where `unnamed_material` can find the material later, if it is wanted; and nothing that a ray
-/// could hit comes before its point `from[i]`, where it crosses a voxel's plane.
-Status first_unnamed_hit(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits);
-
-/// The material of a kHit of `first_unnamed_hit`.
-uint8_t unnamed_material(const RayMap& map, const Hit& hit);
+/// The same, where nothing that a ray could hit comes before its point `from[i]`, at which it crosses a voxel's plane.
+Status first_hit_from(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from, Span<Hit> hits);
 
 /// Finds the hits of `first_hit`; a voxel that is entered at a t of `before[i]` or later is a miss.
 Status first_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before, Span<Hit> hits);

@@ -42,7 +42,7 @@
 namespace thimble::lit {
 
 enum class Question : uint8_t {
-  kClosest,  ///< `closest_hit`
+  kClosest,  ///< `closest_hit`; what is hit is not before the point `before`
   kAny,      ///< `any_hit`: of the answer `hit.kind` alone counts
   kBefore,   ///< `closest_hit`, where a hit at or after `before` may be given or left out
   kNear,     ///< the same for occlusion: one `before` for all; the material only where things may be clear
@@ -56,7 +56,7 @@ inline constexpr uint16_t kInNothing = 256;
 /// Questions of one kind, in their order of submission. All rays pass `check_ray`.
 struct Asked {
   Ray* rays = nullptr;
-  RayPoint* before = nullptr;  ///< kBefore and kOn alone; else null
+  RayPoint* before = nullptr;  ///< kClosest, kBefore and kOn alone; else null
   uint16_t* in = nullptr;      ///< kOn alone: a material, or kInNothing
   uint32_t* answer = nullptr;  ///< the number of the answer that is wanted
   uint32_t count = 0;
