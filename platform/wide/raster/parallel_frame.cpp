@@ -5,26 +5,32 @@
 
 namespace thimble::wide {
 
+namespace {
+
+// Some tiles hold more than others, and both sides of a seam look at the boxes on it.
+constexpr int kTilesAThread = 4;
+constexpr int32_t kLeastRows = 2 * kPatchRows;
+
+}  // namespace
+
 uint64_t draw_tiles(Threads* threads, const TileDrawer::Task& task, const TilePainter& painter,
                     const Workspace& workspace, Stats* stats) {
   const int count = threads == nullptr ? 1 : threads->count();
   const Tile& all = task.frame.tile;
   const int32_t rows = all.y1 - all.y0;
   // Threads that draw side by side share no patch of coverage.
-  const int32_t tile_rows = (rows + count * kPatchRows - 1) / (count * kPatchRows) * kPatchRows;
-  TileDrawer::Others others((rows + tile_rows - 1) / tile_rows);
+  const int32_t patches = (rows + kPatchRows - 1) / kPatchRows;
+  const int32_t tiles = count * kTilesAThread;
+  const int32_t tile_rows =
+      count == 1 ? rows : std::max((patches + tiles - 1) / tiles * kPatchRows, kLeastRows);
+  std::atomic<int32_t> next_row{0};
   std::atomic<uint64_t> hits{0};
   const auto draw_some = [&](int thread) {
-    TileDrawer drawer(task, workspace.depths(), workspace.full_patches(), workspace.batch(thread),
-                      count > 1 ? &others : nullptr);
-    for (int number; (number = others.next(&drawer)) != TileDrawer::Others::kNothing; others.finish()) {
-      if (number != TileDrawer::Others::kGiven) {
-        const int32_t begin = number * tile_rows;
-        const int32_t end = std::min(begin + tile_rows, rows);
-        workspace.clear(begin, end - begin);
-        drawer.start(all.y0 + begin, all.y0 + end);
-      }
-      drawer.draw();
+    TileDrawer drawer(task, workspace.depths(), workspace.full_patches(), workspace.batch(thread));
+    for (int32_t begin; (begin = next_row.fetch_add(tile_rows)) < rows;) {
+      const int32_t end = std::min(begin + tile_rows, rows);
+      workspace.clear(begin, end - begin);
+      drawer.draw(all.y0 + begin, all.y0 + end);
       hits += painter.paint_tile(drawer.frame(), workspace.depths());
     }
   };
@@ -33,7 +39,6 @@ uint64_t draw_tiles(Threads* threads, const TileDrawer::Task& task, const TilePa
   } else {
     threads->each(count, draw_some);
   }
-  stats->splits = others.splits();
   for (int thread = 0; thread < count; ++thread) {
     stats->counts.add(workspace.batch(thread)->counts);
   }

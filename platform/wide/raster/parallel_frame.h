@@ -8,9 +8,8 @@
 
 namespace thimble::wide {
 
-/// Draws and paints a frame: every thread (null: the calling one alone) draws a tile of as many rows as others, then parts of
-/// other threads' tiles, until none are left. Tiles are few, since both sides of a seam look at the boxes on it. Returns how many pixels show something. `stats` gets what all threads counted, and how many
-/// parts changed hands.
+/// Draws and paints a frame: every thread (null: the calling one alone) draws one tile after another, until none is left.
+/// Returns how many pixels show something. `stats` gets what all threads counted.
 uint64_t draw_tiles(Threads* threads, const TileDrawer::Task& task, const TilePainter& painter,
                     const Workspace& workspace, Stats* stats);
 

@@ -113,7 +113,7 @@ Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& 
                                     is_sparse(lists, camera, band, by_blocks, threads, painter),
                                     painter.gray_scale(), &shading});
   const TileDrawer::Task task{lists, frame, by_blocks, lists.is_surface() ? &starts : nullptr};
-  Stats done{{}, plan.order, 0, plan.has_boxes};
+  Stats done{{}, plan.order, plan.has_boxes};
   const uint64_t hits = draw_tiles(options.threads, task, painter, space, &done);
   if (counts != nullptr) {
     counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);

@@ -41,7 +41,6 @@ struct Options {
 struct Stats {
   Counts counts;
   Order order = Order::kAuto;  ///< the order that was chosen
-  uint32_t splits = 0;         ///< how often a thread gave some of its rows to one that had none left
   bool has_boxes = false;      ///< whether the list of boxes was drawn, not that of the surface
 };
 

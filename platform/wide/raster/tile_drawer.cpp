@@ -30,10 +30,6 @@ constexpr float kSortedDeepPx = 5.0F;
 constexpr float kDeepInPerspective = 3.0F;
 constexpr float kDeepInParallel = 1.0F;
 constexpr uint32_t kMostLines = 64;
-// Tiles with fewer rows, or fewer remaining boxes, are not split.
-constexpr int32_t kLeastRows = 2 * kPatchRows;
-constexpr float kLeastWork = 4000;
-
 constexpr uint32_t kCubeSide = uint32_t{1} << kCubeLevel;
 constexpr uint32_t kShortSide = uint32_t{1} << kShortLevel;
 
@@ -114,19 +110,16 @@ void SortedRun::sort(const WideFrame& frame, const Block& block, uint32_t count)
   }
 }
 
-TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others)
+TileDrawer::TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch)
     : lists_(task.lists),
       frame_(task.frame),
       starts_(task.starts),
       depths_(depths),
       full_(full),
       by_blocks_(task.by_blocks),
-      batch_(batch),
-      others_(others) {}
+      batch_(batch) {}
 
-void TileDrawer::start(int32_t y0, int32_t y1) {
-  frame_.tile.y0 = y0;
-  frame_.tile.y1 = y1;
+void TileDrawer::start() {
   const CompactTree& tree = lists_.tree();
   if (!tree.empty()) {
     // The root, as the first child of a world twice as large.
@@ -169,14 +162,11 @@ void TileDrawer::draw_starts() {
   depth_ = starts_->are_all ? 0 : depth_;
 }
 
-void TileDrawer::draw() {
+void TileDrawer::draw(int32_t y0, int32_t y1) {
+  frame_.tile.y0 = y0;
+  frame_.tile.y1 = y1;
+  start();
   while (depth_ > 0) {
-    if (others_ != nullptr && others_->is_wanted()) {
-      split();
-      if (depth_ == 0) {
-        break;
-      }
-    }
     const Block block = stack_[--depth_];
     ++batch_->counts.nodes;
     const bool is_tabled = has_table(block);
@@ -411,89 +401,6 @@ void TileDrawer::draw_cubes(const Block& block, const BlockNode& node, Run* run)
     ++run->entries;
     ++run->first;
   }
-}
-
-// Gives the lower rows, with about half of the work that is left, to a thread that waits.
-void TileDrawer::split() {
-  const Tile& tile = frame_.tile;
-  if (tile.y1 - tile.y0 < kLeastRows) {
-    return;
-  }
-  const int32_t cut = middle_row();
-  const float all = work_above(tile.y1);
-  const float above = work_above(cut);
-  if (all < kLeastWork || above < all / 16 || above > all * 15 / 16) {
-    return;
-  }
-  TileDrawer* const taker = others_->take();
-  if (taker == nullptr) {
-    return;
-  }
-  // Draws what waits in the batch now: from here on the lower rows are the taker's.
-  finish(frame_, depths_, batch_);
-  std::rotate(ahead_, ahead_ + ahead_first_, ahead_ + kAhead);
-  ahead_first_ = 0;
-  taker->frame_.tile = {tile.x0, cut, tile.x1, tile.y1};
-  taker->take_blocks(*this);
-  frame_.tile.y1 = cut;
-  take_blocks(*this);
-  Others::give(taker);
-}
-
-// Takes those blocks of `from` (which may be this drawer) that reach our rows. The ring of `from` begins at 0.
-void TileDrawer::take_blocks(const TileDrawer& from) {
-  const auto take = [&](const Block* blocks, uint32_t count, Block* to) {
-    uint32_t taken = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-      Block block = blocks[i];
-      Rectangle& where = block.place.where;
-      where.y0 = std::max(where.y0, frame_.tile.y0);
-      where.y1 = std::min(where.y1, frame_.tile.y1);
-      if (where.y0 < where.y1) {
-        to[taken++] = block;
-      }
-    }
-    return taken;
-  };
-  depth_ = static_cast<int>(take(from.stack_, static_cast<uint32_t>(from.depth_), stack_));
-  ahead_count_ = take(from.ahead_, from.ahead_count_, ahead_);
-  ahead_first_ = 0;
-}
-
-// Finds a row with about half of the work above it: the first row of a patch, but not of the tile.
-int32_t TileDrawer::middle_row() const {
-  const int32_t origin = depths_.first_row;
-  const float half = work_above(frame_.tile.y1) / 2;
-  int32_t low = (frame_.tile.y0 - origin) / kPatchRows + 1;
-  int32_t high = (frame_.tile.y1 - origin - 1) / kPatchRows;
-  while (low < high) {
-    const int32_t middle = (low + high) / 2;
-    // Looks half a patch further down, so that it finds the nearest cut.
-    if (work_above(origin + middle * kPatchRows + kPatchRows / 2) < half) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return origin + low * kPatchRows;
-}
-
-// Estimates how many of the remaining boxes lie above the row, as if a block's boxes were spread evenly over its rows.
-float TileDrawer::work_above(int32_t y) const {
-  float work = 0;
-  const auto add = [&](const Block& block) {
-    const Rectangle& where = block.place.where;
-    const float part = static_cast<float>(std::clamp(y, where.y0, where.y1) - where.y0) /
-                       static_cast<float>(where.y1 - where.y0);
-    work += part * static_cast<float>(lists_.nodes()[block.node].entries);
-  };
-  for (int i = 0; i < depth_; ++i) {
-    add(stack_[i]);
-  }
-  for (uint32_t i = 0; i < ahead_count_; ++i) {
-    add(ahead_[(ahead_first_ + i) % kAhead]);
-  }
-  return work;
 }
 
 }  // namespace thimble::wide

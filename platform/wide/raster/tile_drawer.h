@@ -2,12 +2,9 @@
 /// runs of boxes to the kernels.
 #pragma once
 
-#include <atomic>
-
 #include "wide/raster/hidden_voxels.h"
 #include "wide/raster/kernels.h"
 #include "wide/raster/voxel_lists.h"
-#include "wide/raster/work_sharing.h"
 
 namespace thimble::wide {
 
@@ -30,11 +27,9 @@ class SortedRun {
   uint32_t sorted_numbers_[kMostBoxes + kReadAhead];
 };
 
-/// Draws for one thread, one tile or part of a tile after the other.
+/// Draws for one thread, one tile after the other.
 class TileDrawer {
  public:
-  using Others = WorkSharing<TileDrawer>;
-
   /// What all threads of a frame share.
   struct Task {
     const VoxelLists& lists;
@@ -43,21 +38,13 @@ class TileDrawer {
     const SolidStarts* starts;  ///< null where the lists leave nothing out
   };
 
-  /// `full`: see all_covered(). `others`: null, or the threads that draw other rows of the same depths and take some of
-  /// ours when they have none left.
-  TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch, Others* others);
+  /// `full`: see all_covered().
+  TileDrawer(const Task& task, const Depths& depths, uint8_t* full, Batch* batch);
 
-  /// Begins a tile of rows y0 .. y1 - 1 of the picture.
-  void start(int32_t y0, int32_t y1);
-  /// Draws the rows that were started or given, except those that it gives away meanwhile. Afterwards frame().tile is
-  /// the rows that were drawn.
-  void draw();
+  /// Draws rows y0 .. y1 - 1 of the picture, which frame().tile is then.
+  void draw(int32_t y0, int32_t y1);
 
   const WideFrame& frame() const { return frame_; }
-
-  // For WorkSharing.
-  std::atomic<bool> given{false};
-  TileDrawer* next_taker = nullptr;
 
  private:
   static constexpr uint32_t kAhead = 8;
@@ -77,6 +64,7 @@ class TileDrawer {
   uint32_t line_count(const BlockNode& node) const;
   void fetch(const BlockNode& node, uint32_t done) const;
   void draw_oldest();
+  void start();
   void draw_starts();
   Run run_of(const Block& block) const;
   void draw_block(const Block& block, const BlockNode& node);
@@ -85,11 +73,6 @@ class TileDrawer {
   void widen_all(const uint32_t (&corner)[3], int level, uint32_t node, uint32_t* entries) const;
   void draw_cubes(const Block& block, const BlockNode& node, Run* run);
 
-  void split();
-  void take_blocks(const TileDrawer& from);
-  int32_t middle_row() const;
-  float work_above(int32_t y) const;
-
   const VoxelLists& lists_;
   WideFrame frame_;
   const SolidStarts* starts_;
@@ -97,7 +80,6 @@ class TileDrawer {
   uint8_t* full_;
   bool by_blocks_;
   Batch* batch_;
-  Others* others_;
   int depth_ = 0;  ///< blocks on stack_
   Block stack_[7 * kMaxLevel + 8];
   Block ahead_[kAhead];  ///< a ring of blocks whose boxes are being fetched, in the order of drawing

@@ -8,7 +8,6 @@
 
 #include "wide/raster/kernels/large-inl.h"
 #include "wide/raster/kernels/pick-inl.h"
-#include "wide/raster/kernels/scatter-inl.h"
 #include "wide/raster/kernels/short-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,9 +25,6 @@ void draw_run_of(const WideFrame& frame, const Run& run, const Depths& depths, B
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d));
   enter_cube<kPerspective, kUnit>(frame, run, depths, batch);
   if (kUnit && run.behind && pick_boxes<kPerspective>(frame, run, depths, batch)) {
-    return;
-  }
-  if (kUnit && !run.behind && scatter_boxes<kPerspective>(frame, run, depths, batch)) {
     return;
   }
   Boxes& queue = batch->boxes;

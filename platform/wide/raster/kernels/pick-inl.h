@@ -265,12 +265,14 @@ bool pick_boxes(const WideFrame& frame, const Run& run, const Depths& depths, Ba
     return true;
   }
   batch->counts.boxes += run.count;
-  in_rooms(
-      run.count, widest < 1, depths.gray_scale != nullptr,
-      [&](auto is_one, auto is_gray, uint32_t at) {
-        return pick_in<kPerspective, is_one.value, is_gray.value>(run, linear, table, at, batch);
-      },
-      [&] { test_boxes<kPerspective, true>(frame, depths, &written, batch); });
+  for (uint32_t at = 0; at < run.count;) {
+    at = with_constants(widest < 1, depths.gray_scale != nullptr, [&](auto is_one, auto is_gray) {
+      return pick_in<kPerspective, is_one.value, is_gray.value>(run, linear, table, at, batch);
+    });
+    if (at < run.count) {
+      test_boxes<kPerspective, true>(frame, depths, &written, batch);
+    }
+  }
   return true;
 }
 

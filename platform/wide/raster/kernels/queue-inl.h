@@ -316,19 +316,6 @@ HWY_INLINE auto with_constants(bool first, bool second, const Call& call) {
   return second ? call(No(), Yes()) : call(No(), No());
 }
 
-// Calls `fill`, with `first` and `second` as constants, for boxes 0 .. count - 1 of a run. `fill` gets the number of
-// the next box and returns the number at which it ran out of room; `make_room` then makes room.
-template <class Fill, class MakeRoom>
-HWY_INLINE void in_rooms(uint32_t count, bool first, bool second, const Fill& fill,
-                         const MakeRoom& make_room) {
-  for (uint32_t at = 0; at < count;) {
-    at = with_constants(first, second, [&](auto one, auto two) { return fill(one, two, at); });
-    if (at < count) {
-      make_room();
-    }
-  }
-}
-
 // Pairs and tests all that waits. Unclear pairs may be left.
 template <bool kPerspective, bool kUnit>
 HWY_INLINE void test_boxes(const WideFrame& frame, const Depths& depths, bool* written, Batch* batch) {
