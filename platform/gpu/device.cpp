@@ -33,12 +33,10 @@ VkInstance make_instance() {
   if (volkInitialize() != VK_SUCCESS) {
     throw DeviceError("there is no Vulkan loader (libvulkan.so.1)");
   }
-  VkApplicationInfo application{};
-  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  auto application = vulkan<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
   application.pApplicationName = "thimble";
   application.apiVersion = VK_API_VERSION_1_1;
-  VkInstanceCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  auto info = vulkan<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
   info.pApplicationInfo = &application;
   VkInstance instance = VK_NULL_HANDLE;
   [[maybe_unused]] const UnwatchedDriver driver;
@@ -168,13 +166,11 @@ Device::Device() : instance_(make_instance()) {
   VkPhysicalDeviceFeatures wanted{};
   wanted.robustBufferAccess = VK_TRUE;
   const float priority = 1;
-  VkDeviceQueueCreateInfo queue{};
-  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  auto queue = vulkan<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
   queue.queueFamilyIndex = family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  VkDeviceCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  auto info = vulkan<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &wanted;
@@ -193,8 +189,7 @@ Device::~Device() {
 }
 
 Buffer Device::make_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage, Memory memory) const {
-  VkBufferCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  auto info = vulkan<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.size = bytes;
   info.usage = usage;
   VkBuffer buffer = VK_NULL_HANDLE;
@@ -218,8 +213,7 @@ Buffer Device::make_buffer(VkDeviceSize bytes, VkBufferUsageFlags usage, Memory 
           (memory_.memoryTypes[type].propertyFlags & flags) != flags) {
         continue;
       }
-      VkMemoryAllocateInfo allocation{};
-      allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+      auto allocation = vulkan<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
       allocation.allocationSize = needed.size;
       allocation.memoryTypeIndex = type;
       result = vkAllocateMemory(device_, &allocation, nullptr, &allocated);

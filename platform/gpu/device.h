@@ -16,6 +16,14 @@ namespace thimble::gpu {
 /// Throws DeviceError, which says what was to be done, for anything but VK_SUCCESS.
 void require(VkResult result, const char* what);
 
+/// A structure of Vulkan's, all of it 0 but its type.
+template <class Structure>
+Structure vulkan(VkStructureType type) {
+  Structure made{};
+  made.sType = type;
+  return made;
+}
+
 class Buffer {
  public:
   Buffer() = default;

@@ -22,16 +22,22 @@ constexpr std::uint32_t kGroupSide = 8;  // threads of a group; kernel/frame.com
 constexpr std::uint64_t kForever = UINT64_MAX;
 
 void begin_once(VkCommandBuffer commands) {
-  VkCommandBufferBeginInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  auto info = vulkan<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   require(vkBeginCommandBuffer(commands, &info), "take commands");
 }
 
+void submit(const Device& device, VkCommandBuffer commands, VkFence fence, const char* what) {
+  require(vkEndCommandBuffer(commands), "take commands");
+  auto info = vulkan<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &commands;
+  require(vkQueueSubmit(device.queue(), 1, &info, fence), what);
+}
+
 void wait_for(VkCommandBuffer commands, VkAccessFlags written, VkPipelineStageFlags by, VkAccessFlags read,
               VkPipelineStageFlags before) {
-  VkMemoryBarrier barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  auto barrier = vulkan<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
   barrier.srcAccessMask = written;
   barrier.dstAccessMask = read;
   vkCmdPipelineBarrier(commands, by, before, 0, 1, &barrier, 0, nullptr, 0, nullptr);
@@ -59,7 +65,7 @@ struct Renderer::State {
   void set_up(const SceneWords& words);
   void upload(const std::vector<std::uint32_t>& words);
   void make_layouts();
-  void make_slot(std::size_t number);
+  void make(Slot* slot);
   VkPipeline pipeline(bool lit, bool pairs);
   void fit(Slot* slot, std::size_t bytes);
   // Starts a kernel over the width and height of `parameters`; `in_bytes` of the slot's host memory go to its output
@@ -104,10 +110,10 @@ Renderer::State::State(const CompactTree& tree, Span<const Rgb8> palette, const 
 void Renderer::State::set_up(const SceneWords& words) {
   make_layouts();
   slots.resize(static_cast<std::size_t>(std::max(options.frames, 1)));
-  upload(words.words);
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    make_slot(i);
+  for (Slot& slot : slots) {
+    make(&slot);
   }
+  upload(words.words);
 }
 
 void Renderer::State::make_layouts() {
@@ -119,33 +125,28 @@ void Renderer::State::make_layouts() {
     bindings[i].descriptorCount = 1;
     bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
   }
-  VkDescriptorSetLayoutCreateInfo set{};
-  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  auto set = vulkan<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
   set.bindingCount = 3;
   set.pBindings = bindings;
   require(vkCreateDescriptorSetLayout(device.get(), &set, nullptr, &set_layout), "take the kernel's layout");
-  VkPipelineLayoutCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  auto info = vulkan<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
   info.setLayoutCount = 1;
   info.pSetLayouts = &set_layout;
   require(vkCreatePipelineLayout(device.get(), &info, nullptr, &layout), "take the kernel's layout");
   const auto frames = static_cast<std::uint32_t>(std::max(options.frames, 1));
   const VkDescriptorPoolSize sizes[2] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, frames},
                                          {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * frames}};
-  VkDescriptorPoolCreateInfo pool{};
-  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  auto pool = vulkan<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
   pool.maxSets = frames;
   pool.poolSizeCount = 2;
   pool.pPoolSizes = sizes;
   require(vkCreateDescriptorPool(device.get(), &pool, nullptr, &descriptors), "take the kernel's layout");
-  VkCommandPoolCreateInfo command_pool{};
-  command_pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  auto command_pool = vulkan<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
   command_pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   command_pool.queueFamilyIndex = device.family();
   require(vkCreateCommandPool(device.get(), &command_pool, nullptr, &commands), "take commands");
   if (device.tick_seconds() > 0) {
-    VkQueryPoolCreateInfo query{};
-    query.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    auto query = vulkan<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
     query.queryType = VK_QUERY_TYPE_TIMESTAMP;
     query.queryCount = 2 * frames;
     require(vkCreateQueryPool(device.get(), &query, nullptr, &queries), "keep the time");
@@ -168,49 +169,33 @@ void Renderer::State::upload(const std::vector<std::uint32_t>& words) {
   }
   const std::size_t part = std::min(bytes, kUploadBytes);
   const Buffer from = device.make_buffer(part, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Memory::kReadBack);
-  VkCommandBufferAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  info.commandPool = commands;
-  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  info.commandBufferCount = 1;
-  VkCommandBuffer copy = VK_NULL_HANDLE;
-  require(vkAllocateCommandBuffers(device.get(), &info, &copy), "take commands");
+  VkCommandBuffer copy = slots[0].commands;
   for (std::size_t first = 0; first < bytes; first += part) {
     const std::size_t size = std::min(part, bytes - first);
     std::memcpy(from.words(), words.data() + first / 4, size);
     begin_once(copy);
     const VkBufferCopy region{0, first, size};
     vkCmdCopyBuffer(copy, from.get(), scene.get(), 1, &region);
-    require(vkEndCommandBuffer(copy), "take commands");
-    VkSubmitInfo submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &copy;
-    require(vkQueueSubmit(device.queue(), 1, &submit, VK_NULL_HANDLE), "take the scene");
+    submit(device, copy, VK_NULL_HANDLE, "take the scene");
     require(vkQueueWaitIdle(device.queue()), "take the scene");
   }
-  vkFreeCommandBuffers(device.get(), commands, 1, &copy);
 }
 
-void Renderer::State::make_slot(std::size_t number) {
-  Slot& slot = slots[number];
-  slot.parameters =
+void Renderer::State::make(Slot* slot) {
+  slot->parameters =
       device.make_buffer(sizeof(Parameters), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Memory::kWritten);
-  VkDescriptorSetAllocateInfo set{};
-  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  auto set = vulkan<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
   set.descriptorPool = descriptors;
   set.descriptorSetCount = 1;
   set.pSetLayouts = &set_layout;
-  require(vkAllocateDescriptorSets(device.get(), &set, &slot.descriptors), "take the kernel's layout");
-  VkCommandBufferAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  require(vkAllocateDescriptorSets(device.get(), &set, &slot->descriptors), "take the kernel's layout");
+  auto info = vulkan<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
   info.commandPool = commands;
   info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   info.commandBufferCount = 1;
-  require(vkAllocateCommandBuffers(device.get(), &info, &slot.commands), "take commands");
-  VkFenceCreateInfo fence{};
-  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  require(vkCreateFence(device.get(), &fence, nullptr, &slot.fence), "take commands");
+  require(vkAllocateCommandBuffers(device.get(), &info, &slot->commands), "take commands");
+  auto fence = vulkan<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+  require(vkCreateFence(device.get(), &fence, nullptr, &slot->fence), "take commands");
 }
 
 VkPipeline Renderer::State::pipeline(bool lit, bool pairs) {
@@ -219,14 +204,12 @@ VkPipeline Renderer::State::pipeline(bool lit, bool pairs) {
     return made;
   }
   const Kernel kernel = kernel_of(lit, pairs);
-  VkShaderModuleCreateInfo module{};
-  module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  auto module = vulkan<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
   module.codeSize = 4 * kernel.words;
   module.pCode = kernel.code;
   VkShaderModule shader = VK_NULL_HANDLE;
   require(vkCreateShaderModule(device.get(), &module, nullptr, &shader), "take the kernel");
-  VkComputePipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  auto info = vulkan<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
   info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
   info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
   info.stage.module = shader;
@@ -299,12 +282,7 @@ void Renderer::State::start(std::size_t number, const Parameters& told, bool pai
     wait_for(slot.commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
              VK_ACCESS_HOST_READ_BIT, VK_PIPELINE_STAGE_HOST_BIT);
   }
-  require(vkEndCommandBuffer(slot.commands), "take commands");
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &slot.commands;
-  require(vkQueueSubmit(device.queue(), 1, &submit, slot.fence), "draw");
+  submit(device, slot.commands, slot.fence, "draw");
 }
 
 double Renderer::State::finish(std::size_t number) {
