@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostListBytes = std::size_t{2} << 30;
 // What a frame has where nothing was hit, until what lies behind is put there: no palette's colour by chance.
 constexpr Rgb8 kNothing{1, 0, 2};
-constexpr int kBehindStep = 16;
+constexpr int kBehindStep = kMostStep;
 
 }  // namespace
 
@@ -51,7 +51,8 @@ void FastFrames::draw(const FinishedPicture& picture, std::vector<std::uint8_t>*
     draw_rays(picture, step);
   }
   engine_ = is_wide ? "wide" : "rays";
-  enlarge(picture, step, rgb);
+  enlarge(small_, step, picture.width_px(), picture.height_px(), rgb);
+  last_step_ = step;
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   pace_.take(seconds_);
 }
@@ -70,27 +71,26 @@ bool FastFrames::draw_lit(const FinishedPicture& picture, std::vector<std::uint8
   if (in_time) {
     const std::string gpu = picture.gpu();
     engine_ = gpu.empty() ? "lit" : gpu;
-    enlarge(picture, step, rgb);
+    enlarge(small_, step, picture.width_px(), picture.height_px(), rgb);
+    last_step_ = step;
   }
   return in_time;
 }
 
-// The picture from every `step`-th pixel of it.
-void FastFrames::enlarge(const FinishedPicture& picture, int step, std::vector<std::uint8_t>* rgb) {
-  const std::int32_t rows = thinned_px(picture.height_px(), step);
-  rgb->resize(3 * static_cast<std::size_t>(picture.width_px()) *
-              static_cast<std::size_t>(picture.height_px()));
+// A picture of that size from every `step`-th pixel of it.
+void FastFrames::enlarge(const std::vector<std::uint8_t>& small, int step, std::int32_t width_px,
+                         std::int32_t height_px, std::vector<std::uint8_t>* rgb) {
+  const std::int32_t rows = thinned_px(height_px, step);
+  rgb->resize(3 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
   const std::int32_t part = (rows + threads_.count() - 1) / threads_.count();
   threads_.each(threads_.count(), [&](int i) {
     const std::int32_t first = std::min(rows, part * i);
     const std::int32_t end = std::min(rows, first + part);
     if (first < end) {
-      std::vector<std::uint16_t> work(magnify_work(picture.width_px()));
-      magnify_rows(small_.data(), step, picture.width_px(), picture.height_px(), first, end, work.data(),
-                   rgb->data());
+      std::vector<std::uint16_t> work(magnify_work(width_px));
+      magnify_rows(small.data(), step, width_px, height_px, first, end, work.data(), rgb->data());
     }
   });
-  last_step_ = step;
 }
 
 bool FastFrames::draw_wide(const FinishedPicture& picture, int step) {
@@ -125,41 +125,20 @@ void FastFrames::draw_rays(const FinishedPicture& picture, int step) {
 
 // It changes slowly over the picture, so a few points of it will do.
 void FastFrames::put_behind(const FinishedPicture& picture, int step) {
-  const std::int32_t width = picture.width_px();
-  const std::int32_t columns = thinned_px(width, kBehindStep);
-  const std::int32_t rows = thinned_px(picture.height_px(), kBehindStep);
-  behind_small_.resize(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const std::int32_t width = thinned_px(picture.width_px(), step);
+  const std::int32_t height = thinned_px(picture.height_px(), step);
+  const std::int32_t rows = thinned_px(height, kBehindStep);
+  const std::size_t row = 3 * static_cast<std::size_t>(thinned_px(width, kBehindStep));
+  behind_small_.resize(row * static_cast<std::size_t>(rows));
   threads_.each(rows, [&](int y) {
-    picture.draw_behind_row(kBehindStep, y, behind_small_.data() + 3 * static_cast<std::size_t>(columns * y));
+    picture.draw_behind_row(kBehindStep * step, y, behind_small_.data() + row * static_cast<std::size_t>(y));
   });
-  const std::int32_t small_width = thinned_px(width, step);
-  const std::int32_t small_height = thinned_px(picture.height_px(), step);
-  threads_.each(small_height, [&](int y) {
-    std::uint8_t* to =
-        small_.data() + 3 * static_cast<std::size_t>(small_width) * static_cast<std::size_t>(y);
-    const std::int32_t full_y = y * step;
-    const std::int32_t top = full_y / kBehindStep;
-    const std::int32_t bottom = std::min(top + 1, rows - 1);
-    const int down = full_y % kBehindStep;
-    for (std::int32_t x = 0; x < small_width; ++x, to += 3) {
-      if (to[0] != kNothing.r || to[1] != kNothing.g || to[2] != kNothing.b) {
-        continue;
-      }
-      const std::int32_t left = x * step / kBehindStep;
-      const std::int32_t right = std::min(left + 1, columns - 1);
-      const int along = x * step % kBehindStep;
-      for (int channel = 0; channel < 3; ++channel) {
-        const auto at = [&](std::int32_t column, std::int32_t line) {
-          return static_cast<int>(behind_small_[3 * static_cast<std::size_t>(columns * line + column) +
-                                                static_cast<std::size_t>(channel)]);
-        };
-        const int above = at(left, top) * (kBehindStep - along) + at(right, top) * along;
-        const int below = at(left, bottom) * (kBehindStep - along) + at(right, bottom) * along;
-        to[channel] = static_cast<std::uint8_t>((above * (kBehindStep - down) + below * down) /
-                                                (kBehindStep * kBehindStep));
-      }
+  enlarge(behind_small_, kBehindStep, width, height, &behind_);
+  for (std::size_t i = 0; i < small_.size(); i += 3) {
+    if (Rgb8{small_[i], small_[i + 1], small_[i + 2]} == kNothing) {
+      std::copy_n(behind_.data() + i, 3, small_.data() + i);
     }
-  });
+  }
 }
 
 namespace {

@@ -99,7 +99,8 @@ class FastFrames {
   bool draw_wide(const FinishedPicture& picture, int step);
   void draw_rays(const FinishedPicture& picture, int step);
   void put_behind(const FinishedPicture& picture, int step);
-  void enlarge(const FinishedPicture& picture, int step, std::vector<std::uint8_t>* rgb);
+  void enlarge(const std::vector<std::uint8_t>& small, int step, std::int32_t width_px,
+               std::int32_t height_px, std::vector<std::uint8_t>* rgb);
 
   std::shared_ptr<const OpenScene> scene_;
   wide::Threads threads_;
@@ -111,6 +112,7 @@ class FastFrames {
   Pace pace_;
   LitPace lit_pace_;
   std::vector<std::uint8_t> small_;
+  std::vector<std::uint8_t> behind_;
   std::vector<std::uint8_t> behind_small_;
   std::string engine_ = "rays";
   int last_step_ = 1;

@@ -480,58 +480,47 @@ SamplePass::SamplePass(const LookRows& look, const Camera& fine, int across, int
                       static_cast<std::size_t>(fine.height_px() / across));
 }
 
-// Calls visit(x, y, px, py, known) for each pixel (x, y) of some rows of the pass's picture, which is (px, py) of the
-// finished one: its first sample's place, and whether that was drawn before. By columns of pixels, so that what lies
-// side by side is drawn together.
-template <class Visit>
-void SamplePass::each_pixel(std::int32_t first, std::int32_t rows, std::int32_t columns,
-                            const Visit& visit) const {
-  constexpr std::int32_t kColumns = 8;
+Status SamplePass::draw(std::int32_t first, std::int32_t rows, Image* image) {
+  constexpr std::int32_t kColumns = 8;  // so that what lies side by side is drawn together
   const std::int32_t every = std::max(step_, 1);
-  for (std::int32_t left = 0; left < columns; left += kColumns) {
+  const std::int32_t across = step_ == 0 ? across_ : 1;  // of the samples that a pixel gets
+  pixels_.clear();
+  places_.clear();
+  for (std::int32_t left = 0; left < image->width_px; left += kColumns) {
     for (std::int32_t y = first; y < first + rows; ++y) {
-      for (std::int32_t x = left; x < std::min(left + kColumns, columns); ++x) {
+      for (std::int32_t x = left; x < std::min(left + kColumns, image->width_px); ++x) {
         const std::int32_t px = x * every;
         const std::int32_t py = y * every;
-        const bool known = kept_->step != 0 && px % kept_->step == 0 && py % kept_->step == 0;
-        visit(x, y, px, py, known);
+        const bool is_known = kept_->step != 0 && px % kept_->step == 0 && py % kept_->step == 0;
+        pixels_.push_back({x, y, px, py, is_known});
+        for (std::int32_t i = is_known ? 1 : 0; i < across * across; ++i) {
+          places_.push_back({px * across_ + i % across, py * across_ + i / across, px, py});
+        }
       }
     }
   }
-}
-
-Status SamplePass::draw(std::int32_t first, std::int32_t rows, Image* image) {
-  const std::int32_t across = step_ == 0 ? across_ : 1;  // of the samples that a pixel gets
-  places_.clear();
-  each_pixel(first, rows, image->width_px,
-             [&](std::int32_t /*x*/, std::int32_t /*y*/, std::int32_t px, std::int32_t py, bool known) {
-               for (std::int32_t i = known ? 1 : 0; i < across * across; ++i) {
-                 places_.push_back({px * across_ + i % across, py * across_ + i / across, px, py});
-               }
-             });
   colors_.resize(3 * places_.size());
   samples_.resize(kChannels * places_.size());
   const Status status =
       look_.draw_places(fine_, {places_.data(), places_.size()}, Bytes(colors_.data(), colors_.size()),
                         Bytes(samples_.data(), samples_.size()), nullptr);
   const std::uint8_t* next = samples_.data();
-  each_pixel(first, rows, image->width_px,
-             [&](std::int32_t x, std::int32_t y, std::int32_t px, std::int32_t py, bool known) {
-               std::array<std::uint8_t, kChannels>& kept =
-                   kept_->drawn[static_cast<std::size_t>(py) * static_cast<std::size_t>(width_px_) +
-                                static_cast<std::size_t>(px)];
-               if (!known) {
-                 std::copy_n(next, kChannels, kept.begin());
-                 next += kChannels;
-               }
-               std::array<std::uint32_t, kChannels> sums{kept[0], kept[1], kept[2], kept[3]};
-               for (std::int32_t i = 1; i < across * across; ++i, next += kChannels) {
-                 for (std::size_t channel = 0; channel < kChannels; ++channel) {
-                   sums[channel] += next[channel];
-                 }
-               }
-               LookRows::finish_sums(x, y, sums.data(), static_cast<std::uint32_t>(across * across), image);
-             });
+  for (const Pixel& pixel : pixels_) {
+    std::array<std::uint8_t, kChannels>& kept =
+        kept_->drawn[static_cast<std::size_t>(pixel.py) * static_cast<std::size_t>(width_px_) +
+                     static_cast<std::size_t>(pixel.px)];
+    if (!pixel.is_known) {
+      std::copy_n(next, kChannels, kept.begin());
+      next += kChannels;
+    }
+    std::array<std::uint32_t, kChannels> sums{kept[0], kept[1], kept[2], kept[3]};
+    for (std::int32_t i = 1; i < across * across; ++i, next += kChannels) {
+      for (std::size_t channel = 0; channel < kChannels; ++channel) {
+        sums[channel] += next[channel];
+      }
+    }
+    LookRows::finish_sums(pixel.x, pixel.y, sums.data(), static_cast<std::uint32_t>(across * across), image);
+  }
   return status;
 }
 
@@ -546,136 +535,97 @@ constexpr std::chrono::milliseconds kPublishTime{60};  // between two states of 
 
 }  // namespace
 
-struct Refinement::State {
-  State(std::shared_ptr<const FinishedPicture> shown, int count)
-      : picture(std::move(shown)), threads(count) {}
-
-  std::shared_ptr<const FinishedPicture> picture;
-  wide::Threads threads;
-  std::atomic<bool> cancelled{false};
-  std::atomic<bool> ended{false};
-  KeptSamples kept;
-
-  std::mutex mutex;  // of what follows
-  std::vector<std::uint8_t> rgb;
-  std::uint64_t version = 0;
-  bool finished = false;
-  int step = kMostRefinedStep;
-  int percent = 0;
-  std::string fault;
-
-  bool draw_coarse(int every);
-  bool draw_full(bool is_final);
-};
-
-// Whether it was drawn to its end.
-bool Refinement::State::draw_coarse(int every) {
-  std::vector<std::uint8_t> small;
-  if (!picture->draw(
-          every, &threads, &small, [&](std::int32_t /*rows*/) { return !cancelled.load(); }, &kept)) {
-    return false;
-  }
-  const std::int32_t width = picture->width_px();
-  const std::int32_t height = picture->height_px();
-  std::vector<std::uint8_t> full(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  std::vector<std::uint16_t> work(magnify_work(width));
-  magnify_rows(small.data(), every, width, height, 0, thinned_px(height, every), work.data(), full.data());
-  const std::scoped_lock lock(mutex);
-  rgb.swap(full);
-  step = every;
-  percent = 100;
-  ++version;
-  return true;
-}
-
-// The rows of the whole picture go over those of the pass before.
-bool Refinement::State::draw_full(bool is_final) {
-  const std::int32_t height = picture->height_px();
-  const std::size_t line = 3 * static_cast<std::size_t>(picture->width_px());
-  std::vector<std::uint8_t> full;
-  std::int32_t shown = 0;
-  Clock::time_point published = Clock::now();
-  return picture->draw(
-      is_final ? 0 : 1, &threads, &full,
-      [&](std::int32_t drawn) {
-        if (cancelled.load()) {
-          return false;
-        }
-        if (drawn < height && Clock::now() < published + kPublishTime) {
-          return true;
-        }
-        const std::scoped_lock lock(mutex);
-        rgb.resize(full.size());
-        std::memcpy(rgb.data() + line * static_cast<std::size_t>(shown),
-                    full.data() + line * static_cast<std::size_t>(shown),
-                    line * static_cast<std::size_t>(drawn - shown));
-        shown = drawn;
-        step = is_final ? 0 : 1;
-        percent = 100 * drawn / height;
-        finished = is_final && drawn == height;
-        ++version;
-        published = Clock::now();
-        return true;
-      },
-      &kept);
-}
-
-void Refinement::run(State* state) {
-  try {
-    bool goes_on = true;
-    for (int every = kMostRefinedStep; goes_on && every > 1; every /= 2) {
-      goes_on = state->draw_coarse(every);
-    }
-    if (goes_on && state->picture->across() > 1) {
-      goes_on = state->draw_full(false);
-    }
-    if (goes_on) {
-      state->draw_full(true);
-    }
-  } catch (const std::exception& error) {
-    const std::scoped_lock lock(state->mutex);
-    state->fault = error.what();
-  }
-  state->ended.store(true);
-}
-
 Refinement::Refinement(std::shared_ptr<const FinishedPicture> picture, int threads)
-    : picture_(picture),
-      state_(std::make_unique<State>(std::move(picture), threads)),
-      thread_(run, state_.get()) {}
+    : picture_(std::move(picture)), threads_(threads), thread_([this] { run(); }) {}
 
 Refinement::~Refinement() {
   cancel();
   thread_.join();
 }
 
-void Refinement::cancel() {
-  state_->cancelled.store(true);
+void Refinement::run() {
+  try {
+    bool goes_on = true;
+    for (int every = kMostRefinedStep; goes_on && every > 1; every /= 2) {
+      goes_on = draw_coarse(every);
+    }
+    if (goes_on && picture_->across() > 1) {
+      goes_on = draw_full(false);
+    }
+    if (goes_on) {
+      draw_full(true);
+    }
+  } catch (const std::exception& error) {
+    const std::scoped_lock lock(mutex_);
+    fault_ = error.what();
+  }
+  ended_.store(true);
 }
 
-bool Refinement::has_ended() const {
-  return state_->ended.load();
+// Whether it was drawn to its end.
+bool Refinement::draw_coarse(int every) {
+  std::vector<std::uint8_t> small;
+  if (!picture_->draw(
+          every, &threads_, &small, [&](std::int32_t /*rows*/) { return !cancelled_.load(); }, &kept_)) {
+    return false;
+  }
+  const std::int32_t width = picture_->width_px();
+  const std::int32_t height = picture_->height_px();
+  std::vector<std::uint8_t> full(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::vector<std::uint16_t> work(magnify_work(width));
+  magnify_rows(small.data(), every, width, height, 0, thinned_px(height, every), work.data(), full.data());
+  const std::scoped_lock lock(mutex_);
+  rgb_.swap(full);
+  now_ = {now_.version + 1, false, every, 100};
+  return true;
+}
+
+// The rows of the whole picture go over those of the pass before.
+bool Refinement::draw_full(bool is_final) {
+  const std::int32_t height = picture_->height_px();
+  const std::size_t line = 3 * static_cast<std::size_t>(picture_->width_px());
+  std::vector<std::uint8_t> full;
+  std::int32_t shown = 0;
+  Clock::time_point published = Clock::now();
+  return picture_->draw(
+      is_final ? 0 : 1, &threads_, &full,
+      [&](std::int32_t drawn) {
+        if (cancelled_.load()) {
+          return false;
+        }
+        if (drawn < height && Clock::now() < published + kPublishTime) {
+          return true;
+        }
+        const std::scoped_lock lock(mutex_);
+        rgb_.resize(full.size());
+        std::memcpy(rgb_.data() + line * static_cast<std::size_t>(shown),
+                    full.data() + line * static_cast<std::size_t>(shown),
+                    line * static_cast<std::size_t>(drawn - shown));
+        shown = drawn;
+        now_ = {now_.version + 1, is_final && drawn == height, is_final ? 0 : 1, 100 * drawn / height};
+        published = Clock::now();
+        return true;
+      },
+      &kept_);
 }
 
 bool Refinement::is_finished() const {
-  const std::scoped_lock lock(state_->mutex);
-  return state_->finished && taken_ == state_->version;
+  const std::scoped_lock lock(mutex_);
+  return now_.is_finished && taken_.version == now_.version;
 }
 
 std::string Refinement::fault() const {
-  const std::scoped_lock lock(state_->mutex);
-  return state_->fault;
+  const std::scoped_lock lock(mutex_);
+  return fault_;
 }
 
 bool Refinement::take(std::vector<std::uint8_t>* rgb) {
-  const std::scoped_lock lock(state_->mutex);
-  if (state_->version == taken_) {
+  const std::scoped_lock lock(mutex_);
+  if (now_.version == taken_.version) {
     return false;
   }
-  *rgb = state_->rgb;
-  taken_ = state_->version;
-  taken_step_ = state_->step;
-  taken_percent_ = state_->percent;
+  *rgb = rgb_;
+  taken_ = now_;
   return true;
 }
 

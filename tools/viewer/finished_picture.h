@@ -52,8 +52,11 @@ class SamplePass {
   void end();
 
  private:
-  template <class Visit>
-  void each_pixel(std::int32_t first, std::int32_t rows, std::int32_t columns, const Visit& visit) const;
+  // Of the pass's picture; (px, py) in the finished one. `is_known`: its first sample was drawn before.
+  struct Pixel {
+    std::int32_t x, y, px, py;
+    bool is_known;
+  };
 
   const LookRows& look_;
   const Camera& fine_;
@@ -62,6 +65,7 @@ class SamplePass {
   std::int32_t width_px_;  // of the picture
   KeptSamples* kept_;
   // Of the rows that are drawn together:
+  std::vector<Pixel> pixels_;
   std::vector<SamplePlace> places_;
   std::vector<std::uint8_t> colors_;
   std::vector<std::uint8_t> samples_;
@@ -214,17 +218,12 @@ class FinishedPicture {
 // samples, row by row from the top. Whoever shows it takes what there is whenever there is more. Cancelling
 // takes no time: the threads notice at their next row.
 
-class Refinement {
+class Refinement final : public BackgroundTask {
  public:
   Refinement(std::shared_ptr<const FinishedPicture> picture, int threads);
   /// Cancels, and waits for the rows that are being drawn.
-  ~Refinement();
-  Refinement(const Refinement&) = delete;
-  Refinement& operator=(const Refinement&) = delete;
+  ~Refinement() override;
 
-  void cancel();
-  /// Whether its threads have ended: finished, cancelled or failed.
-  bool has_ended() const;
   /// Whether what `take` gives now is the finished picture.
   bool is_finished() const;
   /// What the drawing threw, as a sentence; empty for nothing.
@@ -233,22 +232,36 @@ class Refinement {
   bool take(std::vector<std::uint8_t>* rgb);
   /// Of the picture that `take` took last: every how-many-th pixel it has, 0 for the finished one; and the
   /// share of it that is drawn, in per cent.
-  int step() const { return taken_step_; }
-  int percent() const { return taken_percent_; }
+  int step() const { return taken_.step; }
+  int percent() const { return taken_.percent; }
   const FinishedPicture& picture() const { return *picture_; }
 
  private:
-  struct State;
-  static void run(State* state);
+  static constexpr int kMostRefinedStep = 8;
+
+  // How far the picture is; `version` counts up.
+  struct State {
+    std::uint64_t version = 0;
+    bool is_finished = false;
+    int step = kMostRefinedStep;
+    int percent = 0;
+  };
+
+  void run();
+  bool draw_coarse(int every);
+  bool draw_full(bool is_final);
 
   std::shared_ptr<const FinishedPicture> picture_;
-  std::unique_ptr<State> state_;
-  std::uint64_t taken_ = 0;
-  int taken_step_ = kMostRefinedStep;
-  int taken_percent_ = 0;
-  std::thread thread_;
+  wide::Threads threads_;
+  KeptSamples kept_;
+  State taken_;
 
-  static constexpr int kMostRefinedStep = 8;
+  mutable std::mutex mutex_;  // of what follows
+  std::vector<std::uint8_t> rgb_;
+  State now_;
+  std::string fault_;
+
+  std::thread thread_;
 };
 
 }  // namespace thimble::tools::viewer

@@ -51,7 +51,7 @@ void SceneReading::run(const SceneArguments& arguments, int threads, const OpenS
   } catch (...) {
     error_ = std::current_exception();
   }
-  done_.store(true);
+  ended_.store(true);
 }
 
 std::shared_ptr<const OpenScene> SceneReading::take() {

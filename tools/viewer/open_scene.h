@@ -26,30 +26,41 @@ struct OpenScene {
   double side() const { return static_cast<double>(1U << static_cast<unsigned>(level())); }
 };
 
-/// Reads and builds on a thread of its own.
-class SceneReading {
+/// Work on a thread of its own.
+class BackgroundTask {
+ public:
+  virtual ~BackgroundTask() = default;
+  BackgroundTask() = default;
+  BackgroundTask(const BackgroundTask&) = delete;
+  BackgroundTask& operator=(const BackgroundTask&) = delete;
+
+  /// Makes it end soon, with nothing; takes no time.
+  void cancel() { cancelled_.store(true); }
+  /// Whether it is done, cancelled or failed.
+  bool has_ended() const { return ended_.load(); }
+
+ protected:
+  std::atomic<bool> cancelled_{false};
+  std::atomic<bool> ended_{false};
+};
+
+/// Reads and builds a scene.
+class SceneReading final : public BackgroundTask {
  public:
   /// `before`: another frame of the same animation; null for any other scene.
   SceneReading(const SceneArguments& arguments, int threads,
                std::shared_ptr<const OpenScene> before = nullptr);
   /// Cancels, and waits until the thread has noticed.
-  ~SceneReading();
-  SceneReading(const SceneReading&) = delete;
-  SceneReading& operator=(const SceneReading&) = delete;
+  ~SceneReading() override;
 
-  bool is_done() const { return done_.load(); }
   /// 0 .. 1 of reading and building.
   double progress() const { return progress_.load(); }
-  /// Makes it end soon, with nothing.
-  void cancel() { cancelled_.store(true); }
-  /// Once it is done: the scene; throws what reading or building threw.
+  /// Once it has ended: the scene; throws what reading or building threw.
   std::shared_ptr<const OpenScene> take();
 
  private:
   void run(const SceneArguments& arguments, int threads, const OpenScene* before);
 
-  std::atomic<bool> cancelled_{false};
-  std::atomic<bool> done_{false};
   std::atomic<double> progress_{0};
   std::shared_ptr<const OpenScene> scene_;
   std::exception_ptr error_;

@@ -85,6 +85,7 @@ class Viewer {
       look_around();
       refine();
       finish_savings();
+      std::erase_if(leaving_, [](const auto& each) { return each->has_ended(); });
       if (!message_.empty() && now() >= message_until_) {
         needs_showing_ = true;
       }
@@ -99,7 +100,7 @@ class Viewer {
   void open() {
     const double start = now();
     read(options_.scene);
-    while (!reading_->is_done() && now() < start + kWindowSeconds) {
+    while (!reading_->has_ended() && now() < start + kWindowSeconds) {
       sleep_ms(2);
     }
     look_for_scene();  // what cannot be read at all needs no window
@@ -133,10 +134,7 @@ class Viewer {
       frames->keep_pace(*frames_);
     }
     pool_.reset();
-    if (next_frame_ != nullptr) {
-      next_frame_->cancel();
-      unwanted_.push_back(std::move(next_frame_));
-    }
+    leave(&next_frame_);
     scene_ = std::move(scene);
     look_ = std::move(look);
     frames_ = std::move(frames);
@@ -146,7 +144,7 @@ class Viewer {
 
   // The scene that was read, if one was. Before there is a screen, what is wrong with it is the command's error.
   void look_for_scene() {
-    if (reading_ != nullptr && reading_->is_done()) {
+    if (reading_ != nullptr && reading_->has_ended()) {
       const bool is_first = scene_ == nullptr;
       const bool is_other = wanted_.scene != options_.scene.scene;
       const std::string name = printable(wanted_.scene);
@@ -183,7 +181,6 @@ class Viewer {
     if (screen_ != nullptr && reading_ == nullptr && watch_.has_changed(now())) {
       read(options_.scene);
     }
-    std::erase_if(unwanted_, [](const auto& each) { return each->is_done(); });
   }
 
   // A file that was dropped here: seen from its best side, its frames from the first.
@@ -196,10 +193,7 @@ class Viewer {
 
   // Whatever was being read is no longer wanted.
   void read(const SceneArguments& scene) {
-    if (reading_ != nullptr) {
-      reading_->cancel();
-      unwanted_.push_back(std::move(reading_));
-    }
+    leave(&reading_);
     wanted_ = scene;
     reading_ = std::make_unique<SceneReading>(scene, options_.threads);
   }
@@ -247,7 +241,7 @@ class Viewer {
       read_next();
       return;
     }
-    if (!next_frame_->is_done() || time < next_frame_at_) {
+    if (!next_frame_->has_ended() || time < next_frame_at_) {
       return;
     }
     next_frame_at_ = std::max(next_frame_at_ + kFilmSeconds, time);
@@ -497,7 +491,15 @@ class Viewer {
       }
       savings_.erase(savings_.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    std::erase_if(leaving_, [](const auto& each) { return each->has_ended(); });
+  }
+
+  // Threads notice soon that their work is no longer wanted; nobody waits for that.
+  template <class Task>
+  void leave(std::unique_ptr<Task>* task) {
+    if (*task != nullptr) {
+      (*task)->cancel();
+      leaving_.push_back(std::move(*task));
+    }
   }
 
   // A refinement that is to be saved continues; others end when their threads notice.
@@ -511,8 +513,7 @@ class Viewer {
       saves_this_ = false;
       return;
     }
-    refinement_->cancel();
-    leaving_.push_back(std::move(refinement_));
+    leave(&refinement_);
   }
 
   void tell(const std::string& text) {
@@ -539,29 +540,18 @@ class Viewer {
     lines_.clear();
     is_terminal_ = false;
     stop_refining();
-    for (const Saving& saving : savings_) {
-      saving.refinement->cancel();
+    for (Saving& saving : savings_) {
+      leave(&saving.refinement);
       std::fprintf(stderr, "thimble: the picture was not finished and is not saved; this makes it:\n");
       print(render_command(saving.scene, saving.wishes, saving.look->words(),
                            free_picture_name(saving.scene.scene)));
     }
     std::fflush(stdout);
-    for (std::unique_ptr<SceneReading>* const each : {&reading_, &next_frame_}) {
-      if (*each != nullptr) {
-        (*each)->cancel();
-        unwanted_.push_back(std::move(*each));
-      }
-    }
-    const auto all_ended = [this] {
-      return std::all_of(leaving_.begin(), leaving_.end(),
-                         [](const auto& each) { return each->has_ended(); }) &&
-             std::all_of(savings_.begin(), savings_.end(),
-                         [](const Saving& each) { return each.refinement->has_ended(); }) &&
-             std::all_of(unwanted_.begin(), unwanted_.end(),
-                         [](const auto& each) { return each->is_done(); });
-    };
+    leave(&reading_);
+    leave(&next_frame_);
+    const auto has_ended = [](const auto& each) { return each->has_ended(); };
     const double until = now() + kGoodbyeSeconds;
-    while (!all_ended()) {
+    while (!std::all_of(leaving_.begin(), leaving_.end(), has_ended)) {
       if (now() > until) {
         if (!fault.empty()) {
           std::fprintf(stderr, "thimble: %s\n", fault.c_str());
@@ -581,23 +571,21 @@ class Viewer {
       return "reading " + name() + ": " +
              std::to_string(reading_ == nullptr ? 100 : static_cast<int>(100 * reading_->progress())) + "%";
     }
-    std::array<char, 128> text{};
     const double rate = frame_seconds_ > 0 ? 1 / frame_seconds_ : 0;
+    const std::string text = fixed(rate, 0) + " frames/s " + frames_->engine();
     if (is_refined_ && picture_->at_edges()) {
-      std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, samples where edges are", rate,
-                    frames_->engine().c_str());
-    } else if (is_refined_) {
-      const int samples = picture_->across() * picture_->across();
-      std::snprintf(text.data(), text.size(), "%.0f frames/s %s | finished, %d sample%s a pixel", rate,
-                    frames_->engine().c_str(), samples, samples == 1 ? "" : "s");
-    } else if (refinement_ != nullptr && refinement_->step() <= 1 && refinement_->percent() > 0) {
-      std::snprintf(text.data(), text.size(), "%.0f frames/s %s | %s %d%%", rate, frames_->engine().c_str(),
-                    refinement_->step() == 0 ? "last pass" : "first pass", refinement_->percent());
-    } else {
-      std::snprintf(text.data(), text.size(), "%.0f frames/s %s 1:%d", rate, frames_->engine().c_str(),
-                    frames_->step());
+      return text + " | finished, samples where edges are";
     }
-    return text.data();
+    if (is_refined_) {
+      const int samples = picture_->across() * picture_->across();
+      return text + " | finished, " + std::to_string(samples) + " sample" + (samples == 1 ? "" : "s") +
+             " a pixel";
+    }
+    if (refinement_ != nullptr && refinement_->step() <= 1 && refinement_->percent() > 0) {
+      return text + (refinement_->step() == 0 ? " | last pass " : " | first pass ") +
+             std::to_string(refinement_->percent()) + "%";
+    }
+    return text + " 1:" + std::to_string(frames_->step());
   }
 
   int wait_ms() const {
@@ -623,7 +611,6 @@ class Viewer {
   FileWatch watch_;
   SceneArguments wanted_;  // that `reading_` reads
   std::unique_ptr<SceneReading> reading_;
-  std::vector<std::unique_ptr<SceneReading>> unwanted_;  // cancelled, their threads still at it
   std::unique_ptr<host::Screen> screen_;
   std::optional<Controls> controls_;
   bool is_terminal_ = false;
@@ -634,7 +621,7 @@ class Viewer {
   std::shared_ptr<const FinishedPicture> picture_;
   ViewWishes wishes_;
   std::unique_ptr<Refinement> refinement_;
-  std::vector<std::unique_ptr<Refinement>> leaving_;  // cancelled, their threads still in a row
+  std::vector<std::unique_ptr<BackgroundTask>> leaving_;  // cancelled, their threads still at it
   std::vector<Saving> savings_;
   std::vector<std::uint8_t> rgb_;
 
