@@ -52,7 +52,6 @@ void tell(const SceneSource& source, const platform::BoardFacts& board) {
 }
 
 }  // namespace
-}  // namespace thimble::tools
 
 extern "C" {
 
@@ -64,16 +63,15 @@ extern "C" {
 // A file of that name holds these bytes, which stay where they are.
 [[clang::export_name("add_file")]] void thimble_add_file(const char* name, const std::uint8_t* bytes,
                                                          std::size_t size) {
-  thimble::tools::add_file(name, {bytes, size});
+  add_file(name, {bytes, size});
 }
 
 // A program of `make images` for board number `index`: the scene that is baked next is to lie behind one of those; where it
 // has water, behind one that moves water.
 [[clang::export_name("add_program")]] void thimble_add_program(const std::uint8_t* bytes, std::size_t size,
                                                                std::uint32_t index, bool moves_water) {
-  using namespace thimble::tools;
   images[moves_water].push_back(
-      open_image({reinterpret_cast<const char*>(bytes), size}, thimble::platform::boards()[index]));
+      open_image({reinterpret_cast<const char*>(bytes), size}, platform::boards()[index]));
   sort_images(&images[moves_water]);
 }
 
@@ -83,8 +81,6 @@ extern "C" {
 [[clang::export_name("bake")]] std::size_t thimble_bake(const char* scene, std::uint32_t index, int depth,
                                                         bool coarsen, std::int32_t frame,
                                                         std::int32_t width_px, std::int32_t height_px) {
-  using namespace thimble;
-  using namespace thimble::tools;
   const platform::BoardFacts& board = platform::boards()[index];
   SceneArguments arguments;
   arguments.scene = scene;
@@ -133,25 +129,26 @@ extern "C" {
 }
 
 [[clang::export_name("baked")]] const std::uint8_t* thimble_baked() {
-  return thimble::tools::baked.bytes.data();
+  return baked.bytes.data();
 }
 // The file for the board, in the format of that ending: its bytes, image_bytes() of them.
 [[clang::export_name("image")]] const char* thimble_image(std::uint32_t index, const char* ending) {
-  using namespace thimble::tools;
   const BoardImage* const found = image_for(images_for(baked.effects), baked);
   if (found == nullptr) {
-    throw thimble::tools::InputError("is drawn by no image for this board");
+    throw InputError("is drawn by no image for this board");
   }
-  image = image_file(*found, baked.bytes, thimble::platform::boards()[index], std::string(".") + ending);
+  image = image_file(*found, baked.bytes, platform::boards()[index], std::string(".") + ending);
   return image.data();
 }
 [[clang::export_name("image_bytes")]] std::size_t thimble_image_bytes() {
-  return thimble::tools::image.size();
+  return image.size();
 }
 [[clang::export_name("facts")]] const char* thimble_facts() {
-  return thimble::tools::facts.c_str();
+  return facts.c_str();
 }
 [[clang::export_name("notes")]] const char* thimble_notes() {
-  return thimble::tools::notes.c_str();
+  return notes.c_str();
 }
 }
+
+}  // namespace thimble::tools

@@ -119,21 +119,17 @@ void wish_of_looks(const LookWishes& wishes) {
   look_wishes = wishes;
 }
 
-}  // namespace thimble::tools
-
 extern "C" {
 
 // Where the camera of the next calls is written.
-[[clang::export_name("camera")]] thimble::tools::WebCamera* thimble_camera() {
-  return &thimble::tools::web_camera;
+[[clang::export_name("camera")]] WebCamera* thimble_camera() {
+  return &web_camera;
 }
 
 // The look from that camera in a picture of that size: a LookBlock and what belongs to it, of look_bytes() bytes.
 // `exposure`: that of the last finished picture.
 [[clang::export_name("look")]] const std::uint8_t* thimble_look(std::int32_t width_px, std::int32_t height_px,
                                                                 std::uint32_t exposure_q8) {
-  using namespace thimble;
-  using namespace thimble::tools;
   framing = {};
   framing.kept = web_camera.of(scene.camera());
   if (set_camera(framing.kept, width_px, height_px, scene.tree().level(), &framing.camera) != Status::kOk) {
@@ -153,16 +149,14 @@ extern "C" {
   return block_bytes.data();
 }
 [[clang::export_name("look_bytes")]] std::size_t thimble_look_bytes() {
-  return thimble::tools::block_bytes.size();
+  return block_bytes.size();
 }
 [[clang::export_name("is_stars")]] bool thimble_is_stars() {
-  return thimble::tools::look.kind == thimble::tools::LookKind::kStars;
+  return look.kind == LookKind::kStars;
 }
 
 // The finished picture of stars, in RGB888, by the last look.
 [[clang::export_name("stars")]] const std::uint8_t* thimble_stars() {
-  using namespace thimble;
-  using namespace thimble::tools;
   const Camera& camera = framing.camera;
   Painting painting;
   Image& image = painting.image;
@@ -185,8 +179,6 @@ extern "C" {
 // wide a parallel view is, in 1/256 of its own.
 [[clang::export_name("frame")]] const std::int32_t* thimble_frame(std::int32_t side, std::int32_t width_px,
                                                                   std::int32_t height_px) {
-  using namespace thimble;
-  using namespace thimble::tools;
   const SceneCamera& own = scene.camera();
   ViewWishes wishes = wishes_of(own, width_px, height_px);
   wishes.side = static_cast<NamedView>(side);
@@ -200,3 +192,5 @@ extern "C" {
   return framed;
 }
 }
+
+}  // namespace thimble::tools

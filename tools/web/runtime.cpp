@@ -10,6 +10,7 @@
 #include <limits>
 #include <new>
 #include <string>
+#include <string_view>
 #include <typeinfo>
 
 #include "readers/gltf_file.h"
@@ -53,70 +54,25 @@ void __cxa_end_catch() {}
 
 // ---- numbers
 
-namespace {
-
-// The end of the number that stands at `at`, as the standard's std::from_chars reads it; `at` where there is
-// none.
-const char* end_of_number(const char* at, const char* last) {
-  const char* here = at;
-  const auto digits = [&] {
-    const char* const from = here;
-    while (here != last && std::isdigit(static_cast<unsigned char>(*here)) != 0) {
-      ++here;
-    }
-    return here - from;
-  };
-  const auto word = [&](const char* text) {
-    const auto size = static_cast<std::ptrdiff_t>(std::strlen(text));
-    for (std::ptrdiff_t i = 0; i < size; ++i) {
-      if (last - here <= i || std::tolower(static_cast<unsigned char>(here[i])) != text[i]) {
-        return false;
-      }
-    }
-    here += size;
-    return true;
-  };
-  if (here != last && *here == '-') {
-    ++here;
-  }
-  if (word("infinity") || word("inf") || word("nan")) {
-    return here;
-  }
-  std::ptrdiff_t count = digits();
-  if (here != last && *here == '.') {
-    ++here;
-    const std::ptrdiff_t behind = digits();
-    count += behind;
-    if (count == 0) {
-      return at;
-    }
-  }
-  if (count == 0) {
-    return at;
-  }
-  if (here != last && (*here == 'e' || *here == 'E')) {
-    const char* const mantissa = here++;
-    if (here != last && (*here == '+' || *here == '-')) {
-      ++here;
-    }
-    if (digits() == 0) {
-      here = mantissa;
-    }
-  }
-  return here;
-}
-
-}  // namespace
-
 namespace std {
 
 from_chars_result from_chars(const char* first, const char* last, double& value) {
-  const char* const end = end_of_number(first, last);
-  if (end == first) {
+  // What may belong to it; strtod would read a plus and hexadecimal digits, too.
+  const char* end = first;
+  while (end != last &&
+         (std::isalnum(static_cast<unsigned char>(*end)) != 0 ||
+          std::string_view("+-.").find(*end) != std::string_view::npos) &&
+         *end != 'x' && *end != 'X') {
+    ++end;
+  }
+  std::string text(first, end);
+  char* rest = nullptr;
+  const double parsed = std::strtod(text.c_str(), &rest);
+  text.resize(static_cast<std::size_t>(rest - text.c_str()));
+  if (text.empty() || text[0] == '+') {
     return {first, errc::invalid_argument};
   }
-  const std::string text(first, static_cast<std::size_t>(end - first));
-  const double parsed = std::strtod(text.c_str(), nullptr);
+  end = first + text.size();
   // Beyond the range, and below it: the value stays as it was.
   const bool is_word = std::isalpha(static_cast<unsigned char>(text[text[0] == '-' ? 1 : 0])) != 0;
   const bool is_zero =

@@ -271,15 +271,12 @@ void stretch(Bytes thin, int32_t y, int32_t step) {
 }
 
 }  // namespace
-}  // namespace thimble::tools
 
 extern "C" {
 
 // Room for a scene of so many bytes and a picture of that size; null where there is none. What was there is gone.
 [[clang::export_name("room")]] uint8_t* thimble_room(uint32_t scene_bytes, int32_t width_px,
                                                      int32_t height_px) {
-  using namespace thimble;
-  using namespace thimble::tools;
   viewer = {};
   viewer.next = reinterpret_cast<uintptr_t>(&__heap_base);
   viewer.width_px = width_px;
@@ -298,8 +295,6 @@ extern "C" {
 
 // Opens the scene that was put there: 0, or an English phrase that says what is wrong.
 [[clang::export_name("open")]] const char* thimble_open() {
-  using namespace thimble;
-  using namespace thimble::tools;
   const BakedScene& scene = viewer.shown.scene;
   if (const char* wrong = apps::open_scene(&viewer.shown)) {
     return wrong;
@@ -322,36 +317,34 @@ extern "C" {
 }
 
 [[clang::export_name("level")]] int thimble_level() {
-  return thimble::tools::viewer.shown.scene.tree().level();
+  return viewer.shown.scene.tree().level();
 }
 [[clang::export_name("has_map")]] bool thimble_has_map() {
-  return thimble::tools::viewer.shown.has_map;
+  return viewer.shown.has_map;
 }
 [[clang::export_name("picture")]] const uint8_t* thimble_picture() {
-  return thimble::tools::viewer.picture.data;
+  return viewer.picture.data;
 }
 // The scene's own camera: component `axis` of its eye (`of_target` false) or target, in 1/256 voxel.
 [[clang::export_name("own_camera")]] int32_t thimble_own_camera(bool of_target, int axis) {
-  const thimble::SceneCamera& own = thimble::tools::viewer.shown.scene.camera();
-  const thimble::Vec3Q8& point = of_target ? own.target : own.eye;
+  const SceneCamera& own = viewer.shown.scene.camera();
+  const Vec3Q8& point = of_target ? own.target : own.eye;
   return axis == 0 ? point.x.raw : axis == 1 ? point.y.raw : point.z.raw;
 }
 
 // The vertical angle of view, in 1/65536 degree, or the width of a parallel view in 1/16384 voxel.
 [[clang::export_name("lens")]] int32_t thimble_lens() {
-  const thimble::SceneCamera& own = thimble::tools::viewer.own;
+  const SceneCamera& own = viewer.own;
   return own.is_perspective ? own.fov_degrees.raw : own.span.raw;
 }
 [[clang::export_name("is_parallel")]] bool thimble_is_parallel() {
-  return !thimble::tools::viewer.own.is_perspective;
+  return !viewer.own.is_perspective;
 }
 
 // What the ray of a pixel of the picture hits: the point in 1/256 voxel and the voxel, three numbers each; the
 // face as in Shading::face_light, -1 where the eye is in it; material, colour (red at bit 16), SurfaceKind.
 // Null for nothing.
 [[clang::export_name("pick")]] const int32_t* thimble_pick(int32_t x_px, int32_t y_px) {
-  using namespace thimble;
-  using namespace thimble::tools;
   const Camera& camera = viewer.camera;
   if (x_px < 0 || y_px < 0 || x_px >= camera.width_px() || y_px >= camera.height_px()) {
     return nullptr;
@@ -380,19 +373,16 @@ extern "C" {
 }
 
 // Where the camera of `see` is written.
-[[clang::export_name("camera")]] thimble::tools::WebCamera* thimble_camera() {
-  return &thimble::tools::viewer.seen;
+[[clang::export_name("camera")]] WebCamera* thimble_camera() {
+  return &viewer.seen;
 }
 // Looks from that camera. False, and the view as it was, where there is no such camera.
 [[clang::export_name("see")]] bool thimble_see() {
-  using namespace thimble;
-  using namespace thimble::tools;
   return look_from(viewer.seen.of(viewer.own));
 }
 
 // Room for a LookBlock and what belongs to it, of so many bytes; null where there is none.
 [[clang::export_name("look_room")]] uint8_t* thimble_look_room(uint32_t bytes) {
-  using namespace thimble::tools;
   if (bytes > viewer.lighting_bytes.size) {
     viewer.lighting_bytes = reserve(bytes);
   }
@@ -400,8 +390,6 @@ extern "C" {
 }
 // Looks so from now on, and from the block's own camera, unless the view has moved on. False where the block is none.
 [[clang::export_name("take_look")]] bool thimble_take_look(bool moved_on) {
-  using namespace thimble;
-  using namespace thimble::tools;
   viewer.look = *reinterpret_cast<const LookBlock*>(viewer.lighting_bytes.data);
   viewer.lighting = {};
   const ConstBytes section = viewer.lighting_bytes.subspan(sizeof(LookBlock), viewer.look.lighting_bytes);
@@ -415,8 +403,6 @@ extern "C" {
 // The next frame of rain on the water, or, where none falls, the scene's own water again. False where there is no water,
 // or no memory for it.
 [[clang::export_name("rain")]] bool thimble_rain(bool falls) {
-  using namespace thimble;
-  using namespace thimble::tools;
   const WaterSurface& rest = viewer.lighting.scene.water;
   if ((viewer.look.effects & Effect::kWater) == 0 || !falls) {
     viewer.rains = false;
@@ -433,14 +419,12 @@ extern "C" {
   return viewer.rains;
 }
 [[clang::export_name("has_water")]] bool thimble_has_water() {
-  return (thimble::tools::viewer.look.effects & thimble::Effect::kWater) != 0;
+  return (viewer.look.effects & Effect::kWater) != 0;
 }
 
 // The exposure of the picture at rest, and kOneSample where that is so (measure_look), from rows first .. first + rows
 // - 1 of a thinned one; 0 while there are more rows.
 [[clang::export_name("expose")]] uint32_t thimble_expose(int32_t first, int32_t rows) {
-  using namespace thimble;
-  using namespace thimble::tools;
   static GrayCounts counts;
   static LitCounts traced;
   const Camera& all = samples_across(false) == 1 ? viewer.camera : viewer.fine;
@@ -477,7 +461,6 @@ extern "C" {
 }
 // What is drawn at rest is drawn with it from then on.
 [[clang::export_name("set_exposure")]] void thimble_set_exposure(uint32_t exposure_q8) {
-  using namespace thimble::tools;
   viewer.tone = tone_table(exposure_q8 & ~kOneSample);
   viewer.has_one_sample = (exposure_q8 & kOneSample) != 0;
 }
@@ -485,8 +468,6 @@ extern "C" {
 // Draws rows of every `step`-th pixel of every `step`-th row, stretched; `first` is a multiple of `step`. `lit`: as
 // at rest, with one sample. Else all rows, with mixtures in between.
 [[clang::export_name("draw")]] bool thimble_draw(int32_t first, int32_t rows, int32_t step, bool lit) {
-  using namespace thimble;
-  using namespace thimble::tools;
   if (!lit && !viewer.has_looked_for_map) {
     make_map();
   }
@@ -512,8 +493,6 @@ extern "C" {
 
 // Draws a row as at rest, with all samples.
 [[clang::export_name("draw_fine")]] bool thimble_draw_fine(int32_t y) {
-  using namespace thimble;
-  using namespace thimble::tools;
   const int32_t across = samples_across(viewer.has_one_sample);
   return draw_lit(across == 1 ? viewer.camera : viewer.fine, y, across, row_of_picture(y)) == Status::kOk;
 }
@@ -521,16 +500,14 @@ extern "C" {
 #ifdef THIMBLE_WEB_GPU
 // What a GPU's kernels (platform/gpu) draw: the tree,
 [[clang::export_name("tree")]] const uint8_t* thimble_tree() {
-  return thimble::tools::viewer.shown.scene.tree().bytes();
+  return viewer.shown.scene.tree().bytes();
 }
 [[clang::export_name("tree_bytes")]] size_t thimble_tree_bytes() {
-  return thimble::tools::viewer.shown.scene.tree().size_bytes();
+  return viewer.shown.scene.tree().size_bytes();
 }
 // and the picture at rest with all samples, or, `step` above 0, of every `step`-th pixel with one, stretched: a GpuFrame.
 // Null where they do not draw it.
-[[clang::export_name("gpu_frame")]] const thimble::tools::GpuFrame* thimble_gpu_frame(int32_t step) {
-  using namespace thimble;
-  using namespace thimble::tools;
+[[clang::export_name("gpu_frame")]] const GpuFrame* thimble_gpu_frame(int32_t step) {
   const LookBlock& look = viewer.look;
   if (look.is_stars || (look.effects & ~gpu::kEffectsInKernels) != 0) {
     return nullptr;
@@ -564,3 +541,5 @@ extern "C" {
 }
 #endif
 }
+
+}  // namespace thimble::tools
