@@ -8,15 +8,7 @@ flags='-fsyntax-only -Wall -Wextra -Wpedantic -Werror -fno-exceptions -fno-rtti 
 failed=0
 text() {
   echo "#include \"$here/arduino_macros.h\""
-  awk 'BEGIN {
-    for (digits = 1; digits <= 8; ++digits) {
-      for (value = 0; value < 2 ^ digits; ++value) {
-        name = ""
-        for (place = digits - 1; place >= 0; --place) { name = name int(value / 2 ^ place) % 2 }
-        print "#define B" name " " value
-      }
-    }
-  }'
+  sh "$here/binary_macros.sh"
   find include/thimble -name '*.h' | sort | sed 's|^include/\(.*\)|#include "\1"|'
 }
 for compiler in g++ clang++ arm-none-eabi-g++ riscv64-unknown-elf-g++; do

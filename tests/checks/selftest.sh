@@ -113,10 +113,16 @@ catches() {
   fresh
 }
 
-# fault CHECK WORDS FILE TEXT: what the check catches where the file holds that, too.
+# fault CHECK WORDS FILE TEXT...: what the check catches where each file holds that, too.
 fault() {
-  add "$3" "$4"
-  catches "$1" "$2"
+  check=$1
+  words=$2
+  shift 2
+  while [ $# -gt 0 ]; do
+    add "$1" "$2"
+    shift 2
+  done
+  catches "$check" "$words"
 }
 
 fresh
@@ -172,19 +178,14 @@ fault layering 'the core includes more' src/base/sum.cpp '#include <vector>'
 add src/tree/tree.cpp '#include "../base/sum.h"'
 add src/base/sum.h ''
 passes layering
-add src/tree/node.h ''
-add src/base/sum.cpp '#include "../tree/node.h"'
-catches layering 'src/base/ sees only itself and the rooms below it'
-add src/drivers/panel.h ''
-add src/drivers/panel.cpp '#include "thimble/base/sum.h"'
-add src/tree/tree.cpp '#include "../drivers/panel.h"'
-catches layering 'src/tree/ sees only itself and the rooms below it'
-add include/thimble/tree/node.h ''
-add include/thimble/base/sum.h '#include "../tree/node.h"'
-catches layering 'include/thimble/base/ sees only itself'
-add include/thimble/base/vec.h ''
-add include/thimble/base/sum.h '#include "thimble/base/vec.h"'
-catches layering 'from where it stands'
+fault layering 'src/base/ sees only itself and the rooms below it' src/tree/node.h '' \
+  src/base/sum.cpp '#include "../tree/node.h"'
+fault layering 'src/tree/ sees only itself and the rooms below it' src/drivers/panel.h '' \
+  src/drivers/panel.cpp '#include "thimble/base/sum.h"' src/tree/tree.cpp '#include "../drivers/panel.h"'
+fault layering 'include/thimble/base/ sees only itself' include/thimble/tree/node.h '' \
+  include/thimble/base/sum.h '#include "../tree/node.h"'
+fault layering 'from where it stands' include/thimble/base/vec.h '' \
+  include/thimble/base/sum.h '#include "thimble/base/vec.h"'
 mkdir -p "$tree/src/attic"
 fault layering 'is no room' src/attic/old.cpp ''
 fault layering 'stand in rooms' src/lone.cpp ''
@@ -198,9 +199,8 @@ passes layering
 fault layering "host's own renderer" platform/apps/app.cpp '#include "thimble/base/host/sum.h"'
 fault layering "host's own renderer" tools/tool.cpp '#include "thimble/base/host/sum.h"'
 mkdir -p "$tree/include/thimble/base/host"
-add include/thimble/base/host/more.h ''
-add include/thimble/base/sum.h '#include "host/more.h"'
-catches layering 'for callers includes none of a folder host'
+fault layering 'for callers includes none of a folder host' include/thimble/base/host/more.h '' \
+  include/thimble/base/sum.h '#include "host/more.h"'
 fault layering 'sees what is installed' tools/tool.cpp '#include "wide/rays/job.h"'
 fault layering 'never src' tools/tool.cpp '#include "../src/base/sum.h"'
 mkdir -p "$tree/tools/commands" "$tree/tools/instruments"
@@ -331,33 +331,26 @@ fault headers 'lone.h does not compile alone' include/thimble/lone.h 'struct Low
 fault arduino 'after Arduino' include/thimble/lone.h 'struct Range { int LOW; };'
 fault arduino 'after Arduino' include/thimble/lone.h 'struct Range { int max() const; };'
 fault arduino 'after Arduino' include/thimble/lone.h 'template <int B1> struct Counted {};'
-add src/base/sum.cpp 'namespace { struct Frame { int left; }; int width(Frame frame) { return frame.left; } } int a() { return width({1}); }'
-add src/other.cpp 'namespace { struct Frame { int top; }; int height(Frame frame) { return frame.top; } } int b() { return height({2}); }'
-catches one_unit 'one translation unit'
+fault one_unit 'one translation unit' src/base/sum.cpp 'namespace { struct Frame { int left; }; int width(Frame frame) { return frame.left; } } int a() { return width({1}); }' \
+  src/other.cpp 'namespace { struct Frame { int top; }; int height(Frame frame) { return frame.top; } } int b() { return height({2}); }'
 fault tidy 'nullptr' src/base/sum.cpp 'int* nothing() { return 0; }'
-add src/base/sum.cpp 'namespace { int look(int k) { int* p = nullptr; return k > 3 ? *p : k; } } int seen(int k) { return look(k); }'
-catches tidy 'Dereference of null pointer'
+fault tidy 'Dereference of null pointer' src/base/sum.cpp 'namespace { int look(int k) { int* p = nullptr; return k > 3 ? *p : k; } } int seen(int k) { return look(k); }'
 
 for target in host cortex-m0 cortex-m3 rv32; do
-  add src/base/sum.cpp 'extern "C" void* malloc(__SIZE_TYPE__); void* get(unsigned n) { return malloc(n); }'
-  catches core.$target 'needs malloc'
+  fault core.$target 'needs malloc' src/base/sum.cpp 'extern "C" void* malloc(__SIZE_TYPE__); void* get(unsigned n) { return malloc(n); }'
   fault core.$target 'no writable data' src/base/sum.cpp 'int counter = 3; int next() { return ++counter; }'
   fault core.$target 'no writable data' src/base/sum.cpp 'int tally; int next() { return ++tally; }'
-  add src/base/sum.cpp 'int from(); int from() { volatile int x = 1; return x; } extern const int kValue; const int kValue = from();'
-  catches core.$target 'run no constructors'
+  fault core.$target 'run no constructors' src/base/sum.cpp 'int from(); int from() { volatile int x = 1; return x; } extern const int kValue; const int kValue = from();'
   fault core.$target 'is recursive' src/base/sum.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
-  add src/base/sum.cpp 'int odd(int n); __attribute__((noinline)) int even(int n) { return n == 0 ? 1 : odd(n - 1) + 2; }'
-  add src/base/sum.cpp '__attribute__((noinline)) int odd(int n) { return n == 0 ? 0 : even(n - 1) + 3; }'
-  catches core.$target 'is recursive'
+  fault core.$target 'is recursive' src/base/sum.cpp 'int odd(int n); __attribute__((noinline)) int even(int n) { return n == 0 ? 1 : odd(n - 1) + 2; }' \
+    src/base/sum.cpp '__attribute__((noinline)) int odd(int n) { return n == 0 ? 0 : even(n - 1) + 3; }'
   fault core.$target 'through a pointer' src/base/sum.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
   # A driver may, since what it calls is the board's.
   add src/drivers/panel.cpp 'int call(int (*f)(int)) { return f(3) + 1; }'
   passes core.$target
   fault core.$target 'is recursive' src/drivers/panel.cpp 'int rec(int n) { return n < 2 ? n : rec(n - 1) * rec(n - 2) + 1; }'
-  add src/base/sum.cpp 'int grow(int n) { volatile char* p = static_cast<char*>(__builtin_alloca(n)); p[0] = 1; return p[n - 1]; }'
-  catches core.$target 'not known when compiling'
-  add src/base/sum.cpp 'bool seldom(int n) { if (n == 0) [[unlikely]] { return true; } auto l = [&]<int k>() { return n == k; }; return l.template operator()<3>(); }'
-  catches core.$target 'does not compile'
+  fault core.$target 'not known when compiling' src/base/sum.cpp 'int grow(int n) { volatile char* p = static_cast<char*>(__builtin_alloca(n)); p[0] = 1; return p[n - 1]; }'
+  fault core.$target 'does not compile' src/base/sum.cpp 'bool seldom(int n) { if (n == 0) [[unlikely]] { return true; } auto l = [&]<int k>() { return n == k; }; return l.template operator()<3>(); }'
   fault core.$target 'the limit is 512' src/base/sum.cpp 'int wide(int n) { volatile int a[200]; a[n] = 1; return a[n + 1]; }'
   printf 'nothing,*,10\n' >"$tree/stack.csv"
   catches core.$target 'no row'

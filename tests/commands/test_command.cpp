@@ -229,11 +229,7 @@ TEST_CASE("command: standard output that takes nothing -> status 1") {
   for (const Words& words : {Words{"--help"}, Words{"render", "--help"}, Words{"info", "spheres"},
                              Words{"render", "spheres", "--quiet", "--size", "64x48", "-o", "-"},
                              Words{"trace", "spheres", "--rays", rays}, Words{"table", "--points", "1"}}) {
-    const CommandResult result = run_command(words, full);
-    CAPTURE(words.front());
-    CHECK(result.status == 1);
-    CHECK(is_one_sentence(result.err));
-    CHECK(result.err.find("standard output") != std::string::npos);
+    check_refused(words, 1, {"standard output"}, full);
   }
 }
 

@@ -33,13 +33,6 @@ CommandResult make_project(const std::string& folder, const Words& words) {
   return run_command(Words{"new", folder, "spheres,depth=4"} + words);
 }
 
-void expect_refusal(const CommandResult& result, int status, const std::string& what) {
-  INFO(result.describe());
-  CHECK(result.status == status);
-  CHECK(is_one_sentence(result.err));
-  CHECK(result.err.find(what) != std::string::npos);
-}
-
 TEST_CASE("new: each board with its own display -> a program by Thimble's port") {
   for (const platform::BoardFacts& board : platform::boards()) {
     const TemporaryFolder folder;
@@ -66,7 +59,8 @@ TEST_CASE("new: every board, panel, build and language -> a short program that s
               place, {"--board", board.name, "--panel", panel, "--build", build, "--language", language});
           INFO(result.describe());
           if (result.status != 0) {
-            expect_refusal(result, 2, "--");
+            CHECK(result.status == 2);
+            CHECK(is_one_sentence(result.err));
             CHECK_FALSE(fs::exists(place));
             ++refused;
             continue;
@@ -96,16 +90,20 @@ TEST_CASE(
   const Words pico{"--board", "pico", "--panel", "ssd1306"};
   fs::create_directory(folder.path("full"));
   folder.write("full/note", "text");
-  expect_refusal(make_project(folder.path("full"), pico), 1, "no empty folder");
-  expect_refusal(make_project(folder.path("full/note"), pico), 1, "no empty folder");
+  const auto refused = [&](const std::string& name, const Words& words, int status, const std::string& what,
+                           const std::string& scene = "spheres,depth=4") {
+    check_refused(Words{"new", folder.path(name), scene} + words, status, {what});
+  };
+  refused("full", pico, 1, "no empty folder");
+  refused("full/note", pico, 1, "no empty folder");
   CHECK(files_of(folder.path("full")) == Words{"note"});
-  expect_refusal(make_project(folder.path("my castle"), pico), 2, "no name of a project");
-  expect_refusal(make_project(folder.path("a-b"), {"--board", "gba"}), 2, "no name of a project");
-  expect_refusal(make_project(folder.path("main"), {"--board", "gba"}), 2, "no name of a project");
-  expect_refusal(make_project(folder.path("p"), {}), 2, "--board");
-  expect_refusal(make_project(folder.path("p"), pico + Words{"--memory", "100"}), 1, "--memory");
-  expect_refusal(make_project(folder.path("p"), {"--board", "gba", "--build", "arduino"}), 2, "--build");
-  expect_refusal(run_command(Words{"new", folder.path("p"), folder.path("none.vox")} + pico), 1, "none.vox");
+  refused("my castle", pico, 2, "no name of a project");
+  refused("a-b", {"--board", "gba"}, 2, "no name of a project");
+  refused("main", {"--board", "gba"}, 2, "no name of a project");
+  refused("p", {}, 2, "--board");
+  refused("p", pico + Words{"--memory", "100"}, 1, "--memory");
+  refused("p", {"--board", "gba", "--build", "arduino"}, 2, "--build");
+  refused("p", pico, 1, "none.vox", folder.path("none.vox"));
   CHECK_FALSE(fs::exists(folder.path("p")));
   // An empty one will do.
   fs::create_directory(folder.path("empty"));

@@ -284,11 +284,11 @@ TEST_CASE("render: the paper's first tracer, 800 x 600 x 1 -> 60,000 bytes, and 
   }
   CHECK(wrong == 0);
 
-  const CommandResult refused = run_command(shaded(Words{"render"} + words) + Words{"--memory", "60000"});
-  CAPTURE(refused.describe());
-  CHECK(refused.status == 1);
-  CHECK(refused.err.find("60,000 of them the grid of 800 x 600 x 1 voxels") != std::string::npos);
-  const std::uint64_t needed = number_after(refused.err, "needs ");
+  const std::uint64_t needed =
+      number_after(check_refused(shaded(Words{"render"} + words) + Words{"--memory", "60000"}, 1,
+                                 {"60,000 of them the grid of 800 x 600 x 1 voxels"})
+                       .err,
+                   "needs ");
   CHECK(needed > 60000);
   CHECK(needed < 61000);
   check_done(shaded(Words{"render"} + words) + Words{"--memory", std::to_string(needed)});
@@ -300,13 +300,8 @@ TEST_CASE("render: the paper's own sum, 800 x 600 x 800 -> 48,000,000 bytes, nam
   const TemporaryFolder folder;
   const std::string scene = folder.write("far.xyz", "0 0 0\n799 599 799\n");
   const Words words{"info", scene, "--as-voxels", "--structure", "dense"};
-  const CommandResult refused = run_command(words + Words{"--memory", "47999999"});
-  CHECK(refused.status == 1);
-  CHECK(is_one_sentence(refused.err));
-  CHECK(number_after(refused.err, "needs ") == 48000000);
-  const CommandResult fits =
-      run_command(words + Words{"--memory", "48000000", "--stats", folder.path("s.json")});
-  CHECK(fits.status == 0);
+  CHECK(number_after(check_refused(words + Words{"--memory", "47999999"}, 1, {}).err, "needs ") == 48000000);
+  check_done(words + Words{"--memory", "48000000", "--stats", folder.path("s.json")});
   const json stats = json::parse(read_text(folder.path("s.json")));
   CHECK(stats["tree_bytes"] == 48000000);
   CHECK(stats["high_water_bytes"] == 48000000);
@@ -498,9 +493,8 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
         CAPTURE(one.front());
         CAPTURE(structure);
         CAPTURE(size);
-        const CommandResult none = run_command(words + Words{"--memory", "0"});
-        CHECK(none.status == 1);
-        const std::uint64_t needed = number_after(none.err, "needs ");
+        const std::uint64_t needed =
+            number_after(check_refused(words + Words{"--memory", "0"}, 1, {}).err, "needs ");
         check_done(words + Words{"--memory", std::to_string(needed)});
         const json exact = json::parse(read_text(folder.path("s.json")));
         CHECK(exact["budget_bytes"] == needed);
@@ -511,10 +505,8 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
                 ? std::vector<std::uint64_t>{needed - 1, needed / 2}
                 : std::vector<std::uint64_t>{needed - 1, needed - 7, needed / 2, needed / 16, 100, 1};
         for (const std::uint64_t budget : too_small) {
-          const CommandResult less = run_command(words + Words{"--memory", std::to_string(budget)});
-          CHECK(less.status == 1);
-          CHECK(is_one_sentence(less.err));
-          CHECK(number_after(less.err, "needs ") == needed);
+          CHECK(number_after(check_refused(words + Words{"--memory", std::to_string(budget)}, 1, {}).err,
+                             "needs ") == needed);
         }
         const std::vector<std::uint64_t> enough =
             thimble::tests::takes_few()

@@ -161,10 +161,9 @@ TEST_CASE(
   const QualityPicture plain = render_ppm({"--shade", "color", "--cutoff", "0"}, baked);
   const std::string budget = std::to_string(plain.stats["high_water_bytes"].get<std::uint64_t>());
   const auto with = [&](const Words& more) {
-    Words words{"render", baked,      "--size", "64x48",    "--quiet", "-o",
-                "-",      "--memory", budget,   "--cutoff", "2"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_command(words);
+    return run_command(
+        Words{"render", baked, "--size", "64x48", "--quiet", "-o", "-", "--memory", budget, "--cutoff", "2"} +
+        more);
   };
   const CommandResult refused = with({"--shade", "color"});
   CHECK(refused.status == 1);

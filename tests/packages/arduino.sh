@@ -9,15 +9,7 @@ here=tests/packages/arduino
 cp -R $here/hardware $here/libraries "$WORK/"
 core=$WORK/hardware/thimble/arm/cores/stub
 cp tests/checks/arduino_macros.h tests/packages/new/wires.h tests/packages/bare/start.cpp tests/packages/bare/arm.ld platform/arch/common/memory.cpp "$core/"
-awk 'BEGIN {
-  for (digits = 1; digits <= 8; ++digits) {
-    for (value = 0; value < 2 ^ digits; ++value) {
-      name = ""
-      for (place = digits - 1; place >= 0; --place) { name = name int(value / 2 ^ place) % 2 }
-      print "#define B" name " " value
-    }
-  }
-}' >"$core/binary.h"
+sh tests/checks/binary_macros.sh >"$core/binary.h"
 mkdir -p "$WORK/tools"
 # sketch NAME PROGRAM: a program of ours as a sketch.
 sketch() {

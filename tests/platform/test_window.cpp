@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/screen.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "support/virtual_display.h"
 
 namespace {
@@ -168,11 +168,7 @@ TEST_CASE("window: a display of 8 bits -> no window, and a sentence with its bit
     if (std::string(tool) == "view") {
       words = {"view", "spheres,depth=4"};  // a window or a terminal; there is neither
     }
-    const auto told = thimble::tests::run_command(words);
-    CAPTURE(told.describe());
-    CHECK(told.status == 1);
-    CHECK(told.err.find(sentence) != std::string::npos);
-    CHECK(std::count(told.err.begin(), told.err.end(), '\n') == 1);
+    thimble::tests::check_refused(words, 1, {sentence});
   }
 }
 

@@ -36,9 +36,9 @@ inline CommandResult check_done(const Words& words, const CommandLimits& limits 
 }
 
 /// The command with `words` is refused: that status, nothing but one sentence, which holds each of `named`.
-inline void check_refused(const Words& words, int status, const Words& named,
-                          const CommandLimits& limits = {}) {
-  const CommandResult result = run_command(words, limits);
+inline CommandResult check_refused(const Words& words, int status, const Words& named,
+                                   const CommandLimits& limits = {}) {
+  CommandResult result = run_command(words, limits);
   CAPTURE(line_of_words(words));
   CAPTURE(result.describe());
   CHECK(result.status == status);
@@ -48,6 +48,7 @@ inline void check_refused(const Words& words, int status, const Words& named,
     CAPTURE(name);
     CHECK(result.err.find(name) != std::string::npos);
   }
+  return result;
 }
 
 }  // namespace thimble::tests
