@@ -124,7 +124,7 @@ WideScene make_strewn(Random& random) {
       },
       std::size_t{24} << 20);
 }
-// A dense cloud in a large world, whose list has short entries; often where cubes of entries meet.
+// A dense cloud in a large world, whose list has short entries unless it is coarsened; often where cubes of entries meet.
 WideScene make_stars(Random& random) {
   const int level = pick_int(random, 11, 12);
   const std::int32_t side = std::int32_t{1} << level;
@@ -142,6 +142,9 @@ WideScene make_stars(Random& random) {
           if ((at.x & at.y & at.z & 1) == 0) {  // no block
             REQUIRE(octree->insert({corner.x + at.x, corner.y + at.y, corner.z + at.z}, 1) == Status::kOk);
           }
+        }
+        if (pick(random, 0, 3) == 0) {
+          (void)octree->coarsen_to(octree->nodes_used() / 2);  // blocks, which no short entry holds
         }
       },
       std::size_t{24} << 20);
