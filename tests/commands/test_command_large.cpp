@@ -83,6 +83,11 @@ TEST_CASE("command on a scene larger than its memory: drawn from the file, as wi
   check_done({"-c", limit + draw + folder.path("c.png")}, shell);
   check_done({"-c", limit + draw + folder.path("d.pgm") + " --shade depth"}, shell);
   CHECK(picture == read_text(folder.path("d.pgm")));
+  // And with all memory, since to make them takes longer: from 1 GB on.
+  check_done({"-c", draw + folder.path("e.pgm") + " --shade depth --stats " + folder.path("e.json")}, shell);
+  CHECK(picture == read_text(folder.path("e.pgm")));
+  const bool is_listed = read_text(folder.path("e.json")).find("\"engine\": \"wide\"") != std::string::npos;
+  CHECK(is_listed == (std::filesystem::file_size(scene) < std::size_t{1} << 30));
   check_done({"-c", limit + command + "view " + scene + " --size 160x120 --bench 2"}, shell);
 
   write_scene(scene, 7);
