@@ -129,15 +129,16 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
       }
     }
     if constexpr (kHasShadows) {
-      if (kGathers || lights != 0) {
-        FacePoint point;
+      FacePoint point;
+      if constexpr (kGathers) {
         find_point(course, d, &point);
-        lights = suns_at(point, lights);
-        if constexpr (kGathers) {
-          ++hits_;
-          show_gathered(x, y, point, material_of(course.landing.voxel, face), face, lights);
-          return;
-        }
+        lights = suns_at(lights, point);
+        ++hits_;
+        show_gathered(x, y, point, material_of(course.landing.voxel, face), face, lights);
+        return;
+      } else if (lights != 0) {
+        find_place(course, d, &point);
+        lights = suns_at(lights, course, point);
       }
     }
     ++hits_;
@@ -310,12 +311,13 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     }
   }
 
-  // The suns of `lights` that reach a point, ray by ray.
-  [[gnu::always_inline]] unsigned suns_at(const FacePoint& point, unsigned lights) {
+  // The suns of `lights` that reach a point, ray by ray; `point` is what is_shadowed takes.
+  template <class... Point>
+  [[gnu::always_inline]] unsigned suns_at(unsigned lights, const Point&... point) {
     for (size_t i = 0; i < kMaxFlatSuns; ++i) {
       if ((lights >> i & 1U) != 0) {
         ++shadow_rays_;
-        if (is_shadowed(suns_[i], point)) {
+        if (is_shadowed(suns_[i], point...)) {
           lights &= ~(1U << i);
           ++shadows_;
         }
@@ -392,7 +394,7 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
   [[gnu::noinline]] Color point_color(WetFrame& frame, const Spot& spot, const FacePoint& point) {
     Color light;
     ambient_light(frame_, spot, &light);
-    this->add_suns_in_water(frame, spot, suns_at(point, lights_of_[side_of(point)]), &light);
+    this->add_suns_in_water(frame, spot, suns_at(lights_of_[side_of(point)], point), &light);
     return shown_by(spot, light);
   }
 
@@ -422,7 +424,7 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     Spot spot;
     spot.face = face_of(point);
     Color light;
-    this->gather(frame_, map_, point, suns_at(point, lights_of_[side_of(point)]), &spot, &light);
+    this->gather(frame_, map_, point, suns_at(lights_of_[side_of(point)], point), &spot, &light);
     spot.surface = surface;
     return shown_by(spot, light);
   }
@@ -568,27 +570,26 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     const uint32_t one_red = 1U << shift_[0];
     const uint32_t one_blue = 1U << shift_[2];
     const bool swaps = is_big_endian() != bits::kBigEndian;
-    for (int32_t row = 0; row < place.down; ++row) {
-      uint32_t word = pixels.word[row >> 1] >> 16 * (row & 1) & 0xFFFFU;
-      if (word == 0) {
-        continue;
-      }
-      Half* to = static_cast<Half*>(static_cast<void*>(line_of(place.y + row))) + place.x;
-      const uint16_t* const limits = kDither.at + ((place.y + row) & 7) * 8;
-      for (uint32_t column = 0; word != 0;) {
-        const uint32_t none = bits::lowest_bit(word);
-        column += none;
-        word >>= none;
-        for (; (word & 1U) != 0; word >>= 1, ++column) {
-          const uint32_t limit = limits[column & 7U];
+    const TilePlace halves{line_of(place.y), stride_, place.x, place.y, place.across, place.down};
+    const uint8_t* row_end = nullptr;
+    const uint16_t* limits = nullptr;
+    store_runs<sizeof(Half)>(
+        halves, pixels,
+        [&](const uint8_t* end, int row) {
+          row_end = end;
+          limits = kDither.at + ((place.y + row) & 7) * 8;
+        },
+        [](const uint8_t*) { return false; }, [](uint8_t*) {},
+        [&](uint8_t* to) {
+          // A row ends at a multiple of eight columns.
+          const uint32_t limit = limits[static_cast<size_t>(to - row_end) / 2 & 7];
           uint32_t value = low;
           value += red >= limit ? one_red : 0;
           value += green >= limit ? 1U << 5 : 0;
           value += blue >= limit ? one_blue : 0;
-          to[column] = static_cast<Half>(swaps ? value >> 8 | value << 8 : value);
-        }
-      }
-    }
+          *static_cast<Half*>(static_cast<void*>(to)) =
+              static_cast<Half>(swaps ? value >> 8 | value << 8 : value);
+        });
   }
 
   bool is_big_endian() const { return is_format<PixelFormat::kRgb565Be>(band_.format); }

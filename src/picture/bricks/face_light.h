@@ -124,23 +124,32 @@ class FaceBeam {
     uint32_t all = 0;      // bit i: all rays cross slab i from plane to plane, within the box
     uint32_t met[4] = {};  // how many voxels of each window are solid
     const int32_t first = slab_ & 3;
-    const int32_t base_a = 4 * from_[0];
-    const int32_t base_b = 4 * from_[1];
+    const int32_t base[2] = {from_[0] * (4 * kOne), from_[1] * (4 * kOne)};
+    const int32_t last_a = last_[0] - 4 * from_[0];
+    const int32_t last_b = last_[1] - 4 * from_[1];
+    int32_t low_a = low_[0] - base[0];
+    int32_t low_b = low_[1] - base[1];
+    int32_t high_a = high_[0] - base[0];
+    int32_t high_b = high_[1] - base[1];
     for (int32_t i = first; i < 4; ++i) {
-      const int32_t end_a = high_[0] >> 16;
-      const int32_t end_b = high_[1] >> 16;
-      across[i] = (2U << (end_a - base_a)) - (1U << ((low_[0] >> 16) - base_a));
-      down[i] = (2U << (end_b - base_b)) - (1U << ((low_[1] >> 16) - base_b));
-      high_[0] += high_slope_[0];
-      high_[1] += high_slope_[1];
+      const int32_t end_a = high_a >> 16;
+      const int32_t end_b = high_b >> 16;
+      across[i] = (2U << end_a) - (1U << (low_a >> 16));
+      down[i] = (2U << end_b) - (1U << (low_b >> 16));
+      high_a += high_slope_[0];
+      high_b += high_slope_[1];
       if (begins_) {
         begins_ = false;  // rays that begin within the slab do not cross all of it
         continue;
       }
-      low_[0] += low_slope_[0];
-      low_[1] += low_slope_[1];
-      all |= end_a <= last_[0] && end_b <= last_[1] ? 1U << i : 0U;
+      low_a += low_slope_[0];
+      low_b += low_slope_[1];
+      all |= end_a <= last_a && end_b <= last_b ? 1U << i : 0U;
     }
+    low_[0] = low_a + base[0];
+    low_[1] = low_b + base[1];
+    high_[0] = high_a + base[0];
+    high_[1] = high_b + base[1];
     const int32_t layer = slab_ & ~3;
     slab_ = layer + 4;
     for (int32_t b = from_[1]; b <= to[1]; ++b, row += stride_[1]) {
@@ -150,13 +159,17 @@ class FaceBeam {
         if (number == 0) {
           continue;
         }
-        const Cells cells =
-            turned({word_at(course_.bricks, 8 * number), word_at(course_.bricks, 8 * number + 4)},
-                   course_.mirrored, course_.c);
+        alignas(4) Half slabs[4];
+        put_slabs(turned({word_at(course_.bricks, 8 * number), word_at(course_.bricks, 8 * number + 4)},
+                         course_.mirrored, course_.c),
+                  slabs);
         for (int32_t i = first; i < 4; ++i) {
+          if (slabs[i] == 0) {
+            continue;
+          }
           const uint32_t window = (across[i] >> 4 * (a - from_[0]) & 15U) *  // NOLINT: set from `first` on
                                   kRows[down[i] >> 4 * (b - from_[1]) & 15U];
-          const uint32_t solid = (i < 2 ? cells.low : cells.high) >> 16 * (i & 1) & window;
+          const uint32_t solid = slabs[i] & window;
           if (solid != 0) {
             some_ = true;
             met[i] += bits::popcount32(solid);

@@ -115,9 +115,16 @@ struct FacePoint {
   bool faces_up;  // the face looks to larger coordinates
 };
 
+// Where a ray towards a light starts: counts of bricks in its numbering, the voxel, and the place in that voxel, mirrored.
+struct ShadowStart {
+  uint32_t left;
+  int32_t cell;    // offset in the directory
+  uint32_t place;  // the voxel's bit in its brick
+  uint32_t within[3];
+};
+
 template <int kC, class OneCourse>
-[[gnu::noinline]] int32_t shadow_along(const OneCourse& course, uint32_t number, uint32_t left, int32_t cell,
-                                       uint32_t place, const uint32_t (&within)[3]) {
+[[gnu::noinline]] int32_t shadow_along(const OneCourse& course, uint32_t number, const ShadowStart& start) {
   constexpr int kA = kOtherA<kC>;
   constexpr int kB = kOtherB<kC>;
   const uint32_t d_a = course.d[kA];
@@ -125,22 +132,50 @@ template <int kC, class OneCourse>
   const uint32_t d_c = course.d[kC];
   BrickRay<kC, kAnySigns, OneCourse> ray(course, d_a, d_b, d_c);
   // The rests on the plane of c before the point.
-  const uint32_t rest_a = within[kA] * d_c - within[kC] * d_a - (d_c << 8);
-  const uint32_t rest_b = within[kB] * d_c - within[kC] * d_b - (d_c << 8);
-  ray.begin(number, left, cell, place, rest_a, rest_b);
+  const uint32_t rest_a = start.within[kA] * d_c - start.within[kC] * d_a - (d_c << 8);
+  const uint32_t rest_b = start.within[kB] * d_c - start.within[kC] * d_b - (d_c << 8);
+  ray.begin(number, start.left, start.cell, start.place, rest_a, rest_b);
   if constexpr (OneCourse::kDeep) {
     ray.end_after(course.planes);
   }
   return ray.trace();
 }
 
+// Whether a ray meets something solid.
+template <bool kDeep>
+[[gnu::noinline]] bool is_shadowed(const ShadowCourse<kDeep>& course, ShadowStart& start) {
+  if constexpr (kDeep) {
+    int32_t at[3];
+    for (int k = 0; k < 3; ++k) {
+      const int axis = course.axes[k];
+      const auto brick = static_cast<int32_t>(count_of(start.left, axis)) - (512 - (course.cells[axis] >> 2));
+      const auto own = static_cast<int32_t>(start.place >> 2 * axis & 3U);
+      at[k] = 256 * (4 * brick + (course.goes_down(axis) ? 3 - own : own)) +
+              static_cast<int32_t>(start.within[axis]);
+    }
+    const int32_t slabs = course.end_of(at, at) - (at[2] >> 8);
+    if (slabs <= 0) {
+      return false;
+    }
+    course.planes = static_cast<uint32_t>(slabs - 1);
+  }
+  const uint32_t number = number_at<kDeep>(course.directory, start.cell);
+  if (course.is_free(start.cell)) {
+    if (number == 0) {
+      return false;
+    }
+    start.left |= kInside;
+  }
+  const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, start)
+                         : course.c == 1 ? shadow_along<1>(course, number, start)
+                                         : shadow_along<2>(course, number, start);
+  return answer != kMissed;
+}
+
 // Whether the ray that leaves a face at a point meets something solid, as `any_hit` says for the tree.
 template <bool kDeep>
 bool is_shadowed(const ShadowCourse<kDeep>& course, const FacePoint& point) {
-  uint32_t within[3];
-  uint32_t left = course.near_left;
-  uint32_t place = 0;
-  int32_t cell = 0;
+  ShadowStart start{course.near_left, 0, 0, {}};
   for (int i = 0; i < 3; ++i) {
     const bool down = course.goes_down(i);
     int32_t voxel = point.voxel[i];
@@ -156,37 +191,12 @@ bool is_shadowed(const ShadowCourse<kDeep>& course, const FacePoint& point) {
       return false;  // it leaves the box
     }
     const int32_t brick = voxel >> 2;
-    left += static_cast<uint32_t>((down ? -brick : brick) * (1 << 10 * i));
-    cell += brick * (down ? -course.next_brick[i] : course.next_brick[i]);
-    place |= (static_cast<uint32_t>(voxel) & 3U) << 2 * i;
-    within[i] = in;
+    start.left += static_cast<uint32_t>((down ? -brick : brick) * (1 << 10 * i));
+    start.cell += brick * (down ? -course.next_brick[i] : course.next_brick[i]);
+    start.place |= (static_cast<uint32_t>(voxel) & 3U) << 2 * i;
+    start.within[i] = in;
   }
-  if constexpr (kDeep) {
-    int32_t at[3];
-    for (int k = 0; k < 3; ++k) {
-      const int axis = course.axes[k];
-      const auto brick = static_cast<int32_t>(count_of(left, axis)) - (512 - (course.cells[axis] >> 2));
-      const auto own = static_cast<int32_t>(place >> 2 * axis & 3U);
-      at[k] =
-          256 * (4 * brick + (course.goes_down(axis) ? 3 - own : own)) + static_cast<int32_t>(within[axis]);
-    }
-    const int32_t slabs = course.end_of(at, at) - (at[2] >> 8);
-    if (slabs <= 0) {
-      return false;
-    }
-    course.planes = static_cast<uint32_t>(slabs - 1);
-  }
-  const uint32_t number = number_at<kDeep>(course.directory, cell);
-  if (course.is_free(cell)) {
-    if (number == 0) {
-      return false;
-    }
-    left |= kInside;
-  }
-  const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, left, cell, place, within)
-                         : course.c == 1 ? shadow_along<1>(course, number, left, cell, place, within)
-                                         : shadow_along<2>(course, number, left, cell, place, within);
-  return answer != kMissed;
+  return is_shadowed(course, start);
 }
 
 }  // namespace

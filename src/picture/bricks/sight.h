@@ -27,6 +27,7 @@ struct SightCourse : Choose<kDeep, DeepCourse, Course> {
   static constexpr Aim kAim = Aim::kSight;
   uint32_t last[3];     // the last voxel of a brick, shifted to its place
   int32_t one_step[3];  // what a step adds to a voxel's place
+  int32_t way_base[3];  // the place of the eye in 1/256 voxel where a count of bricks is 0
   mutable Landing landing;
   mutable uint32_t near_cell[2];
 
@@ -34,6 +35,7 @@ struct SightCourse : Choose<kDeep, DeepCourse, Course> {
     for (int i = 0; i < 3; ++i) {
       last[i] = this->flip[i] != 0 ? 0U : 3U << kPlaceShift[i];
       one_step[i] = this->flip[i] != 0 ? -(1 << kPlaceShift[i]) : 1 << kPlaceShift[i];
+      way_base[i] = (512 - this->frame->side[i]) * (4 * Q8::kOne) + this->origin[i] - outside_q8(*this, i);
     }
   }
 };
@@ -69,19 +71,59 @@ template <class OneCourse, class Direction>
       return find_within<2>(course, way, d, point);
   }
 }
+// The way along an axis from the eye to the near plane of the voxel at which a ray has landed.
+template <bool kDeep>
+[[gnu::always_inline]] inline int32_t way_to(const SightCourse<kDeep>& course, int axis) {
+  const Landing& landing = course.landing;
+  const uint32_t place = (landing.voxel >> 2 * axis & 3U) ^ course.flip[axis];
+  return static_cast<int32_t>(count_of(landing.left, axis) * 4 + place) * Q8::kOne - course.way_base[axis];
+}
+
+// Finds where on its face the ray of direction `d` has landed: all of the point but its voxel.
+template <bool kDeep>
+void find_place(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FacePoint* point) {
+  const int32_t way[3] = {way_to(course, 0), way_to(course, 1), way_to(course, 2)};
+  find_within(course.landing.axis, course, way, d, point);
+}
 template <bool kDeep>
 void find_point(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FacePoint* point) {
-  const Landing& landing = course.landing;
-  int32_t way[3];  // from the eye to the voxel's near plane
   for (int i = 0; i < 3; ++i) {
     const int32_t side = course.frame->side[i];
-    const int32_t brick = static_cast<int32_t>(count_of(landing.left, i)) - (512 - side);
-    const int32_t place = static_cast<int32_t>(landing.voxel >> 2 * i & 3U);
-    const int32_t flip = static_cast<int32_t>(course.flip[i]);
-    point->voxel[i] = 4 * (flip != 0 ? side - 1 - brick : brick) + place;
-    way[i] = (4 * brick + (place ^ flip)) * Q8::kOne - (course.origin[i] - outside_q8(course, i));
+    const int32_t brick = static_cast<int32_t>(count_of(course.landing.left, i)) - (512 - side);
+    point->voxel[i] = 4 * (course.flip[i] != 0 ? side - 1 - brick : brick) +
+                      static_cast<int32_t>(course.landing.voxel >> 2 * i & 3U);
   }
-  find_within(landing.axis, course, way, d, point);
+  find_place(course, d, point);
+}
+
+// Whether the ray from where a ray of the camera has landed, `point` on its face, towards a light meets something solid.
+// It starts from the counts of the camera's ray: on axes on which the two go opposite ways they count from the other side.
+template <bool kDeep>
+bool is_shadowed(const ShadowCourse<kDeep>& light, const SightCourse<kDeep>& course, const FacePoint& point) {
+  const Landing& landing = course.landing;
+  ShadowStart start{landing.left, landing.cell, landing.voxel & 63U, {}};
+  const unsigned differ = light.mirrored ^ course.mirrored;
+#pragma GCC unroll(kDivides ? 3 : 1)
+  for (int i = 0; i < 3; ++i) {
+    if ((differ >> i & 1U) != 0) {
+      const uint32_t both = 1023 - static_cast<uint32_t>(light.cells[i] >> 2);
+      start.left += (both - 2 * count_of(landing.left, i)) << 10 * i;
+    }
+    const auto in = static_cast<uint32_t>(point.within[i]);
+    start.within[i] = light.goes_down(i) && in != 0 ? 256 - in : in;
+    // Goes to the next voxel: across the face, or where a ray that goes down starts on a plane.
+    if (i == point.axis || (in == 0 && light.goes_down(i))) {
+      const uint32_t field = 3U << 2 * i;
+      if ((start.place & field) == (light.goes_down(i) ? 0 : field)) {
+        start.place ^= field;
+        start.cell += light.next_brick[i];
+        start.left += 1U << 10 * i;
+      } else {
+        start.place += light.goes_down(i) ? 0U - (1U << 2 * i) : 1U << 2 * i;
+      }
+    }
+  }
+  return (start.left & kLeft) == 0 && is_shadowed(light, start);
 }
 
 template <int kC, class OneCourse>

@@ -170,7 +170,7 @@ class TilePainter {
     return true;
   }
 
-  void set(unsigned mirrored, int c) {
+  [[gnu::noinline, THIMBLE_HOT]] void set(unsigned mirrored, int c) {
     if (c != course_.c) {
       set_course<OneCourse::kDeep>(course_, c);
     }

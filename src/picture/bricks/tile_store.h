@@ -28,9 +28,10 @@ struct TilePlace {
 }
 
 // Goes through pixels of kBytes each, row by row, from right to left: the pixels of a row are the upper bits of a word,
-// which are shifted out. `four(to)` stores four pixels side by side where `fours(to)` allows that, `one(to)` a single one.
-template <size_t kBytes, class Fours, class Four, class One>
-[[gnu::always_inline]] inline void store_runs(const TilePlace& place, const Pixels& pixels,
+// which are shifted out. `begin(end, row)` is told where a row ends, counted from the tile's first; `four(to)` stores four
+// pixels side by side where `fours(to)` allows that, `one(to)` a single one.
+template <size_t kBytes, class Row, class Fours, class Four, class One>
+[[gnu::always_inline]] inline void store_runs(const TilePlace& place, const Pixels& pixels, const Row& begin,
                                               const Fours& fours, const Four& four, const One& one) {
   uint8_t* end = place.line + static_cast<size_t>(place.x + kTileAcrossPx) * kBytes;
   for (int i = 0; i < kTileWords; ++i) {
@@ -40,8 +41,12 @@ template <size_t kBytes, class Fours, class Four, class One>
       continue;
     }
     for (int half = 0; half < 2; ++half, word >>= 16, end += place.stride) {
-      uint8_t* to = end;
-      for (uint32_t row = word << 16; row != 0;) {
+      uint32_t row = word << 16;
+      if (row == 0) {
+        continue;
+      }
+      begin(end, 2 * i + half);
+      for (uint8_t* to = end; row != 0;) {
         if constexpr (bits::kCountsZeros) {
           const int none = 31 - bits::highest_bit(row);
           row <<= none;
@@ -73,7 +78,7 @@ template <class Pixel>
   const Pixel value = bits::little(static_cast<Pixel>(ink));
   const auto pixel = [](uint8_t* to) { return static_cast<Pixel*>(static_cast<void*>(to)); };
   store_runs<sizeof(Pixel)>(
-      place, pixels, [](const uint8_t*) { return !kFastRam; },
+      place, pixels, [](const uint8_t*, int) {}, [](const uint8_t*) { return !kFastRam; },
       [&](uint8_t* to) {
         pixel(to)[0] = value;
         pixel(to)[1] = value;
@@ -88,7 +93,8 @@ template <class Pixel>
   const uint32_t four[3] = {bits::little(ink | ink << 24), bits::little(ink >> 8 | ink << 16),
                             bits::little(ink >> 16 | ink << 8)};
   store_runs<3>(
-      place, pixels, [](const uint8_t* to) { return (reinterpret_cast<size_t>(to) & 3U) == 0; },
+      place, pixels, [](const uint8_t*, int) {},
+      [](const uint8_t* to) { return (reinterpret_cast<size_t>(to) & 3U) == 0; },
       [&](uint8_t* to) {
         Word* const whole = static_cast<Word*>(static_cast<void*>(to));
         whole[0] = four[0];
