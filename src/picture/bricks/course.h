@@ -91,9 +91,10 @@ struct DeepCourse : Course {
   return axis == course.c ? 0 : kOutsideQ8;
 }
 
-// Sets all members but those that say where the rays start, for rays that go up on all axes.
+// Sets all members but those that say where the rays start, for rays that go up on all axes. (Tiles side by side seldom
+// differ in c, so that this is not in fast RAM.)
 template <bool kDeep = false>
-[[THIMBLE_HOT]] void set_course(Course& course, int c) {
+[[gnu::noinline]] void set_course(Course& course, int c) {
   const BrickFrame& frame = *course.frame;
   const VoxelBox& box = frame.map.box();
   course.c = c;
