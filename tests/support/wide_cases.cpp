@@ -317,7 +317,6 @@ wide::Options random_options(std::mt19937_64& random) {
   constexpr int kThreads[] = {1, 1, 1, 2, 5};
   options.threads = threads_of(kThreads[pick(random, 0, 4)]);
   options.order = static_cast<wide::Order>(pick(random, 0, 2));
-  options.list = static_cast<wide::List>(pick(random, 0, 2));
   return options;
 }
 

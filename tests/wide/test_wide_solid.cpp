@@ -19,8 +19,6 @@ TEST_CASE("wide surface: bytes go by the surface; what does not fit takes nothin
     const WideScene scene = full(level);
     const std::size_t side = std::size_t{1} << level;
     REQUIRE(scene.lists().is_surface());
-    REQUIRE(scene.lists().has_boxes_beside());
-    CHECK(scene.lists().boxes_beside().size() == 1);
     CHECK(scene.lists().size() == 6 * side * side - 12 * side + 8);
     const std::size_t bytes = wide::VoxelLists::bytes(scene.tree);
     CHECK(bytes < 4400 + (before == 0 ? bytes : 45 * before / 10));

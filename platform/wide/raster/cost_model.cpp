@@ -22,11 +22,6 @@ constexpr float kTableTest = 0.67F;
 constexpr float kTableBlock = 62;
 constexpr float kBoxInBlock = 0.24F;
 constexpr float kBlocks = 110;
-// kPaintedBlock: what painting a pixel from a list with blocks costs more than painting one whose grey was found when
-// its voxel was hit. kSurface: in perspective, the time that a surface takes per unit of its expected work; fitted to
-// 140 views, to be no slower than boxes rather than to be fastest.
-constexpr float kPaintedBlock = 0.8F;
-constexpr float kSurface = 1.75F;
 // Boxes of more than about so many pixels are drawn row by row: a mean of both orders (kernels/boxes.cpp).
 constexpr float kLargePx = 40;
 // The mean number of boxes in a block, and the mean side of a block in pixels (tile_drawer.cpp has the limits:
@@ -73,10 +68,7 @@ class Haze {
     lay();
   }
 
-  CostEstimate cost() const {
-    const bool blocks_pay = count_ != 0 && blocks_ + kBlocks <= flat_;
-    return {blocks_pay, blocks_pay ? blocks_ + kBlocks : flat_, painted_px_};
-  }
+  bool blocks_pay() const { return count_ != 0 && blocks_ + kBlocks <= flat_; }
 
  private:
   static constexpr int kMostCells = 64;
@@ -255,7 +247,6 @@ class Haze {
         }
       }
       const float before = area > 0 ? open_area / area : 1;
-      painted_px_ += rectangle * before * (1 - left);
       // How much of what the cell's boxes would cover is still open when they are drawn. (A block is left out when all
       // of its pixels are covered.)
       const float seen = fminf(density > 1e-6F ? before * (1 - left) / density : before, 1);
@@ -297,17 +288,12 @@ class Haze {
   int count_ = 0;
   float flat_ = 0;  // work in the order of the list
   float blocks_ = 0;
-  float painted_px_ = 0;  // estimated
 };
 
 }  // namespace
 
-CostEstimate estimate_cost(const VoxelLists& lists, const WideFrame& frame) {
-  return lists.size() > kFewBoxes ? Haze(lists, frame).cost() : CostEstimate{};
-}
-
-bool boxes_pay(const CostEstimate& boxes, const CostEstimate& surface, bool perspective) {
-  return boxes.work + kPaintedBlock * boxes.painted_px < surface.work * (perspective ? kSurface : 1);
+bool blocks_pay(const VoxelLists& lists, const WideFrame& frame) {
+  return lists.size() > kFewBoxes && Haze(lists, frame).blocks_pay();
 }
 
 }  // namespace thimble::wide

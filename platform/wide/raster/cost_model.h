@@ -13,20 +13,8 @@ inline constexpr float kTableVoxelPx = 1.8F;
 /// map puts it.
 inline constexpr float kMostBentPx = 0.15F;
 
-/// What drawing a frame is expected to take.
-struct CostEstimate {
-  /// Whether boxes hide one another so much that blocks pay. Blocks are drawn front to back, and left out when all
-  /// their pixels are covered.
-  bool blocks_pay = false;
-  /// The work in the order that pays, in tests of a pixel and without painting; and how many pixels get painted.
-  float work = 0;
-  float painted_px = 0;
-};
-
-/// Takes about a hundredth of the frame's time: it looks at 65 cells at most.
-CostEstimate estimate_cost(const VoxelLists& lists, const WideFrame& frame);
-
-/// Whether a list of boxes, with its cost, is expected to be drawn faster than that of the surface, with its own.
-bool boxes_pay(const CostEstimate& boxes, const CostEstimate& surface, bool perspective);
+/// Whether boxes hide one another so much that blocks pay: they are drawn front to back, and left out when all their
+/// pixels are covered. Takes about a hundredth of the frame's time: it looks at 65 cells at most.
+bool blocks_pay(const VoxelLists& lists, const WideFrame& frame);
 
 }  // namespace thimble::wide

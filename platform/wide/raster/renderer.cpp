@@ -58,40 +58,16 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
   return numbers_fit(lists) ? Status::kOk : Status::kTooFine;
 }
 
-// How a frame is drawn.
-struct Plan {
-  bool has_boxes;  // whether the list of boxes is drawn, not that of the surface
-  Order order;
-};
-
-Plan plan_of(const VoxelLists& lists, const WideFrame& frame, const Options& options) {
-  Plan plan{options.list == List::kBoxes && lists.has_boxes_beside(), options.order};
-  const bool chooses = lists.has_boxes_beside() && options.list == List::kAuto;
-  if (options.order != Order::kAuto && !chooses) {
-    return plan;
-  }
-  CostEstimate cost = estimate_cost(plan.has_boxes ? lists.boxes_beside() : lists, frame);
-  if (chooses) {
-    const CostEstimate other = estimate_cost(lists.boxes_beside(), frame);
-    plan.has_boxes = boxes_pay(other, cost, frame.perspective);
-    cost = plan.has_boxes ? other : cost;
-  }
-  if (options.order == Order::kAuto) {
-    plan.order = cost.blocks_pay ? Order::kBlocks : Order::kFlat;
-  }
-  return plan;
-}
-
 }  // namespace
 
 size_t workspace_bytes(int32_t width_px, int32_t rows, int threads) {
   return Workspace::bytes(width_px, rows, threads);
 }
 
-Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& shading, const Band& band,
+Status render(const VoxelLists& lists, const Camera& camera, const Shading& shading, const Band& band,
               Bytes workspace, RenderCounts* counts, const Options& options, Stats* stats) {
   const int threads = options.threads == nullptr ? 1 : options.threads->count();
-  const Status status = check(all_lists, camera, band, workspace, threads);
+  const Status status = check(lists, camera, band, workspace, threads);
   if (status != Status::kOk || band.rows == 0) {
     return status;
   }
@@ -99,21 +75,20 @@ Status render(const VoxelLists& all_lists, const Camera& camera, const Shading& 
   if (!make_frame(camera, {0, band.first_row, camera.width_px(), band.first_row + band.rows}, &frame)) {
     return Status::kTooFine;
   }
-  const Plan plan = plan_of(all_lists, frame, options);
-  const VoxelLists lists = plan.has_boxes ? all_lists.boxes_beside() : all_lists;
+  const bool by_blocks =
+      options.order == Order::kAuto ? blocks_pay(lists, frame) : options.order == Order::kBlocks;
   SolidStarts starts;
   if (lists.is_surface()) {
     frame.hidden_in = &lists.tree();
     frame.first_hidden = static_cast<uint32_t>(lists.size());
     starts = find_solid_starts(lists.tree(), frame);
   }
-  const bool by_blocks = plan.order == Order::kBlocks;
   const TilePainter painter(lists, camera, shading, band);
   const Workspace space(workspace, {camera.width_px(), band.first_row, band.rows, threads, by_blocks,
                                     is_sparse(lists, camera, band, by_blocks, threads, painter),
                                     painter.gray_scale(), &shading});
   const TileDrawer::Task task{lists, frame, by_blocks, lists.is_surface() ? &starts : nullptr};
-  Stats done{{}, plan.order, plan.has_boxes};
+  Stats done{{}, by_blocks ? Order::kBlocks : Order::kFlat};
   const uint64_t hits = draw_tiles(options.threads, task, painter, space, &done);
   if (counts != nullptr) {
     counts->rays += static_cast<uint64_t>(camera.width_px()) * static_cast<uint64_t>(band.rows);

@@ -25,23 +25,14 @@ enum class Order : uint8_t {
   kBlocks,  ///< small blocks front to back, leaving out those that are covered
 };
 
-/// Which list is drawn, where the tree has a list of boxes beside that of the surface. The picture is the same.
-enum class List : uint8_t {
-  kAuto,     ///< chosen by the expected times; Stats::has_boxes tells which
-  kSurface,  ///< the voxels of the surface
-  kBoxes,    ///< the boxes, where the tree has such a list
-};
-
 struct Options {
   Threads* threads = nullptr;  ///< null: the calling thread draws alone
   Order order = Order::kAuto;
-  List list = List::kAuto;
 };
 
 struct Stats {
   Counts counts;
   Order order = Order::kAuto;  ///< the order that was chosen
-  bool has_boxes = false;      ///< whether the list of boxes was drawn, not that of the surface
 };
 
 /// The bytes of workspace that `render` needs for bands of `rows` rows of this width.

@@ -21,9 +21,6 @@ struct Census {
 constexpr uint64_t kBoxesPerAdded = 8;
 // A surface is listed where more than one voxel in so many may be hidden.
 constexpr uint64_t kVoxelsPerHidden = 4;
-// A list of boxes stands beside a surface where it has at most so many boxes, or one for so many voxels of the surface.
-constexpr uint64_t kFewBoxesBeside = uint64_t{1} << 20;
-constexpr uint64_t kVoxelsPerBoxBeside = 4;
 
 // Entries are short where there are at least so many in a cube of theirs.
 constexpr uint64_t kVoxelsPerShortCube = 64;
@@ -185,15 +182,14 @@ class ListWriter {
   uint64_t face_area_ = 0;
 };
 
-// Which lists a tree gets.
+// Which list a tree gets.
 struct Plan {
   Census census;  // of the boxes
   SurfaceCount surface;
-  bool has_surface = false;
-  bool has_boxes = true;
-  bool is_short = false;  // whether the entries of the boxes are short
-  int box_level = 0;      // the block level of either list
-  int surface_level = 0;  // the same
+  bool has_surface = false;  // else boxes
+  bool is_short = false;     // whether the entries of the boxes are short
+  int box_level = 0;         // the block level of either list
+  int surface_level = 0;     // the same
 
   uint64_t box_nodes() const { return census.boxes == 0 ? 0 : census.level_begin[box_level - 1]; }
   uint64_t surface_nodes() const { return surface.level_begin[surface_level - 1]; }
@@ -211,10 +207,6 @@ bool make_plan(const CompactTree& tree, ListKind kind, Plan* plan) {
     plan->has_surface = plan->surface.entries < kMostSurface;
   }
   if (plan->has_surface) {
-    plan->has_boxes =
-        census.boxes <= kFewBoxesBeside || census.boxes <= plan->surface.entries / kVoxelsPerBoxBeside;
-    // Beside a surface a list of boxes is of use only if it has blocks, and is shorter.
-    plan->has_boxes = plan->has_boxes && census.has_blocks && census.boxes < plan->surface.entries;
     plan->surface_level =
         choose_block_level(tree.level(), plan->surface.level_begin, plan->surface.entries, 2);
   } else {
@@ -316,13 +308,6 @@ class ListMaker {
   const Plan& plan_;
 };
 
-VoxelLists VoxelLists::boxes_beside() const {
-  VoxelLists other;
-  other.tree_ = tree_;
-  other.list_ = beside_;
-  return other;
-}
-
 size_t VoxelLists::bytes(const CompactTree& tree, ListKind kind) {
   Plan plan;
   if (!make_plan(tree, kind, &plan)) {
@@ -330,11 +315,9 @@ size_t VoxelLists::bytes(const CompactTree& tree, ListKind kind) {
   }
   const bool many = tree.many_materials();
   const size_t entry_bytes = plan.is_short ? sizeof(uint16_t) : sizeof(uint32_t);
-  return (plan.has_surface
-              ? bytes_of(plan.surface.entries, sizeof(uint32_t), plan.surface_nodes(), many, false) + 256
-              : 0) +
-         (plan.has_boxes ? bytes_of(plan.census.boxes, entry_bytes, plan.box_nodes(), many, tree.merged())
-                         : 0);
+  return plan.has_surface
+             ? bytes_of(plan.surface.entries, sizeof(uint32_t), plan.surface_nodes(), many, false) + 256
+             : bytes_of(plan.census.boxes, entry_bytes, plan.box_nodes(), many, tree.merged());
 }
 
 Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists, ListKind kind) {
@@ -346,8 +329,7 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
   made.tree_ = tree;
   Arena taken = *arena;
   const ListMaker maker(tree, plan);
-  if ((plan.has_surface && !maker.make_surface(&taken, &made.list_)) ||
-      (plan.has_boxes && !maker.make_boxes(&taken, plan.has_surface ? &made.beside_ : &made.list_))) {
+  if (!(plan.has_surface ? maker.make_surface(&taken, &made.list_) : maker.make_boxes(&taken, &made.list_))) {
     return Status::kOutOfMemory;
   }
   *arena = taken;

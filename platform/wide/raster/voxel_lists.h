@@ -11,9 +11,7 @@
 /// voxels so crowded that many are hidden, only its surface is listed: voxels with six solid neighbours are left out.
 /// A ray enters such a voxel either because it begins there, or through an edge or corner, between two listed voxels
 /// that it touches without hitting them; hidden_voxels.h says how these pixels are found. Where little would be left out (a
-/// quarter at most) all voxels are listed. Where a tree has far fewer boxes than voxels on its surface, a list of the
-/// boxes stands beside that of the surface, for views in which voxels look large. Trees that were coarsened are listed
-/// as their boxes: a merged block stays one.
+/// quarter at most) all voxels are listed. Trees that were coarsened are listed as their boxes: a merged block stays one.
 ///
 /// Lists of single voxels of one material, in worlds of several cubes where voxels are dense, hold short entries of 16
 /// bits, which take half the memory and are looked at twice as many at a time:
@@ -99,9 +97,6 @@ class VoxelLists {
   /// Whether voxels with six solid neighbours are left out. A hidden voxel that a ray hits all the same is numbered
   /// size() + its material.
   bool is_surface() const { return list_.is_surface; }
-  /// Whether a list of boxes stands beside that of the surface; and that list.
-  bool has_boxes_beside() const { return beside_.entries.size != 0; }
-  VoxelLists boxes_beside() const;
 
   /// The mask of a node's children that have entries; at the block level the children themselves are not kept.
   unsigned children(uint32_t node) const {
@@ -131,7 +126,6 @@ class VoxelLists {
   };
   CompactTree tree_;
   List list_;
-  List beside_;
 };
 
 }  // namespace thimble::wide

@@ -50,12 +50,7 @@ struct Row {
   double against_core() const { return left_to_core ? 1 : ms[kAuto] / ms[kCore]; }
   double against_boxes() const { return left_to_core ? 1 : ms[kAuto] / ms[kBoxes]; }
   const char* chosen() const {
-    const wide::Stats& stat = stats[kAuto];
-    if (left_to_core) {
-      return "core";
-    }
-    return stat.order == wide::Order::kFlat ? (stat.has_boxes ? "flat, boxes" : "flat")
-                                            : (stat.has_boxes ? "blocks, boxes" : "blocks");
+    return left_to_core ? "core" : stats[kAuto].order == wide::Order::kFlat ? "flat" : "blocks";
   }
 };
 
@@ -333,10 +328,9 @@ int run(int count, char** words) {
       save(world.tree(), save_path);
       return 0;
     }
-    std::printf("%s: %zu entries%s%s, %.1f MB and %.3f s; boxes alone %zu, %.1f MB and %.3f s\n",
+    std::printf("%s: %zu entries%s, %.1f MB and %.3f s; boxes alone %zu, %.1f MB and %.3f s\n",
                 short_name(name).c_str(), world.lists().size(),
                 world.lists().is_surface() ? " of the surface" : "",
-                world.lists().has_boxes_beside() ? " and boxes beside" : "",
                 static_cast<double>(world.list_bytes()) / 1e6, world.list_seconds(), world.box_lists().size(),
                 static_cast<double>(world.box_list_bytes()) / 1e6, world.box_list_seconds());
     for (const tests::TrialView& view : tests::trial_views(world.tree(), kWidthPx, kHeightPx)) {
