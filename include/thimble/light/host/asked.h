@@ -56,7 +56,7 @@ inline constexpr uint16_t kInNothing = 256;
 /// Questions of one kind, in their order of submission. All rays pass `check_ray`.
 struct Asked {
   Ray* rays = nullptr;
-  RayPoint* before = nullptr;  ///< kClosest, kBefore and kOn alone; else null
+  RayPoint* before = nullptr;  ///< kBefore and kOn, and kClosest where a driver takes it; else null
   uint16_t* in = nullptr;      ///< kOn alone: a material, or kInNothing
   uint32_t* answer = nullptr;  ///< the number of the answer that is wanted
   uint32_t count = 0;
