@@ -3,8 +3,7 @@
 //   bench_device expect SCENE... >expected.txt          by the core: every CRC that is checked
 //   bench_device check expected.txt SCENE... [--quick]  by the GPU: a table in Markdown; exit 1 for a wrong picture
 //
-// SCENE: a file of `thimble bake`, or points:N (N random voxels in a world of 1,024). Cameras are integers, so they are
-// the same on every machine.
+// SCENE: a file of `thimble bake`. Cameras are integers, so they are the same on every machine.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -57,39 +56,9 @@ struct Scene {
   std::exit(2);
 }
 
-// Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014.
-std::uint64_t next_random(std::uint64_t* state) {
-  std::uint64_t z = *state += 0x9E3779B97F4A7C15U;
-  z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9U;
-  z = (z ^ z >> 27) * 0x94D049BB133111EBU;
-  return z ^ z >> 31;
-}
-
-void make_points(std::size_t count, Scene* scene) {
-  constexpr int kLevel = 10;
-  std::vector<std::uint32_t> keys(count);
-  std::uint64_t state = 1;
-  for (std::uint32_t& key : keys) {
-    key = static_cast<std::uint32_t>(next_random(&state) & ((1U << 3 * kLevel) - 1));
-  }
-  sort_keys(Span<std::uint32_t>{keys.data(), keys.size()}, 3 * kLevel);
-  keys.resize(unique_keys(Span<std::uint32_t>{keys.data(), keys.size()}));
-  const Span<const std::uint32_t> sorted{keys.data(), keys.size()};
-  std::size_t size = 0;
-  (void)CompactTree::make(sorted, kLevel, 1, {}, nullptr, &size);
-  scene->bytes.resize(size);
-  if (CompactTree::make(sorted, kLevel, 1, {scene->bytes.data(), size}, &scene->tree) != Status::kOk) {
-    fail(scene->name + ": its tree takes more than 4 GiB");
-  }
-}
-
 Scene load(const std::string& name) {
   Scene scene;
   scene.name = name;
-  if (name.rfind("points:", 0) == 0) {
-    make_points(std::strtoull(name.c_str() + 7, nullptr, 10), &scene);
-    return scene;
-  }
   std::ifstream file(name, std::ios::binary);
   scene.bytes.assign(std::istreambuf_iterator<char>(file), {});
   BakedScene baked;
@@ -99,7 +68,9 @@ Scene load(const std::string& name) {
   scene.name = name.substr(name.find_last_of('/') + 1);
   scene.tree = baked.tree();
   scene.palette.assign(baked.palette().data, baked.palette().data + baked.palette().size);
-  scene.shade = static_cast<int>(scene.tree.many_materials() ? ShadeMode::kColor : ShadeMode::kNormal);
+  if (scene.name.rfind("points:", 0) != 0) {
+    scene.shade = static_cast<int>(scene.tree.many_materials() ? ShadeMode::kColor : ShadeMode::kNormal);
+  }
   return scene;
 }
 
@@ -137,20 +108,11 @@ Camera camera_of(const Scene& scene, Size size, int degree, bool parallel) {
   Camera camera;
   Status status = Status::kOk;
   if (parallel) {
-    OrthographicView view;
-    view.eye = eye;
-    view.forward = forward;
-    view.span = Q14::from_raw(static_cast<std::int32_t>(diagonal << 14));
-    view.width_px = size.width;
-    view.height_px = size.height;
+    OrthographicView view{
+        eye, forward, {}, Q14::from_raw(static_cast<std::int32_t>(diagonal << 14)), size.width, size.height};
     status = camera.set(view, scene.tree.level());
   } else {
-    PerspectiveView view;
-    view.eye = eye;
-    view.forward = forward;
-    view.fov_degrees = Q16::saturate(35);
-    view.width_px = size.width;
-    view.height_px = size.height;
+    PerspectiveView view{eye, forward, {}, Q16::saturate(35), size.width, size.height};
     status = camera.set(view, scene.tree.level());
   }
   if (status != Status::kOk) {
@@ -160,9 +122,8 @@ Camera camera_of(const Scene& scene, Size size, int degree, bool parallel) {
 }
 
 Shading shading_of(const Scene& scene, int picture, const Camera& camera) {
-  Shading shading;
-  shading.mode = picture == kLit ? ShadeMode::kColor : static_cast<ShadeMode>(picture);
-  shading.palette = {scene.palette.data(), scene.palette.size()};
+  Shading shading{.mode = picture == kLit ? ShadeMode::kColor : static_cast<ShadeMode>(picture),
+                  .palette = {scene.palette.data(), scene.palette.size()}};
   const DepthRange range = depth_range(camera, scene.tree.bounds());
   shading.near_q8 = range.near_q8;
   shading.far_q8 = range.far_q8;
@@ -229,10 +190,8 @@ std::uint32_t crc_by_core(const Scene& scene, const Check& check) {
   for (std::int32_t number = 0; number < count; ++number) {
     threads.emplace_back([&, number] {
       for (std::int32_t y = number; y < check.size.height; y += count) {
-        Band band;
-        band.pixels = {pixels.data() + row * static_cast<std::size_t>(y), row};
-        band.first_row = y;
-        band.rows = 1;
+        Band band{
+            .pixels = {pixels.data() + row * static_cast<std::size_t>(y), row}, .first_row = y, .rows = 1};
         const Status status = check.picture == kLit
                                   ? render_lit_band(kLight, scene.tree, camera, shading, light(), band)
                                   : render_band(scene.tree, camera, shading, band);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Makes the folder that device.sh takes along: device_folder.sh FOLDER BENCH_DEVICE THIMBLE SCENE...
-# A scene NAME.oct that is not in the folder yet is baked from the scene NAME that comes along; points:N is made by
-# bench_device where it runs. Takes a minute or two: the CRCs are the core's.
+# A scene NAME.oct that is not in the folder yet is baked from the scene NAME, points in a world of 1,024. Takes a minute
+# or two: the CRCs are the core's.
 set -eu
 folder=$1
 bench=$2
@@ -10,9 +10,9 @@ shift 3
 mkdir -p "$folder/lib"
 cp "$bench" "$folder/bench_device"
 for scene in "$@"; do
-  case $scene in
-    *.oct) [ -e "$folder/$scene" ] || "$thimble" bake "${scene%.oct}" -o "$folder/$scene" --quiet ;;
-  esac
+  depth=
+  case $scene in points:*) depth=,depth=10 ;; esac
+  [ -e "$folder/$scene" ] || "$thimble" bake "${scene%.oct}$depth" --effects none -o "$folder/$scene" --quiet
 done
 # The loader, and what NVIDIA's driver is linked with.
 for name in libvulkan.so.1 libX11.so.6 libXext.so.6 libxcb.so.1 libXau.so.6 libXdmcp.so.6 libbsd.so.0 libmd.so.0; do

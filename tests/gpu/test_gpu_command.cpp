@@ -1,15 +1,10 @@
 // --engine gpu: the files of the core, on whatever Vulkan device there is; and what it does not draw.
 #include <doctest/doctest.h>
 
-#include <string>
-#include <vector>
-
-#include "support/run_command.h"
+#include "support/check_command.h"
 
 namespace thimble::tests {
 namespace {
-
-using Words = std::vector<std::string>;
 
 bool command_has_device() {
   if (run_command({"--version"}).out.find("\nGPU            none") == std::string::npos) {
@@ -33,11 +28,6 @@ std::string without_nodes(const std::string& csv, std::size_t column) {
   return text;
 }
 
-Words joined(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 }  // namespace
 
 TEST_CASE("gpu command: render and trace -> the pictures and hits of ray64") {
@@ -54,14 +44,11 @@ TEST_CASE("gpu command: render and trace -> the pictures and hits of ray64") {
   for (const Words& scene : scenes) {
     CAPTURE(scene.back());
     for (const std::string engine : {"gpu", "ray64"}) {
-      const CommandResult drawn = run_command(
-          joined(joined({"render"}, scene),
-                 {"--engine", engine, "--size", "60x45", "--quiet", "-o", folder.path(engine + ".ppm"),
-                  "--hits", folder.path(engine + ".csv"), "--stats", folder.path(engine + ".json")}));
-      REQUIRE_MESSAGE(drawn.status == 0, drawn.describe());
-      const CommandResult traced = run_command({"trace", scene.front(), "--engine", engine, "--rays", rays,
-                                                "-o", folder.path(engine + "_rays.csv")});
-      REQUIRE_MESSAGE(traced.status == 0, traced.describe());
+      check_done(Words{"render"} + scene +
+                 Words{"--engine", engine, "--size", "60x45", "--quiet", "-o", folder.path(engine + ".ppm"),
+                       "--hits", folder.path(engine + ".csv"), "--stats", folder.path(engine + ".json")});
+      check_done({"trace", scene.front(), "--engine", engine, "--rays", rays, "-o",
+                  folder.path(engine + "_rays.csv")});
     }
     CHECK(read_text(folder.path("gpu.ppm")) == read_text(folder.path("ray64.ppm")));
     CHECK(without_nodes(read_text(folder.path("gpu.csv")), 8) ==
@@ -86,11 +73,9 @@ TEST_CASE("gpu command: lit pictures, with their backgrounds, samples and parts 
   for (const Words& picture : pictures) {
     CAPTURE(picture.front());
     for (const std::string engine : {"gpu", "auto"}) {
-      const CommandResult drawn =
-          run_command(joined(joined({"render"}, picture),
-                             {"--engine", engine, "--size", "60x45", "--quiet", "-o",
-                              folder.path(engine + ".png"), "--stats", folder.path(engine + ".json")}));
-      REQUIRE_MESSAGE(drawn.status == 0, drawn.describe());
+      check_done(Words{"render"} + picture +
+                 Words{"--engine", engine, "--size", "60x45", "--quiet", "-o", folder.path(engine + ".png"),
+                       "--stats", folder.path(engine + ".json")});
     }
     CHECK(read_text(folder.path("gpu.png")) == read_text(folder.path("auto.png")));
     CHECK(read_text(folder.path("gpu.json")).find("\"gpu\"") != std::string::npos);
@@ -109,20 +94,12 @@ TEST_CASE("gpu command: what it does not draw -> status 2, a sentence, no file")
                                    {"spheres", "--structure", "pool"},
                                    {"room"}};
   for (const Words& words : refused) {
-    const CommandResult result =
-        run_command(joined(joined({"render"}, words), {"--engine", "gpu", "-o", folder.path("p.ppm")}));
-    CAPTURE(result.describe());
-    CHECK(result.status == 2);
-    CHECK(is_one_sentence(result.err));
+    check_refused(Words{"render"} + words + Words{"--engine", "gpu", "-o", folder.path("p.ppm")}, 2, {});
   }
   CHECK(folder.names().empty());
   const std::string rays = folder.write("rays.csv", "1,2,3,300,-200,100\n");
   for (const Words& words : {Words{"--memory", "8M"}, Words{"--structure", "dense"}}) {
-    const CommandResult result =
-        run_command(joined({"trace", "spheres", "--engine", "gpu", "--rays", rays}, words));
-    CAPTURE(result.describe());
-    CHECK(result.status == 2);
-    CHECK(is_one_sentence(result.err));
+    check_refused(Words{"trace", "spheres", "--engine", "gpu", "--rays", rays} + words, 2, {});
   }
 }
 
@@ -130,18 +107,13 @@ TEST_CASE("gpu command: where no Vulkan driver is -> status 1, a sentence; --ver
   const TemporaryFolder folder;
   CommandLimits limits;
   limits.program = "/usr/bin/env";
-  const auto without_driver = [&](const Words& words) {
-    return run_command(joined({"VK_ICD_FILENAMES=" + folder.path("none.json"),
-                               "VK_DRIVER_FILES=" + folder.path("none.json"), THIMBLE_COMMAND_PATH},
-                              words),
-                       limits);
-  };
-  CHECK(without_driver({"--version"}).out.find("\nGPU            none") != std::string::npos);
-  const CommandResult result = without_driver(
-      {"render", "spheres", "--shade", "depth", "--engine", "gpu", "-o", folder.path("p.ppm")});
-  CAPTURE(result.describe());
-  CHECK(result.status == 1);
-  CHECK(is_one_sentence(result.err));
+  const Words without_driver{"VK_ICD_FILENAMES=" + folder.path("none.json"),
+                             "VK_DRIVER_FILES=" + folder.path("none.json"), THIMBLE_COMMAND_PATH};
+  CHECK(run_command(without_driver + Words{"--version"}, limits).out.find("\nGPU            none") !=
+        std::string::npos);
+  check_refused(without_driver + Words{"render", "spheres", "--shade", "depth", "--engine", "gpu", "-o",
+                                       folder.path("p.ppm")},
+                1, {}, limits);
   CHECK(folder.names().empty());
 }
 

@@ -6,7 +6,7 @@
 
 #include "gpu/renderer.h"
 #include "readers/source.h"
-#include "support/run_command.h"
+#include "support/check_command.h"
 #include "viewer/fast_frames.h"
 #include "viewer/finished_picture.h"
 
@@ -74,10 +74,7 @@ TEST_CASE("gpu view: what it does not draw -> a sentence") {
     const auto look = look_by("gpu", name, false);
     CHECK_THROWS_AS(FinishedPicture(look, view), InputError);
   }
-  const CommandResult refused =
-      run_command({"view", "castle", "--engine", "gpu", "--shade", "depth", "--bench", "1"});
-  CHECK(refused.status == 2);
-  CHECK(is_one_sentence(refused.err));
+  check_refused({"view", "castle", "--engine", "gpu", "--shade", "depth", "--bench", "1"}, 2, {});
 }
 
 }  // namespace thimble::tests
