@@ -43,103 +43,85 @@ struct Sink {
     if (pool != nullptr) {
       return pool->insert_box(box, material);
     }
+    Status status = Status::kOk;
     for (int32_t z = box.low.z; z < box.high.z; ++z) {
       for (int32_t y = box.low.y; y < box.high.y; ++y) {
-        for (int32_t x = box.low.x; x < box.high.x; ++x) {
-          const Status status = grid->set({x, y, z});
-          if (status != Status::kOk) {
-            return status;
-          }
+        for (int32_t x = box.low.x; x < box.high.x && status == Status::kOk; ++x) {
+          status = grid->set({x, y, z});
         }
       }
     }
-    return Status::kOk;
+    return status;
   }
 };
 
 struct Sphere {
   int8_t x, y, z, radius;
   uint8_t material;
+  int8_t inner = 0;  ///< radius of what is left empty
 };
-
-// Voxel by voxel over the sphere's box, as the paper filled its grid. Centres are voxel corners, so a voxel's
-// centre lies at odd half units: all is doubled. `inner` is the radius of what is left empty.
-Status insert_sphere(Sink& sink, const Sphere& sphere, int32_t inner) {
-  const int32_t radius = sphere.radius;
-  for (int32_t z = -radius; z < radius; ++z) {
-    for (int32_t y = -radius; y < radius; ++y) {
-      for (int32_t x = -radius; x < radius; ++x) {
-        const int32_t square =
-            (2 * x + 1) * (2 * x + 1) + (2 * y + 1) * (2 * y + 1) + (2 * z + 1) * (2 * z + 1);
-        if (square > 4 * radius * radius || square < 4 * inner * inner) {
-          continue;
-        }
-        const Status status = sink.voxel({sphere.x + x, sphere.y + y, sphere.z + z}, sphere.material);
-        if (status != Status::kOk) {
-          return status;
-        }
-      }
-    }
-  }
-  return Status::kOk;
-}
 
 constexpr Sphere kThreeSpheres[] = {{11, 16, 11, 10, 1}, {21, 14, 13, 8, 2}, {16, 18, 24, 7, 3}};
 constexpr Sphere kFiveSpheres[] = {
     {20, 30, 16, 13, 1}, {42, 24, 14, 11, 2}, {30, 44, 22, 12, 3}, {36, 30, 40, 10, 4}, {18, 20, 46, 7, 5}};
+constexpr Sphere kShellSphere[] = {{16, 16, 16, 14, 0, 12}};
 
+// Voxel by voxel over each sphere's box, as the paper filled its grid. Centres are voxel corners, so a voxel's
+// centre lies at odd half units: all is doubled.
 Status insert_spheres(Sink& sink, Span<const Sphere> spheres) {
+  Status status = Status::kOk;
   for (const Sphere& sphere : spheres) {
-    const Status status = insert_sphere(sink, sphere, 0);
-    if (status != Status::kOk) {
-      return status;
+    const int32_t radius = sphere.radius;
+    for (int32_t z = -radius; z < radius; ++z) {
+      for (int32_t y = -radius; y < radius; ++y) {
+        for (int32_t x = -radius; x < radius && status == Status::kOk; ++x) {
+          const int32_t square =
+              (2 * x + 1) * (2 * x + 1) + (2 * y + 1) * (2 * y + 1) + (2 * z + 1) * (2 * z + 1);
+          if (square <= 4 * radius * radius && square >= 4 * sphere.inner * sphere.inner) {
+            status = sink.voxel({sphere.x + x, sphere.y + y, sphere.z + z}, sphere.material);
+          }
+        }
+      }
     }
   }
-  return Status::kOk;
+  return status;
 }
 
 Status insert_points(Sink& sink, int count, int level, bool materials) {
   Random random{0x9E3779B9U};
   const int shift = 32 - level;
-  for (int i = 0; i < count; ++i) {
+  Status status = Status::kOk;
+  for (int i = 0; i < count && status == Status::kOk; ++i) {
     Vec3i at;
     for (int axis = 0; axis < 3; ++axis) {
       at[axis] = static_cast<int32_t>(random.next() >> shift);
     }
-    const Status status = sink.voxel(at, materials ? static_cast<uint8_t>(random.next() >> 29) : uint8_t{0});
-    if (status != Status::kOk) {
-      return status;
-    }
+    status = sink.voxel(at, materials ? static_cast<uint8_t>(random.next() >> 29) : uint8_t{0});
   }
-  return Status::kOk;
+  return status;
 }
 
 Status insert_checkerboard(Sink& sink, int level) {
   const int32_t side = int32_t{1} << level;
+  Status status = Status::kOk;
   for (int32_t z = 0; z < side; ++z) {
     for (int32_t y = 0; y < side; ++y) {
-      for (int32_t x = (y + z) & 1; x < side; x += 2) {
-        const Status status = sink.voxel({x, y, z}, static_cast<uint8_t>(1 + (((x >> 1) ^ z) & 1)));
-        if (status != Status::kOk) {
-          return status;
-        }
+      for (int32_t x = (y + z) & 1; x < side && status == Status::kOk; x += 2) {
+        status = sink.voxel({x, y, z}, static_cast<uint8_t>(1 + (((x >> 1) ^ z) & 1)));
       }
     }
   }
-  return Status::kOk;
+  return status;
 }
 
 Status insert_corners(Sink& sink, int level) {
   const int32_t last = (int32_t{1} << level) - 1;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const Vec3i at{(corner & 1U) != 0 ? last : 0, (corner & 2U) != 0 ? last : 0,
-                   (corner & 4U) != 0 ? last : 0};
-    const Status status = sink.voxel(at, static_cast<uint8_t>(corner));
-    if (status != Status::kOk) {
-      return status;
-    }
+  Status status = Status::kOk;
+  for (int32_t corner = 0; corner < 8 && status == Status::kOk; ++corner) {
+    status = sink.voxel({(corner & 1) * last, (corner >> 1 & 1) * last, (corner >> 2) * last},
+                        static_cast<uint8_t>(corner));
   }
-  return Status::kOk;
+  return status;
 }
 
 // A floor, a bar along x (red, from the origin), a shorter one along y (green), a shortest one up z (blue).
@@ -153,13 +135,11 @@ Status insert_marks(Sink& sink) {
                              {{{2, 4, 1}, {4, 11, 3}}, 2},
                              {{{2, 2, 3}, {4, 4, 8}}, 3},
                              {{{11, 11, 1}, {13, 13, 3}}, 4}};
+  Status status = Status::kOk;
   for (const Part& part : kParts) {
-    const Status status = sink.box(part.box, part.material);
-    if (status != Status::kOk) {
-      return status;
-    }
+    status = status == Status::kOk ? sink.box(part.box, part.material) : status;
   }
-  return Status::kOk;
+  return status;
 }
 
 Status fill(SceneId id, Sink& sink) {
@@ -179,7 +159,7 @@ Status fill(SceneId id, Sink& sink) {
     case SceneId::kPoints:
       return insert_points(sink, 1000, info.level, false);
     case SceneId::kShell:
-      return insert_sphere(sink, {16, 16, 16, 14, 0}, 12);
+      return insert_spheres(sink, kShellSphere);
     case SceneId::kCheckerboard:
       return insert_checkerboard(sink, info.level);
     case SceneId::kCorners:
@@ -457,11 +437,10 @@ Status frame_crc32(const Frame& frame, const World& world, const Camera& camera,
   options.width = width;
   uint32_t sum = 0;
   for (int32_t row = 0; row < height; row += step) {
-    Band band;
-    band.pixels = band_bytes;
-    band.format = frame.format;
-    band.first_row = row;
-    band.rows = step < height - row ? step : height - row;
+    Band band{.pixels = band_bytes,
+              .format = frame.format,
+              .first_row = row,
+              .rows = step < height - row ? step : height - row};
     const Status status = draw_band(world, camera, shading, band, counts, options);
     if (status != Status::kOk) {
       return status;

@@ -130,12 +130,7 @@ TEST_CASE("edges: two faces of one grey that meet -> the corner between them, in
   CHECK(perspective > 15);  // rows of the corner
   CHECK(perspective < 40);
   const Vec3Q8 eye = LitWorld::point({-20 * 256, -20 * 256, 12 * 256});
-  OrthographicView view;
-  view.eye = eye;
-  view.forward = {1, 1, 0};
-  view.span = Q14::saturate(40);
-  view.width_px = 48;
-  view.height_px = 36;
+  OrthographicView view{eye, {1, 1, 0}, {}, Q14::saturate(40), 48, 36};
   REQUIRE(world.camera.set(view, world.tree.level()) == Status::kOk);
   const int parallel = draw_both(world).dark;
   CHECK(parallel > 15);
@@ -178,12 +173,12 @@ TEST_CASE("edges: a face that lies behind another one -> an edge from four pixel
     world.box({16, 12 + behind, 0}, {32, 30, 32}, 1);
     world.lights = {sun({0, -1, 0}, 180)};
     world.finish();
-    OrthographicView view;
-    view.eye = LitWorld::point({16 * 256 + 70, -20 * 256, 16 * 256 + 70});
-    view.forward = {0, 16, 0};
-    view.span = Q14::saturate(16);
-    view.width_px = 32;
-    view.height_px = 24;
+    OrthographicView view{LitWorld::point({16 * 256 + 70, -20 * 256, 16 * 256 + 70}),
+                          {0, 16, 0},
+                          {},
+                          Q14::saturate(16),
+                          32,
+                          24};
     REQUIRE(world.camera.set(view, world.tree.level()) == Status::kOk);
     LitCounts counts;
     world.draw(kLit | Effect::kEdges, &counts);

@@ -257,9 +257,8 @@ TEST_CASE(
 TEST_CASE("bake: a header -> the set of effects as a macro; --effects as asked for; info tells it") {
   const TemporaryFolder folder;
   const auto macro = [&](const std::string& scene, const std::vector<std::string>& more) {
-    std::vector<std::string> words{"bake", scene, "-o", folder.path("a.h")};
-    words.insert(words.end(), more.begin(), more.end());
-    tests::check_done(words);
+    using tests::operator+;
+    tests::check_done(tests::Words{"bake", scene, "-o", folder.path("a.h")} + more);
     for (const std::string& line : tests::lines_of(tests::read_text(folder.path("a.h")))) {
       if (line.starts_with("#define THIMBLE_SCENE_EFFECTS ")) {
         return line.substr(30);
@@ -271,10 +270,9 @@ TEST_CASE("bake: a header -> the set of effects as a macro; --effects as asked f
   CHECK(macro("water", {"--effects", "sky"}) == "0x200u /* sky */");
   CHECK(macro("water", {"--effects", "none"}) == "0x000u");
   CHECK(macro("spheres", {}) == "0x000u");
-  const auto wrong = tests::run_command({"bake", "water", "-o", folder.path("b.h"), "--effects", "gloss"});
-  CHECK(wrong.status == 2);
-  CHECK(contains(wrong.err, "--effects: \"gloss\" is not auto, none, all or a list"));
-  REQUIRE(tests::run_command({"bake", "water", "-o", folder.path("a.oct")}).status == 0);
+  tests::check_refused({"bake", "water", "-o", folder.path("b.h"), "--effects", "gloss"}, 2,
+                       {"--effects: \"gloss\" is not auto, none, all or a list"});
+  tests::check_done({"bake", "water", "-o", folder.path("a.oct")});
   const auto info = tests::run_command({"info", folder.path("a.oct")});
   CHECK(contains(info.out, "effects              direct-light,shadows,mirror,glass,water,sky\n"));
   CHECK(contains(info.out, "water                58 x 58 columns from 3,3, level 15\n"));

@@ -75,12 +75,8 @@ TEST_CASE(
   basin.shading.background = {0, 0, 0};
   basin.scene.ripple_phase = 21;
   const Vec3i down{0, 400, -300};
-  OrthographicView view;
-  view.eye = LitWorld::point({16 * 256 + 31, -10 * 256 + 7, 36 * 256});
-  view.forward = down;
-  view.span = Q14::saturate(20);
-  view.width_px = 96;
-  view.height_px = 72;
+  OrthographicView view{
+      LitWorld::point({16 * 256 + 31, -10 * 256 + 7, 36 * 256}), down, {}, Q14::saturate(20), 96, 72};
   REQUIRE(basin.camera.set(view, basin.tree.level()) == Status::kOk);
   basin.lights = {sun({20, 400, 310})};
   basin.finish();
@@ -168,12 +164,8 @@ TEST_CASE("ripples: after the last bounce, and from behind a ripple -> the water
   Basin flat;
   flat.lights = {};
   flat.finish();
-  OrthographicView view;
-  view.eye = LitWorld::point({16 * 256, -100 * 256, 17 * 256});
-  view.forward = {0, 1000, -9};
-  view.span = Q14::saturate(24);
-  view.width_px = 96;
-  view.height_px = 4;
+  OrthographicView view{
+      LitWorld::point({16 * 256, -100 * 256, 17 * 256}), {0, 1000, -9}, {}, Q14::saturate(24), 96, 4};
   REQUIRE(flat.camera.set(view, flat.tree.level()) == Status::kOk);
   const std::vector<Rgb8> plain = flat.draw(kPool);
   const std::vector<Rgb8> rippled = flat.draw(kPool | Effect::kRipples);

@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "support/counts.h"
+#include "support/ray_cases.h"
+#include "support/scene_under_test.h"
 #include "thimble/light/water.h"
 
 namespace thimble::tools {
@@ -204,7 +205,7 @@ std::string describe(const Ray& ray) {
 
 class Cases {
  public:
-  explicit Cases(std::uint64_t seed) : random_(seed) {}
+  explicit Cases(std::uint64_t seed) : random_(seed), rays_(seed, {1, 1, 1}) {}
 
   std::int32_t pick(std::int32_t low, std::int32_t high) {
     return low + static_cast<std::int32_t>(random_() % static_cast<std::uint64_t>(high - low + 1));
@@ -247,36 +248,7 @@ class Cases {
     return made;
   }
 
-  // A direction component: zero, one, small, a power of two, at the limit, or anything.
-  std::int32_t component() {
-    const std::int32_t sign = pick(0, 1) == 0 ? 1 : -1;
-    switch (pick(0, 7)) {
-      case 0:
-      case 1:
-        return 0;
-      case 2:
-        return sign;
-      case 3:
-        return sign * pick(1, 8);
-      case 4:
-        return sign * (1 << pick(0, 19));
-      case 5:
-        return sign * kMaxDirection;
-      default:
-        return sign * (pick(0, kMaxDirection) >> pick(0, 19));
-    }
-  }
-  Vec3i direction() {
-    for (int attempt = 0; attempt < 20; ++attempt) {
-      const std::int32_t x = component();
-      const std::int32_t y = component();
-      const std::int32_t z = component();
-      if (x != 0 || y != 0 || z != 0) {
-        return {x, y, z};
-      }
-    }
-    return {0, 0, -1};
-  }
+  Vec3i direction() { return tests::to_core(rays_.next().ray).direction; }
 
   // A point of the lattice that matters: corners of columns, their heights.
   Vec3i special_point(const Columns& columns) {
@@ -344,6 +316,7 @@ class Cases {
 
  private:
   std::mt19937_64 random_;
+  tests::RayCases rays_;
 };
 
 TEST_CASE("water surface: random rays and columns, a third of them degenerate -> the exact answer") {

@@ -53,10 +53,7 @@ struct Case {
   Case(const Structure& drawn, const Camera& seen_from, const Shading& shaded, PixelFormat stored)
       : structure(drawn), camera(seen_from), shading(shaded), format(stored) {
     wanted.resize(band_bytes(format, camera.width_px(), camera.height_px()));
-    Band band;
-    band.pixels = Bytes(wanted.data(), wanted.size());
-    band.format = format;
-    band.rows = camera.height_px();
+    Band band{.pixels = Bytes(wanted.data(), wanted.size()), .format = format, .rows = camera.height_px()};
     REQUIRE(render_band(structure, camera, shading, band) == Status::kOk);
   }
   std::size_t bytes() const { return anytime_bytes(camera.width_px(), camera.height_px(), format); }
@@ -225,14 +222,13 @@ Camera random_camera(SplitMix64& random, int width, int height) {
 }
 
 Shading random_shading(SplitMix64& random) {
-  Shading shading;
-  shading.mode = static_cast<ShadeMode>(random.below(4));
-  shading.palette = Span<const Rgb8>(kPalette);
-  shading.background = {static_cast<std::uint8_t>(random.below(256)),
-                        static_cast<std::uint8_t>(random.below(256)),
-                        static_cast<std::uint8_t>(random.below(256))};
-  shading.near_q8 = random.between(-1000, 3000);
-  shading.far_q8 = random.between(2000, 20000);
+  Shading shading{.mode = static_cast<ShadeMode>(random.below(4)),
+                  .palette = Span<const Rgb8>(kPalette),
+                  .background = {static_cast<std::uint8_t>(random.below(256)),
+                                 static_cast<std::uint8_t>(random.below(256)),
+                                 static_cast<std::uint8_t>(random.below(256))},
+                  .near_q8 = random.between(-1000, 3000),
+                  .far_q8 = random.between(2000, 20000)};
   return shading;
 }
 

@@ -215,10 +215,7 @@ TEST_CASE("brick frames: arguments that contradict the picture -> a status, and 
   const Shading shading;
   std::vector<std::uint8_t> pixels(11 * 16, 0x5A);
   const std::vector<std::uint8_t> before = pixels;
-  Band band;
-  band.format = PixelFormat::kGray4;
-  band.rows = 16;
-  band.pixels = {pixels.data(), pixels.size() - 1};
+  Band band{.pixels = {pixels.data(), pixels.size() - 1}, .format = PixelFormat::kGray4, .rows = 16};
   CHECK(render_band(tree, map, camera, shading, band) == Status::kOutOfMemory);
   band.pixels.size = pixels.size();
   band.stride_bytes = 10;

@@ -62,10 +62,7 @@ Hit hit_at(std::int32_t depth_q8) {
   return hit;
 }
 int depth_gray(const Camera& camera, std::int32_t depth_q8, std::int32_t near_q8, std::int32_t far_q8) {
-  Shading shading;
-  shading.mode = ShadeMode::kDepth;
-  shading.near_q8 = near_q8;
-  shading.far_q8 = far_q8;
+  Shading shading{.mode = ShadeMode::kDepth, .palette = {}, .near_q8 = near_q8, .far_q8 = far_q8};
   const Rgb8 color = shade(hit_at(depth_q8), {{}, {255, 0, 0}}, camera, shading);
   CHECK(color.r == color.g);
   CHECK(color.g == color.b);

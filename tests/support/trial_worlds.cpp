@@ -27,6 +27,7 @@ class Grid {
       : level_(level), words_(std::max<std::size_t>(1, (std::size_t{1} << 3 * level) / 64)) {}
 
   std::int32_t side() const { return std::int32_t{1} << level_; }
+  Vec3i end() const { return {side(), side(), side()}; }
   // The same numbers for every grid.
   std::mt19937_64& random() { return random_; }
 
@@ -47,6 +48,10 @@ class Grid {
         }
       }
     }
+  }
+  template <class IsSolid>
+  void add_where(const IsSolid& is_solid) {
+    add_some({0, 0, 0}, end(), is_solid);
   }
   void add_box(const Vec3i& low, const Vec3i& high) {
     add_some(low, high, [](auto, auto, auto) { return true; });
@@ -111,25 +116,6 @@ class Grid {
   std::mt19937_64 random_{1};
 };
 
-void fill_solid(Grid& grid) {
-  grid.add_box({0, 0, 0}, {grid.side(), grid.side(), grid.side()});
-}
-
-void fill_inset(Grid& grid) {
-  const std::int32_t end = grid.side() - 1;
-  grid.add_box({1, 1, 1}, {end, end, end});
-}
-
-void fill_noise(Grid& grid) {
-  const std::int32_t side = grid.side();
-  grid.add_some({0, 0, 0}, {side, side, side}, [&](auto, auto, auto) { return (grid.random()() & 1U) != 0; });
-}
-
-void fill_checker(Grid& grid) {
-  const std::int32_t side = grid.side();
-  grid.add_some({0, 0, 0}, {side, side, side}, [](auto x, auto y, auto z) { return ((x + y + z) & 1) != 0; });
-}
-
 void fill_sponge(Grid& grid) {
   std::int32_t side = 1;
   while (side * 3 <= grid.side()) {
@@ -146,43 +132,13 @@ void fill_sponge(Grid& grid) {
   });
 }
 
-void fill_voxel(Grid& grid) {
-  const std::int32_t middle = grid.side() / 2;
-  grid.add(middle, middle, middle);
-}
-
-void fill_wall(Grid& grid) {
-  const std::int32_t side = grid.side();
-  grid.add_box({0, side / 3, 0}, {side, side / 3 + 1, side});
-}
-
-void fill_slant(Grid& grid) {
-  const std::int32_t side = grid.side();
-  grid.add_some({0, 0, 0}, {side, side, side}, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-    const std::int32_t behind = 3 * side / 2 - y - z - x;
-    return behind == 0 || behind == 1;
-  });
-}
-
-void fill_columns(Grid& grid) {
-  const std::int32_t side = grid.side();
-  grid.add_some({0, 0, 0}, {side, side, side},
-                [](std::int32_t x, std::int32_t y, std::int32_t) { return x % 8 == 5 && y % 8 == 3; });
-}
-
 void fill_islands(Grid& grid) {
-  const std::int32_t side = grid.side();
-  const std::int32_t part = side / 16;
+  const std::int32_t part = grid.side() / 16;
+  const std::int32_t last = grid.side() - part;
   const auto is_solid = [&](auto, auto, auto) { return (grid.random()() & 1U) != 0; };
   grid.add_some({0, 0, 0}, {part, part, part}, is_solid);
-  grid.add_some({side - part, side - part, side - part}, {side, side, side}, is_solid);
-  grid.add_dust(side * 8, {0, 0, 0}, {side, side, side});
-}
-
-void fill_screen(Grid& grid) {
-  const std::int32_t side = grid.side();
-  grid.add_box({0, 0, 0}, {side, side / 16, side});
-  grid.add_dust(side * side, {0, side / 4, 0}, {side, side, side});
+  grid.add_some({last, last, last}, grid.end(), is_solid);
+  grid.add_dust(grid.side() * 8, {0, 0, 0}, grid.end());
 }
 
 void fill_ball(Grid& grid) {
@@ -207,9 +163,8 @@ void fill_globe(Grid& grid) {
     const std::int64_t from = 2 * std::int64_t{at} + 1 - side;
     return from * from;
   };
-  grid.add_some({0, 0, 0}, {side, side, side}, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-    return square(x) + square(y) + square(z) < std::int64_t{side} * side;
-  });
+  grid.add_where(
+      [&](auto x, auto y, auto z) { return square(x) + square(y) + square(z) < std::int64_t{side} * side; });
 }
 
 // A number of 0 .. 1 for a lattice point.
@@ -282,21 +237,46 @@ struct Kind {
   const char* name;
   void (*fill)(Grid&);
 };
-constexpr std::array<Kind, 15> kKinds{{{"solid", fill_solid},
-                                       {"inset", fill_inset},
-                                       {"noise", fill_noise},
-                                       {"checker", fill_checker},
-                                       {"sponge", fill_sponge},
-                                       {"voxel", fill_voxel},
-                                       {"wall", fill_wall},
-                                       {"slant", fill_slant},
-                                       {"columns", fill_columns},
-                                       {"islands", fill_islands},
-                                       {"screen", fill_screen},
-                                       {"ball", fill_ball},
-                                       {"globe", fill_globe},
-                                       {"terrain", fill_terrain},
-                                       {"city", fill_city}}};
+constexpr Kind kKinds[] = {
+    {"solid",
+     [](Grid& grid) {
+       grid.add_box({0, 0, 0}, grid.end());
+     }},
+    {"inset",
+     [](Grid& grid) {
+       const std::int32_t last = grid.side() - 1;
+       grid.add_box({1, 1, 1}, {last, last, last});
+     }},
+    {"noise",
+     [](Grid& grid) { grid.add_where([&](auto, auto, auto) { return (grid.random()() & 1U) != 0; }); }},
+    {"checker",
+     [](Grid& grid) { grid.add_where([](auto x, auto y, auto z) { return ((x + y + z) & 1) != 0; }); }},
+    {"sponge", fill_sponge},
+    {"voxel", [](Grid& grid) { grid.add(grid.side() / 2, grid.side() / 2, grid.side() / 2); }},
+    {"wall",
+     [](Grid& grid) {
+       const std::int32_t side = grid.side();
+       grid.add_box({0, side / 3, 0}, {side, side / 3 + 1, side});
+     }},
+    {"slant",
+     [](Grid& grid) {
+       const std::int32_t middle = 3 * grid.side() / 2;
+       grid.add_where(
+           [=](auto x, auto y, auto z) { return middle - x - y - z == 0 || middle - x - y - z == 1; });
+     }},
+    {"columns",
+     [](Grid& grid) { grid.add_where([](auto x, auto y, auto) { return x % 8 == 5 && y % 8 == 3; }); }},
+    {"islands", fill_islands},
+    {"screen",
+     [](Grid& grid) {
+       const std::int32_t side = grid.side();
+       grid.add_box({0, 0, 0}, {side, side / 16, side});
+       grid.add_dust(side * side, {0, side / 4, 0}, grid.end());
+     }},
+    {"ball", fill_ball},
+    {"globe", fill_globe},
+    {"terrain", fill_terrain},
+    {"city", fill_city}};
 
 tools::SceneArguments arguments_of(const std::string& name) {
   tools::SceneArguments arguments;

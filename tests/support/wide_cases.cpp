@@ -127,10 +127,7 @@ bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* came
   }
   const int bits = pick(random, 0, 3) == 0 ? pick_int(random, 8, 20) : 0;
   if (pick(random, 0, 2) == 0) {
-    OrthographicView view;
-    view.eye = eye;
-    view.forward = forward;
-    view.up = random_up(random);
+    OrthographicView view{eye, forward, random_up(random), {}};
     const double most = std::ldexp(1.0, level) * 2;
     const double least = most / 4000;
     const double span = least * std::pow(most / least, static_cast<double>(pick(random, 0, 1000)) / 1000);
@@ -140,10 +137,7 @@ bool random_camera(std::mt19937_64& random, const WideScene& scene, Camera* came
     view.direction_bits = bits;
     return camera->set(view, level) == Status::kOk;
   }
-  PerspectiveView view;
-  view.eye = eye;
-  view.forward = forward;
-  view.up = random_up(random);
+  PerspectiveView view{eye, forward, random_up(random)};
   view.fov_degrees =
       Q16::from_raw(static_cast<std::int32_t>(pick(random, 0, 3) == 0   ? 65536
                                               : pick(random, 0, 3) == 0 ? 120 * 65536

@@ -25,11 +25,12 @@ WideScene crowd() {
 }
 
 Camera camera_of(int level) {
-  PerspectiveView view;
-  view.eye = {Q8::saturate(20), Q8::saturate(-70), Q8::saturate(90)};
-  view.forward = {1, 7, -4};
-  view.width_px = kSidePx;
-  view.height_px = kSidePx;
+  PerspectiveView view{{Q8::saturate(20), Q8::saturate(-70), Q8::saturate(90)},
+                       {1, 7, -4},
+                       {},
+                       Q16::saturate(60),
+                       kSidePx,
+                       kSidePx};
   Camera camera;
   REQUIRE(camera.set(view, level) == Status::kOk);
   return camera;
@@ -75,10 +76,8 @@ TEST_CASE("wide: less and less memory -> fewer threads, then nobody") {
   const Camera camera = camera_of(scene.level);
   const Shading shading;
   Pixels expected(band_bytes(PixelFormat::kGray8, kSidePx, kSidePx));
-  Band band;
-  band.pixels = Bytes(expected.data(), expected.size());
-  band.format = PixelFormat::kGray8;
-  band.rows = kSidePx;
+  Band band{
+      .pixels = Bytes(expected.data(), expected.size()), .format = PixelFormat::kGray8, .rows = kSidePx};
   REQUIRE(render_band(scene.tree, camera, shading, band) == Status::kOk);
   const std::size_t most = tools::WideRenderer::bytes(scene.tree, kSidePx, kSidePx, kCrew);
   check_budgets(
@@ -113,9 +112,7 @@ TEST_CASE("wide: less and less memory for lit pictures -> fewer threads, then no
   for (const EffectSet effects : {kFlat, kFlat | Effect::kSmoothNormals}) {
     CAPTURE(effects);
     Pixels expected(band_bytes(PixelFormat::kRgb888, kSidePx, kSidePx));
-    Band band;
-    band.pixels = Bytes(expected.data(), expected.size());
-    band.rows = kSidePx;
+    Band band{.pixels = Bytes(expected.data(), expected.size()), .rows = kSidePx};
     REQUIRE(render_lit_band(effects, scene.tree, camera, shading, lit, band) == Status::kOk);
     check_budgets(
         tools::LitStreams::bytes(scene.tree, effects, lit, kCrew), expected,

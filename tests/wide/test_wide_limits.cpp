@@ -52,11 +52,8 @@ TEST_CASE("wide: an arena or a workspace that is too small -> kOutOfMemory, noth
 TEST_CASE("wide: bands that cannot be -> refused as render_band refuses them") {
   std::mt19937_64 random(6);
   WideScene scene = random_scene(random);
-  PerspectiveView view;
-  view.eye = {Q8::from_raw(-5000), Q8::from_raw(77), Q8::from_raw(99)};
-  view.forward = {3, 1, 1};
-  view.width_px = 20;
-  view.height_px = 10;
+  PerspectiveView view{
+      {Q8::from_raw(-5000), Q8::from_raw(77), Q8::from_raw(99)}, {3, 1, 1}, {}, Q16::saturate(60), 20, 10};
   Camera camera;
   REQUIRE(camera.set(view, scene.level) == Status::kOk);
   Camera other_level;
@@ -66,9 +63,7 @@ TEST_CASE("wide: bands that cannot be -> refused as render_band refuses them") {
   const auto draw = [&](const Camera& of, const Band& band) {
     return wide::render(scene.lists(), of, {}, band, Bytes(workspace.data(), workspace.size()), nullptr);
   };
-  Band band;
-  band.pixels = Bytes(pixels.data(), pixels.size());
-  band.rows = 10;
+  Band band{.pixels = Bytes(pixels.data(), pixels.size()), .rows = 10};
   CHECK(draw(camera, band) == Status::kOk);
   CHECK(draw(Camera(), band) == Status::kBadArgument);
   CHECK(draw(other_level, band) == Status::kBadArgument);
