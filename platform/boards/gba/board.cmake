@@ -30,7 +30,7 @@ set(BOARD_CLOCK_MHZ 17)
 set(BOARD_ICOUNT_SHIFT 6)
 set(BOARD_VISITS_A_SECOND 7500)
 set(BOARD_MAP_RAYS_A_SECOND 12500)
-set(BOARD_FRAME_INSTRUCTIONS 16714013)
+set(BOARD_FRAME_INSTRUCTIONS 16288549)
 set(BOARD_HOLDS_FPS 10)
 # No memory protection, and the boot ROM's handlers say nothing: a write past the RAM meets its mirror, and after a stack that
 # overflows or a jump into nonsense the core runs on, somewhere.
