@@ -52,6 +52,16 @@ struct TileRays {
   int32_t reach;  // |rest + x * step_x + y * step_y| is at most this, which is below 2^15
 };
 
+// A number with 32 bits behind the point in two parts, so that a few times it takes products of 32 bits: all from
+// 1/2^16 on, of which 16 bits stand before the point, and the 16 bits below.
+struct SplitQ32 {
+  uint32_t high;
+  uint32_t low;
+};
+SplitQ32 split(int64_t value) {
+  return {static_cast<uint32_t>(value >> 16), static_cast<uint32_t>(value) & 0xFFFFU};
+}
+
 // The pixels at which f is certainly positive, and those at which it is not certainly negative.
 struct HalfPlane {
   Pixels certain;

@@ -57,16 +57,6 @@ struct Reach {
   return room >= 0;
 }
 
-// A number with 32 bits behind the point in two parts, so that a few times it takes products of 32 bits: all from
-// 1/2^16 on, of which 16 bits stand before the point, and the 16 bits below.
-struct SplitQ32 {
-  uint32_t high;
-  uint32_t low;
-};
-SplitQ32 split(int64_t value) {
-  return {static_cast<uint32_t>(value >> 16), static_cast<uint32_t>(value) & 0xFFFFU};
-}
-
 // What the sweep keeps while it draws a tile, and from tile to tile of a band.
 struct Sweep {
   TileRays rays;
@@ -799,30 +789,6 @@ class TileSweep : private Paint {
   int32_t words_ = kTileWords;
   bool begun_ = false;
 };
-
-// Whether a solid voxel touches the eye: then rays may begin in it or on its surface.
-template <bool kDeep = false>
-bool touches_solid(const BrickFrame& frame) {
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    int32_t offset = 0;
-    uint32_t bit = 0;
-    bool inside = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int32_t cell = (frame.eye[axis] - static_cast<int32_t>(corner >> axis & 1U)) >> 8;
-      inside = inside && cell >= 0 && cell < 4 * frame.side[axis];
-      offset += (cell >> 2) * frame.stride[axis];
-      bit |= (static_cast<uint32_t>(cell) & 3U) << 2 * axis;
-    }
-    if (inside) {
-      const int32_t brick = 8 * static_cast<int32_t>(number_at<kDeep>(frame.map.directory(), offset));
-      if ((half_at(frame.map.bricks(), brick + 2 * static_cast<int32_t>(bit >> 4)) >> (bit & 15U) & 1U) !=
-          0) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
 
 }  // namespace
 }  // namespace thimble::bricks

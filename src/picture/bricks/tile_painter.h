@@ -29,6 +29,30 @@ BrickFrame brick_frame(const CompactTree& tree, const BrickMap& map, const Camer
   return frame;
 }
 
+// Whether a solid voxel touches the eye: then rays may begin in it or on its surface.
+template <bool kDeep = false>
+bool touches_solid(const BrickFrame& frame) {
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    int32_t offset = 0;
+    uint32_t bit = 0;
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int32_t cell = (frame.eye[axis] - static_cast<int32_t>(corner >> axis & 1U)) >> 8;
+      inside = inside && cell >= 0 && cell < 4 * frame.side[axis];
+      offset += (cell >> 2) * frame.stride[axis];
+      bit |= (static_cast<uint32_t>(cell) & 3U) << 2 * axis;
+    }
+    if (inside) {
+      const int32_t brick = 8 * static_cast<int32_t>(number_at<kDeep>(frame.map.directory(), offset));
+      if ((half_at(frame.map.bricks(), brick + 2 * static_cast<int32_t>(bit >> 4)) >> (bit & 15U) & 1U) !=
+          0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 // `Own`, which is made of this, says what becomes of the pixels:
 //
 //   miss(tile)                           its rays meet nothing

@@ -28,7 +28,7 @@ struct TilePlace {
 }
 
 // Goes through pixels of kBytes each, row by row, from right to left: the pixels of a row are the upper bits of a word,
-// which are shifted out. `begin(end, row)` is told where a row ends, counted from the tile's first; `four(to)` stores four
+// which are shifted out. `begin(end, row)` gets the end of a row and its number in the tile; `four(to)` stores four
 // pixels side by side where `fours(to)` allows that, `one(to)` a single one.
 template <size_t kBytes, class Row, class Fours, class Four, class One>
 [[gnu::always_inline]] inline void store_runs(const TilePlace& place, const Pixels& pixels, const Row& begin,
