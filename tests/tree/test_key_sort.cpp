@@ -22,7 +22,7 @@ using tools::key_sort_scratch_bytes;
 const int kLists = thimble::tests::many_or_few(40, 10);
 const std::int64_t kMostKeys = thimble::tests::many_or_few<std::int64_t>(600'000, 150'000);
 const int kWorlds = thimble::tests::many_or_few(60, 12);
-const std::int64_t kMostVoxels = thimble::tests::many_or_few<std::int64_t>(150'000, 20'000);
+const std::int64_t kMostVoxels = thimble::tests::many_or_few<std::int64_t>(80'000, 20'000);
 
 // Keys anywhere, in few places, in long runs of equal ones, or in order.
 template <class Key>
