@@ -109,7 +109,6 @@ class ListWriter {
   void write() { write(tree_.level(), {0, 0, 0}); }
 
   uint32_t written() const { return written_; }
-  uint64_t face_area() const { return face_area_; }
 
  private:
   // Writes the next node of this level, and what it holds. Nodes of one level are visited in the order in which they
@@ -267,7 +266,6 @@ class ListMaker {
     }
     fill(to, writer.written(), plan_.box_nodes(), 0, list);
     list->block_level = plan_.box_level;
-    list->face_area = writer.face_area();
     list->has_blocks = census.has_blocks;
     return true;
   }
@@ -285,7 +283,6 @@ class ListMaker {
     }
     fill(to, entries, plan_.surface_nodes(), kMaterials, list);
     list->block_level = plan_.surface_level;
-    list->face_area = entries;
     list->is_surface = true;
     return true;
   }

@@ -90,8 +90,6 @@ class VoxelLists {
   Span<const uint8_t> merged() const { return list_.merged; }
   Span<const BlockNode> nodes() const { return list_.nodes; }
   int block_level() const { return list_.block_level; }
-  /// The sum over all entries of the area of a face, in square voxels.
-  uint64_t face_area() const { return list_.face_area; }
   /// Whether any entry is larger than one voxel.
   bool has_blocks() const { return list_.has_blocks; }
   /// Whether voxels with six solid neighbours are left out. A hidden voxel that a ray hits all the same is numbered
@@ -119,7 +117,6 @@ class VoxelLists {
     Span<const uint8_t> materials;
     Span<const uint8_t> merged;
     Span<const BlockNode> nodes;
-    uint64_t face_area = 0;
     int block_level = 0;
     bool has_blocks = false;
     bool is_surface = false;
