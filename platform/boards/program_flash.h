@@ -24,7 +24,7 @@ inline constexpr ProgramFlash kProgramFlash[] = {
     {"pico", 130, 176, 120},
     {"pico-lcd-2", 130, 176, 120},
     {"pico-oled", 115, 146, 120},
-    {"raspi0", 251, 358, 170},
+    {"raspi0", 252, 358, 170},
     {"sifive_e", 119, 154, 130},
     {"stm32vldiscovery", 88, 115, 100},
 };

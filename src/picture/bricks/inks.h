@@ -43,7 +43,7 @@ constexpr bool is_halfword(PixelFormat format) {
          is_format<PixelFormat::kBgr565>(format);
 }
 
-[[THIMBLE_HOT]] uint32_t ink_of(PixelFormat format, Rgb8 color) {
+uint32_t ink_of(PixelFormat format, Rgb8 color) {
   if (format == PixelFormat::kGray4) {
     return panels::level_of_16(gray_of(color));
   }
@@ -115,7 +115,7 @@ Hit face_hit(const Course& course, int axis, uint8_t material, Ray* ray) {
 }
 
 // Shades a face of a material; returns an entry of `Inks::material`.
-[[gnu::noinline, THIMBLE_HOT]] uint32_t material_ink(const Course& course, int axis, uint8_t material) {
+[[gnu::noinline]] uint32_t material_ink(const Course& course, int axis, uint8_t material) {
   const BrickFrame& frame = *course.frame;
   Ray ray;
   const Hit hit = face_hit(course, axis, material, &ray);
