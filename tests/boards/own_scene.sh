@@ -43,18 +43,9 @@ draws_as_the_simulator() {
 }
 
 glass_and_mirror() {
-  cat >"$work/own.scene" <<'TEXT'
-depth 5
-camera eye 40 -14 26 target 15 16 6 fov 40
-sun toward 6 -5 9
-material floor color 190 180 160
-material steel metal color 220 222 226 mirror 0.8
-material bottle glass color 180 220 200 index 1.5 density 0.05
-box floor from 0 0 0 to 32 32 2
-box floor from 0 30 2 to 32 32 20
-ball bottle at 18 12 9 radius 7
-box steel from 3 18 2 to 12 27 14
-TEXT
+  # The same room with a steel that mirrors, and in front of it a bottle of glass.
+  blocks | sed -e 's/^material steel.*/material steel metal color 220 222 226 mirror 0.8\
+material bottle glass color 180 220 200 index 1.5 density 0.05/' -e 's/^ball steel at 18 14/ball bottle at 18 12/' >"$work/own.scene"
   "$thimble" bake "$work/own.scene" --board "$board" -o "$work/own.h" --quiet
   grep -q 'define THIMBLE_SCENE_EFFECTS 0x2033u' "$work/own.h" || fail "the header does not name direct light, shadows, mirror, glass, and edges for 16 greys"
   build 'demo;bench' "$work/own.h"

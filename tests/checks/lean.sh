@@ -11,6 +11,18 @@ complain() {
   echo "lean: $1" >&2
   failed=1
 }
+# lacks PACKAGE STATUS WHAT ARGUMENT...: whether it is off; then --version says so, and the command is refused with the option's name.
+lacks() {
+  package=$1
+  refusal=$2
+  what=$3
+  shift 3
+  case " $off " in *" $package "*) ;; *) return 1 ;; esac
+  case $said in *"not in this build (-DTHIMBLE_$package=OFF)"*) ;; *) complain "--version does not say that $package is off" ;; esac
+  status=0
+  "$thimble" "$@" >/dev/null 2>"$work/why" || status=$?
+  [ $status = "$refusal" ] && grep -q "THIMBLE_$package=OFF" "$work/why" || complain "without $off, $what: exit $status, $(cat "$work/why")"
+}
 # A picture that is the core's, whatever draws it.
 "$whole" render castle --size 160x120 --quiet -o "$work/whole.ppm"
 for off in 'WINDOW WIDE GPU' WIDE; do
@@ -35,33 +47,14 @@ for off in 'WINDOW WIDE GPU' WIDE; do
   "$thimble" render castle --size 160x120 --quiet -o "$work/lean.ppm" || complain "without $off it does not draw"
   cmp -s "$work/whole.ppm" "$work/lean.ppm" || complain "without $off the picture is another one"
   "$thimble" render lagoon --threads 3 --size 80x60 --quiet -o "$work/lagoon.ppm" || complain "without $off it does not draw the lagoon"
-  case " $off " in
-    *' WIDE '*)
-      case $said in *'not in this build (-DTHIMBLE_WIDE=OFF)'*) ;; *) complain "--version does not say that WIDE is off" ;; esac
-      case $libraries in *libtbb* | *libhwy*) complain "without $off it is linked with oneTBB or Highway" ;; esac
-      status=0
-      "$thimble" render castle --engine wide -o "$work/none.png" 2>"$work/why" || status=$?
-      [ $status = 2 ] && grep -q 'THIMBLE_WIDE=OFF' "$work/why" || complain "without $off, --engine wide: exit $status, $(cat "$work/why")"
-      "$thimble" sim spheres --app demo --display none --frames 1 --quiet >/dev/null || complain "without $off the simulator does not run"
-      ;;
-  esac
-  case " $off " in
-    *' GPU '*)
-      case $said in *'not in this build (-DTHIMBLE_GPU=OFF)'*) ;; *) complain "--version does not say that GPU is off" ;; esac
-      status=0
-      "$thimble" render castle --shade color --engine gpu -o "$work/none.png" 2>"$work/why" || status=$?
-      [ $status = 2 ] && grep -q 'THIMBLE_GPU=OFF' "$work/why" || complain "without $off, --engine gpu: exit $status, $(cat "$work/why")"
-      ;;
-  esac
-  case " $off " in
-    *' WINDOW '*)
-      case $said in *'not in this build (-DTHIMBLE_WINDOW=OFF)'*) ;; *) complain "--version does not say that WINDOW is off" ;; esac
-      case $libraries in *libX11*) complain "without $off it is linked with libX11" ;; esac
-      status=0
-      "$thimble" sim spheres --display window --frames 1 --quiet >/dev/null 2>"$work/why" || status=$?
-      [ $status != 0 ] && grep -q 'THIMBLE_WINDOW=OFF' "$work/why" || complain "without $off, --display window: exit $status, $(cat "$work/why")"
-      ;;
-  esac
+  lacks WIDE 2 '--engine wide' render castle --engine wide -o "$work/none.png" && {
+    case $libraries in *libtbb* | *libhwy*) complain "without $off it is linked with oneTBB or Highway" ;; esac
+    "$thimble" sim spheres --app demo --display none --frames 1 --quiet >/dev/null || complain "without $off the simulator does not run"
+  }
+  lacks GPU 2 '--engine gpu' render castle --shade color --engine gpu -o "$work/none.png" || :
+  lacks WINDOW 1 '--display window' sim spheres --display window --frames 1 --quiet && {
+    case $libraries in *libX11*) complain "without $off it is linked with libX11" ;; esac
+  }
 done
 [ $failed = 0 ] && echo "lean: two builds, as wanted"
 exit $failed
