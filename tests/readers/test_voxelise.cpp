@@ -1,4 +1,4 @@
-// Triangles to voxels, held to an exact test of another kind, and closed surfaces to a flood from outside.
+// Triangles to voxels, held to an exact test of another kind; cell by cell, to the same triangle by triangle.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -148,39 +148,46 @@ TriangleMesh box() {
   return mesh;
 }
 
-/// An octahedron, each triangle cut into four `rounds` times and pushed out to the unit sphere.
-TriangleMesh sphere(int rounds) {
-  TriangleMesh mesh{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-                    {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}},
-                    {}};
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<std::array<std::uint32_t, 3>> finer;
-    // Every triangle makes midpoints of its own: equal positions must seal without shared indices.
-    const auto midpoint = [&mesh](std::uint32_t a, std::uint32_t b) {
-      std::array<double, 3> m{};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        m[axis] = mesh.positions[a][axis] + mesh.positions[b][axis];
-      }
-      const double length = std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
-      mesh.positions.push_back({m[0] / length, m[1] / length, m[2] / length});
-      return static_cast<std::uint32_t>(mesh.positions.size() - 1);
-    };
-    for (const auto& [a, b, c] : mesh.triangles) {
-      const std::uint32_t ab = midpoint(a, b);
-      const std::uint32_t bc = midpoint(b, c);
-      const std::uint32_t ca = midpoint(c, a);
-      finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-    }
-    mesh.triangles = finer;
-  }
-  return mesh;
-}
-
 using VoxelSet = std::set<std::array<int, 3>>;
 
 VoxelSet voxels_of(const TriangleMesh& mesh, int level, bool z_up = false) {
   VoxelSet voxels;
   voxelise(mesh, level, z_up, nullptr, [&](int x, int y, int z, std::uint8_t) { voxels.insert({x, y, z}); });
+  return voxels;
+}
+
+using CellVoxels = std::map<UnitPoint, std::uint8_t>;
+
+CellVoxels by_triangle(const std::vector<CellTriangle>& triangles) {
+  CellVoxels voxels;
+  for (const CellTriangle& triangle : triangles) {
+    voxelise_triangle(triangle.corners, triangle.material,
+                      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+                        voxels[{x, y, z}] = material;
+                      });
+  }
+  return voxels;
+}
+
+CellVoxels by_cell(const std::vector<CellTriangle>& triangles, int level, int* blocks) {
+  CellVoxels voxels;
+  bool once = true;
+  double last = 0;
+  const BlockSink sink = [&](const UnitPoint& corner, int block_level, std::uint8_t material) {
+    const std::int32_t side = std::int32_t{1} << block_level;
+    *blocks += block_level > 0 ? 1 : 0;
+    for (std::int32_t i = 0; i < side * side * side; ++i) {
+      const UnitPoint voxel{corner[0] + i % side, corner[1] + i / side % side, corner[2] + i / side / side};
+      once = once && voxels.emplace(voxel, material).second;
+    }
+  };
+  voxelise_cells(triangles, level, sink, [&](double done) {
+    CHECK(done >= last);
+    CHECK(done <= 1);
+    last = done;
+  });
+  CHECK(last == 1);
+  CHECK(once);
   return voxels;
 }
 
@@ -311,11 +318,12 @@ TEST_CASE("voxelise: any level -> the longest axis fills the world, the others a
 }
 
 TEST_CASE("voxelise: map coordinates -> the same voxels as near zero") {
-  TriangleMesh near = sphere(3);
-  for (auto& p : near.positions) {
-    for (double& component : p) {
-      component = std::round(component * 4096) / 4096;
-    }
+  TriangleMesh near;
+  SplitMix64 random(6);
+  for (std::uint32_t i = 0; i < 150; ++i) {
+    near.positions.push_back({random.between(-4096, 4096) / 4096.0, random.between(-4096, 4096) / 4096.0,
+                              random.between(-4096, 4096) / 4096.0});
+    near.triangles.push_back({i, random.below(i + 1), random.below(i + 1)});
   }
   TriangleMesh far = near;
   for (auto& p : far.positions) {
@@ -406,4 +414,22 @@ TEST_CASE("voxelise: few large triangles -> progress is reported between them") 
 TEST_CASE("voxelise: a sink that throws -> the exception comes through") {
   CHECK_THROWS_AS(voxelise(tetrahedron(), 3, false, nullptr, [](int, int, int, std::uint8_t) { throw 1; }),
                   int);
+}
+
+TEST_CASE("voxelise_cells: random triangles -> what each of them meets, with the last one's material") {
+  SplitMix64 random(20);
+  int blocks = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int level = random.between(1, 6);
+    const bool many_materials = round % 2 == 0;
+    std::vector<CellTriangle> triangles;
+    const int count = round < 50 ? random.between(1, 30) : 1500;
+    for (int i = 0; i < count; ++i) {
+      triangles.push_back(
+          {random_triangle(random, level), static_cast<std::uint8_t>(many_materials ? random.below(3) : 0)});
+    }
+    CAPTURE(round);
+    CHECK((by_cell(triangles, level, &blocks) == by_triangle(triangles)));
+  }
+  CHECK(blocks > 100);
 }
