@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -44,19 +45,11 @@ BakedScene open_text(const std::string& text) {
 
 // A .vox of a few voxels of three colours.
 std::string small_vox() {
-  std::string voxels;
-  std::uint32_t count = 0;
+  std::vector<std::array<int, 4>> voxels;
   for (int i = 0; i < 300; ++i) {
-    const int x = i * 7 % 20;
-    const int y = i * 3 % 18;
-    const int z = i % 17;
-    voxels +=
-        {static_cast<char>(x), static_cast<char>(y), static_cast<char>(z), static_cast<char>(1 + i % 3)};
-    ++count;
+    voxels.push_back({i * 7 % 20, i * 3 % 18, i % 17, 1 + i % 3});
   }
-  const std::string size = little(20, 4) + little(18, 4) + little(17, 4);
-  return "VOX " + little(150, 4) +
-         vox_chunk("MAIN", "", vox_chunk("SIZE", size) + vox_chunk("XYZI", little(count, 4) + voxels));
+  return vox_file(vox_model({20, 18, 17}, voxels));
 }
 
 // What a picture of netpbm holds behind its header.

@@ -25,19 +25,17 @@ using namespace thimble::tools;
 std::string animation(int frames) {
   std::string chunks;
   for (int frame = 0; frame < frames; ++frame) {
-    std::string voxels;
+    std::vector<std::array<int, 4>> voxels;
     for (int i = 0; i < 64; ++i) {
-      const auto at = [&](int shift) { return static_cast<char>(i >> shift & 3); };
-      voxels += {at(0), at(2), at(4), 1};
-      voxels += {static_cast<char>(28 + at(0)), static_cast<char>(28 + at(2)),
-                 static_cast<char>(9 * frame + at(4)), 2};
+      const auto at = [&](int shift) { return i >> shift & 3; };
+      voxels.push_back({at(0), at(2), at(4), 1});
+      voxels.push_back({28 + at(0), 28 + at(2), 9 * frame + at(4), 2});
     }
-    chunks += vox_chunk("SIZE", little(32, 4) + little(32, 4) + little(32, 4)) +
-              vox_chunk("XYZI", little(128, 4) + voxels);
+    chunks += vox_model({32, 32, 32}, voxels);
   }
   chunks += vox_chunk(
       "RGBA", std::string("\xff\0\0\xff", 4) + std::string("\0\xff\0\xff", 4) + std::string(1016, '\1'));
-  return "VOX " + little(150, 4) + vox_chunk("MAIN", "", chunks);
+  return vox_file(chunks);
 }
 
 const Words kSmall{"--size", "48x36", "--quiet"};
@@ -197,14 +195,11 @@ TEST_CASE("render: an animation whose later frame is broken -> said before the f
   const auto model = [](std::size_t number, char frame) {
     return little(number, 4) + little(1, 4) + little(2, 4) + "_f" + little(1, 4) + frame;
   };
-  const std::string one = vox_chunk("SIZE", little(2, 4) + little(2, 4) + little(2, 4)) +
-                          vox_chunk("XYZI", little(1, 4) + std::string("\0\0\0\1", 4));
   const std::string graph =
       vox_chunk("nTRN", little(0, 4) + little(0, 4) + little(1, 4) + little(~std::size_t{0}, 4) +
                             little(~std::size_t{0}, 4) + little(1, 4) + little(0, 4)) +
       vox_chunk("nSHP", little(1, 4) + little(0, 4) + little(2, 4) + model(0, '0') + model(9, '2'));
-  const std::string chunks = one + graph;
-  const std::string file = folder.write("b.vox", "VOX " + little(150, 4) + vox_chunk("MAIN", "", chunks));
+  const std::string file = folder.write("b.vox", vox_file(vox_model({2, 2, 2}, {{0, 0, 0, 1}}) + graph));
   const Words render = Words{"render", file, "-o", folder.path("f%d.png")} + kSmall;
   check_refused(render + Words{"--frames", "0:2"}, 1, {"b.vox", "frame 2", "model 9"});
   CHECK(folder.names() == Words{"b.vox"});

@@ -67,11 +67,7 @@ TEST_CASE("info: points far out, or outside of --clip -> a note, and rendering s
 
 TEST_CASE("info: a .vox of two voxels and two materials -> its own indices, the least world that holds it") {
   const TemporaryFolder folder;
-  const std::string size = little(20, 4) + little(5, 4) + little(9, 4);
-  const std::string voxels =
-      little(2, 4) + std::string("\x00\x01\x02\x05", 4) + std::string("\x13\x04\x08\x07", 4);
-  const std::string vox =
-      "VOX " + little(150, 4) + vox_chunk("MAIN", "", vox_chunk("SIZE", size) + vox_chunk("XYZI", voxels));
+  const std::string vox = vox_file(vox_model({20, 5, 9}, {{0, 1, 2, 5}, {19, 4, 8, 7}}));
   const std::string path = folder.write("two.vox", vox);
   auto rows = info({path});
   CHECK(rows["scene"] == path);

@@ -333,11 +333,10 @@ TEST_CASE(
   const TemporaryFolder folder;
   // Models without a scene graph are frames: a voxel that walks along x.
   std::string models;
-  for (char frame = 0; frame < 8; ++frame) {
-    models += vox_chunk("SIZE", little(8, 4) + little(8, 4) + little(8, 4)) +
-              vox_chunk("XYZI", little(1, 4) + std::string{frame, 0, 0, 1});
+  for (int frame = 0; frame < 8; ++frame) {
+    models += vox_model({8, 8, 8}, {{frame, 0, 0, 1}});
   }
-  folder.write("walk.vox", "VOX " + little(150, 4) + vox_chunk("MAIN", "", models));
+  folder.write("walk.vox", vox_file(models));
   Viewing viewing(folder, {"walk.vox", "--size", "200x150"});
   REQUIRE(point_into(display));
   const auto frame_saved = [&](const std::string& name) {

@@ -21,17 +21,18 @@
 using namespace thimble::tools;
 using namespace thimble::tools::test;
 using thimble::Vec3i;
+using thimble::tests::big;
 using thimble::tests::deflated;
 using thimble::tests::little;
+using thimble::tests::npy;
+using thimble::tests::repeated;
 using thimble::tests::TemporaryFolder;
 
 namespace {
 
-std::string big(std::uint64_t value, std::size_t bytes) {
-  std::string out = little(value, bytes);
-  std::reverse(out.begin(), out.end());
-  return out;
-}
+// Voxels of Qubicle and Goxel.
+const std::string kRedVoxel("\xff\0\0\xff", 4);
+const std::string kGreenVoxel("\0\xff\0\xff", 4);
 
 bool has_voxel(const std::vector<GridVoxel>& voxels, const GridVoxel& wanted) {
   return std::find(voxels.begin(), voxels.end(), wanted) != voxels.end();
@@ -118,13 +119,6 @@ std::string mts(unsigned version, const std::vector<unsigned>& numbers, const st
 
 // ---- NumPy
 
-std::string npy(const std::string& type, const std::string& shape, const std::string& data,
-                bool fortran = false) {
-  const std::string header = "{'descr': '" + type + "', 'fortran_order': " + (fortran ? "True" : "False") +
-                             ", 'shape': " + shape + ", }\n";
-  return std::string("\x93NUMPY\x01\x00", 8) + little(header.size(), 2) + header + data;
-}
-
 std::string zip(const std::vector<std::pair<std::string, std::string>>& members, bool deflate) {
   std::string out;
   std::string directory;
@@ -152,21 +146,25 @@ std::string octomap(const std::string& nodes, bool is_binary, const std::string&
 std::string map_node(float log_odds, unsigned children, const std::string& color = "") {
   return little(std::bit_cast<std::uint32_t>(log_odds), 4) + color + little(children, 1);
 }
-std::string repeated(const std::string& part, int times) {
-  std::string out;
-  for (int i = 0; i < times; ++i) {
-    out += part;
+// ---- Qubicle, Voxlap
+
+std::string qb_matrix(const std::array<unsigned, 3>& size, const std::string& voxels, std::int32_t x = 0,
+                      const std::string& name = "ab") {
+  return little(name.size(), 1) + name + little(size[0], 4) + little(size[1], 4) + little(size[2], 4) +
+         little(static_cast<std::uint32_t>(x), 4) + little(0, 8) + voxels;
+}
+std::string qb(const std::vector<std::string>& matrices, bool packed = false, bool left_handed = false) {
+  std::string out = little(0x101, 4) + little(0, 4) + little(left_handed ? 0 : 1, 4) +
+                    little(packed ? 1 : 0, 4) + little(0, 4) + little(matrices.size(), 4);
+  for (const std::string& matrix : matrices) {
+    out += matrix;
   }
   return out;
 }
-
-// ---- Qubicle, Voxlap
-
+/// One matrix of 2 x 1 x 2 voxels.
 std::string qb(bool packed, const std::string& voxels, std::int32_t x = 0, bool left_handed = false,
                const std::string& name = "ab") {
-  return little(0x101, 4) + little(0, 4) + little(left_handed ? 0 : 1, 4) + little(packed ? 1 : 0, 4) +
-         little(0, 4) + little(1, 4) + little(name.size(), 1) + name + little(2, 4) + little(1, 4) +
-         little(2, 4) + little(static_cast<std::uint32_t>(x), 4) + little(0, 8) + voxels;
+  return qb({qb_matrix({2, 1, 2}, voxels, x, name)}, packed, left_handed);
 }
 
 std::string kvx() {
@@ -271,7 +269,7 @@ std::string gox(const std::string& chunks, unsigned version = 2) {
 }
 
 Notes notes_of_file(Reader reader, const std::string& file) {
-  return notes_of(reader(SharedBytes::own(file), {}, {}));
+  return notes_of(source_of(reader, file));
 }
 
 }  // namespace
@@ -374,10 +372,7 @@ TEST_CASE("schematic: damage -> a sentence, and no deep or long nothing") {
                  "nothings"));
   CHECK(contains(error_of(read_schematic, schematic(tag(99, "x", ""))), "kind 99"));
   CHECK(contains(error_of(read_schematic, schematic(tag(11, "x", big(0xFFFFFFFF, 4)))), "-1"));
-  std::string deep;
-  for (int i = 0; i < 100000; ++i) {
-    deep += std::string("\x09", 1) + big(1, 4);
-  }
+  const std::string deep = repeated("\x09" + big(1, 4), 100000);
   CHECK(contains(error_of(read_schematic, schematic(tag(9, "x", deep))), "512"));
 }
 
@@ -630,21 +625,21 @@ TEST_CASE("asc: an ESRI grid -> a landscape; holes where there is no data") {
 
 TEST_CASE("qb: packed or not -> the same voxels") {
   // Slice z 0: red, nothing; slice z 1: twice green.
-  const std::string red = std::string("\xff\0\0\xff", 4);
-  const std::string green = std::string("\0\xff\0\xff", 4);
-  const std::string plain = qb(false, red + little(0, 4) + green + green);
-  const std::string packed =
-      qb(true, red + little(0, 4) + little(6, 4) + little(2, 4) + little(2, 4) + green + little(6, 4));
+  const std::string plain = qb(false, kRedVoxel + little(0, 4) + kGreenVoxel + kGreenVoxel);
+  const std::string packed = qb(true, kRedVoxel + little(0, 4) + little(6, 4) + little(2, 4) + little(2, 4) +
+                                          kGreenVoxel + little(6, 4));
   const auto voxels = read_voxels(read_qb, plain);
   REQUIRE(voxels.size() == 3);
   CHECK(voxels[0].color == Rgb{255, 0, 0});
   CHECK(voxels[0] == GridVoxel{0, 1, 0, {255, 0, 0}});  // z comes towards the eye
   CHECK(has_voxel(voxels, {1, 0, 0, {0, 255, 0}}));
   CHECK(read_voxels(read_qb, packed) == voxels);
-  CHECK(read_voxels(read_qb, qb(false, red + little(0, 4) + green + green, -1000000)) == voxels);
+  CHECK(read_voxels(read_qb, qb(false, kRedVoxel + little(0, 4) + kGreenVoxel + kGreenVoxel, -1000000)) ==
+        voxels);
   CHECK(accepted_lengths(read_qb, plain).empty());
   CHECK(accepted_lengths(read_qb, packed).empty());
-  CHECK(contains(error_of(read_qb, qb(true, little(2, 4) + little(0xFFFFFFFF, 4) + red)), "more than its 2"));
+  CHECK(contains(error_of(read_qb, qb(true, little(2, 4) + little(0xFFFFFFFF, 4) + kRedVoxel)),
+                 "more than its 2"));
   CHECK(contains(error_of(read_qb, qb(false, little(0, 16))), "no voxels"));
   CHECK(contains(error_of(read_qb, "text"), "1, 1, 0, 0"));
 }
@@ -652,34 +647,25 @@ TEST_CASE("qb: packed or not -> the same voxels") {
 TEST_CASE(
     "qb: a left-handed z axis -> goes away from the eye; Goxel's, which says right-handed, too, with a "
     "note") {
-  const std::string red = std::string("\xff\0\0\xff", 4);
-  const std::string voxels = red + little(0, 12);
+  const std::string voxels = kRedVoxel + little(0, 12);
   CHECK(read_voxels(read_qb, qb(false, voxels)) == std::vector<GridVoxel>{{0, 1, 0, {255, 0, 0}}});
   CHECK(read_voxels(read_qb, qb(false, voxels, 0, true)) == std::vector<GridVoxel>{{0, 0, 0, {255, 0, 0}}});
-  const auto source = [](const std::string& file) { return read_qb(SharedBytes::own(file), {}, {}); };
-  CHECK(notes_of(source(qb(false, voxels, 0, true))).empty());
+  CHECK(notes_of_file(read_qb, qb(false, voxels, 0, true)).empty());
   for (const std::string name : {"Layer.1", "background"}) {
     const std::string file = qb(false, voxels, 0, false, name);
     CHECK(read_voxels(read_qb, file) == std::vector<GridVoxel>{{0, 0, 0, {255, 0, 0}}});
-    REQUIRE(notes_of(source(file)).size() == 1);
-    CHECK(contains(notes_of(source(file))[0], "Goxel"));
+    REQUIRE(notes_of_file(read_qb, file).size() == 1);
+    CHECK(contains(notes_of_file(read_qb, file)[0], "Goxel"));
   }
-  CHECK(notes_of(source(qb(true, red + little(6, 4) + little(6, 4), 0, false, "Layer.1"))).empty());
+  CHECK(
+      notes_of_file(read_qb, qb(true, kRedVoxel + little(6, 4) + little(6, 4), 0, false, "Layer.1")).empty());
 }
 
 TEST_CASE("grid: as blocks -> the same voxels, materials and all; what is solid in a few cubes") {
   const TemporaryFolder folder;
-  const auto matrix = [](std::uint32_t x, std::uint32_t y, std::uint32_t z, const std::string& voxels) {
-    return little(0, 1) + little(x, 4) + little(y, 4) + little(z, 4) + little(0, 12) + voxels;
-  };
   const auto open = [&](const std::vector<std::string>& matrices) {
     SceneArguments arguments;
-    std::string text =
-        little(0x101, 4) + little(0, 4) + little(1, 4) + little(0, 8) + little(matrices.size(), 4);
-    for (const std::string& each : matrices) {
-      text += each;
-    }
-    arguments.scene = folder.write("a.qb", text);
+    arguments.scene = folder.write("a.qb", qb(matrices));
     return open_scene(arguments);
   };
   using Voxels = std::map<std::array<std::int32_t, 3>, std::uint8_t>;
@@ -696,7 +682,7 @@ TEST_CASE("grid: as blocks -> the same voxels, materials and all; what is solid 
     return all[0].size();
   };
   int calls = 0;
-  CHECK(both(*open({matrix(8, 12, 16, repeated(little(0xFF0000FF, 4), 8 * 12 * 16))}), &calls) ==
+  CHECK(both(*open({qb_matrix({8, 12, 16}, repeated(little(0xFF0000FF, 4), 8 * 12 * 16))}), &calls) ==
         8 * 12 * 16);
   CHECK(calls == 2 * 3 * 4);
   SplitMix64 random(5);
@@ -706,7 +692,7 @@ TEST_CASE("grid: as blocks -> the same voxels, materials and all; what is solid 
     for (int i = 0; i < 9 * 7 * 10; ++i) {
       mixed += little(std::array{0U, 0xFF0000FFU, 0xFF00FF00U, 0xFFFF0000U}[random.next() % 4], 4);
     }
-    layers.push_back(matrix(9, 7, 10, mixed));
+    layers.push_back(qb_matrix({9, 7, 10}, mixed));
   }
   const std::size_t solid = both(*open(layers), &calls);
   CHECK(solid > 500);
@@ -729,9 +715,8 @@ TEST_CASE("kvx: slabs -> voxels with z up and six-bit colours") {
 
 TEST_CASE("qbcl: matrices of models and compounds -> voxels with y up; what is hidden -> none") {
   // Columns of y: red, nothing, green; three times blue.
-  const std::string columns = little(3, 2) + std::string("\xff\0\0\xff", 4) + little(0, 4) +
-                              std::string("\0\xff\0\xff", 4) + little(2, 2) + std::string("\x03\0\0\x02", 4) +
-                              std::string("\0\0\xff\x01", 4);
+  const std::string columns = little(3, 2) + kRedVoxel + little(0, 4) + kGreenVoxel + little(2, 2) +
+                              std::string("\x03\0\0\x02", 4) + std::string("\0\0\xff\x01", 4);
   const std::string file = qbcl(qbcl_node(0, qbcl_matrix(-5, columns)));
   CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
   const std::vector<GridVoxel> one{{0, 0, 0, {255, 0, 0}},
@@ -768,11 +753,7 @@ TEST_CASE("qbcl: damage -> a sentence, and nothing is believed") {
   CHECK(contains(error_of(read_qbcl, qbcl(qbcl_node(0, little(5000, 4)))), "5000"));
   CHECK(
       contains(error_of(read_qbcl, "QBCL" + little(0, 4) + little(2, 4) + std::string(8, '\xff')), "bytes"));
-  std::string deep;
-  for (int i = 0; i < 100000; ++i) {
-    deep += qbcl_node(1, qbcl_model(1));
-  }
-  CHECK(contains(error_of(read_qbcl, qbcl(deep)), "the header"));
+  CHECK(contains(error_of(read_qbcl, qbcl(repeated(qbcl_node(1, qbcl_model(1)), 100000))), "the header"));
 }
 
 TEST_CASE("kv6: columns -> voxels with z up; damage -> a sentence") {
@@ -840,10 +821,9 @@ TEST_CASE("vxl: without a header -> 512 x 512 columns, the first row farthest; d
 }
 
 TEST_CASE("gox: layers -> voxels, the later over the earlier; copies moved; hidden ones none") {
-  const std::string red = std::string("\xff\0\0\xff", 4);
   const std::string green = std::string("\0\xff\0\x7f", 4);
   const std::string thin = std::string("\0\0\xff\x7e", 4);
-  const std::string blocks = gox_block(red, green) + gox_block(green, thin) + gox_chunk("MATE", "any");
+  const std::string blocks = gox_block(kRedVoxel, green) + gox_block(green, thin) + gox_chunk("MATE", "any");
   const std::string visible = gox_entry("visible", std::string(1, '\1'));
   const std::string hidden = gox_entry("visible", std::string(1, '\0'));
   const std::string first = gox_layer(gox_place(0, 0), gox_entry("id", little(7, 4)) + visible);
@@ -874,21 +854,21 @@ TEST_CASE("gox: layers -> voxels, the later over the earlier; copies moved; hidd
 }
 
 TEST_CASE("gox: damage -> a sentence with its place") {
-  const std::string red = std::string("\xff\0\0\xff", 4);
   const auto scene = [&](const std::string& blocks, const std::string& places) {
     return error_of(read_gox, gox(blocks + gox_layer(places, "")));
   };
   CHECK(contains(error_of(read_gox, "text"), "GOX"));
   CHECK(contains(error_of(read_gox, gox("", 3)), "version 3"));
   CHECK(contains(scene("", ""), "no voxels"));
-  CHECK(contains(scene(gox_block(red, red), gox_place(1, 0)), "block 1 is not among the 1"));
-  CHECK(contains(scene(gox_block(red, red, 32), gox_place(0, 0)),
+  CHECK(contains(scene(gox_block(kRedVoxel, kRedVoxel), gox_place(1, 0)), "block 1 is not among the 1"));
+  CHECK(contains(scene(gox_block(kRedVoxel, kRedVoxel, 32), gox_place(0, 0)),
                  "byte offset 20: the block is no picture of 64 x 64"));
   CHECK(contains(scene(gox_chunk("BL16", "no"), gox_place(0, 0)), "no picture"));
-  std::string damaged = gox_block(red, red);
+  std::string damaged = gox_block(kRedVoxel, kRedVoxel);
   damaged[damaged.find("IDAT") + 10] = '\x7f';
   CHECK(contains(scene(damaged, gox_place(0, 0)), "the block is damaged"));
-  CHECK(contains(scene(gox_block(red, red), gox_place(0, INT32_MIN) + gox_place(0, INT32_MAX)), "4294967"));
+  CHECK(contains(scene(gox_block(kRedVoxel, kRedVoxel), gox_place(0, INT32_MIN) + gox_place(0, INT32_MAX)),
+                 "4294967"));
   CHECK(contains(error_of(read_gox, gox(gox_chunk("LAYR", little(0xFFFFFFFF, 4)))), "85899345900"));
   CHECK(contains(error_of(read_gox, "GOX " + little(2, 4) + "LAYR" + little(0xFFFFFFFF, 4)), "4294967295"));
 }

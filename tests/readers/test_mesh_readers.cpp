@@ -6,6 +6,7 @@
 
 #include "readers/formats.h"
 #include "readers/read_any.h"
+#include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 
 using namespace thimble::tools;
@@ -14,14 +15,6 @@ using namespace thimble::tools::test;
 namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-
-std::string repeated(const std::string& text, int count) {
-  std::string out;
-  for (int i = 0; i < count; ++i) {
-    out += text;
-  }
-  return out;
-}
 
 const std::string kPlyHead =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
@@ -165,7 +158,7 @@ TEST_CASE("obj: every truncated length -> read or refused, never more than the w
 }
 
 TEST_CASE("obj: progress is reported, and what it throws arrives") {
-  const std::string text = repeated(kObjSquare, 20000) + "f 1 2 3\n";
+  const std::string text = thimble::tests::repeated(kObjSquare, 20000) + "f 1 2 3\n";
   int calls = 0;
   read_obj(SharedBytes::own(text), {}, [&](double) { ++calls; });
   CHECK(calls >= 1);

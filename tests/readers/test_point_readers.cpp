@@ -3,11 +3,11 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <string>
 
 #include "readers/formats.h"
 #include "readers/read_any.h"
+#include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 
 using namespace thimble::tools;
@@ -15,13 +15,8 @@ using namespace thimble::tools::test;
 
 namespace {
 
-/// The `size` low bytes of `bits` in either byte order.
-std::string packed(std::uint64_t bits, std::size_t size, bool big_endian) {
-  std::string out;
-  for (std::size_t i = 0; i < size; ++i) {
-    out += static_cast<char>(bits >> (8 * (big_endian ? size - 1 - i : i)));
-  }
-  return out;
+std::string packed(std::uint64_t bits, std::size_t size, bool is_big) {
+  return is_big ? thimble::tests::big(bits, size) : thimble::tests::little(bits, size);
 }
 std::string packed(float value, bool big) {
   return packed(std::bit_cast<std::uint32_t>(value), 4, big);
@@ -65,9 +60,7 @@ TEST_CASE(
   const auto near = [](const CloudPoint& point, double x, double y, double z) {
     return std::fabs(point.x - x) + std::fabs(point.y - y) + std::fabs(point.z - z) < 1e-9;
   };
-  const auto notes = [](const std::string& text) {
-    return notes_of(read_xyz(SharedBytes::own(text), {}, {}));
-  };
+  const auto notes = [](const std::string& text) { return notes_of(source_of(read_xyz, text)); };
   const std::string hours = "id,ra,dec,dist\n1,0,0,2\n2,6,0,3\n3,12,-90,4\n4,18,30,0\n5,24,0,1\n";
   const auto places = read_points(read_xyz, hours);
   REQUIRE(places.size() == 4);
@@ -399,20 +392,16 @@ TEST_CASE("gadget: every truncated length -> refused, but for the ends of whole 
 }
 
 TEST_CASE("gadget: damaged snapshots -> a sentence that names the place") {
-  std::string file = snapshot({0, 2, 0, 0, 0, 0});
-  file[4] = 5;  // Gas that is not there.
-  CHECK(contains(error_of(read_gadget, file), "counts 7 particles"));
-  file = snapshot({0, 2, 0, 0, 0, 0});
-  std::memset(file.data() + 4, 0xff, 24);
-  CHECK(contains(error_of(read_gadget, file), "counts 25769803770 particles"));
-  file = snapshot({0, 2, 0, 0, 0, 0});
-  file[260] = 1;
-  CHECK(contains(error_of(read_gadget, file), "its length is 256 before the data and 257 after it"));
-  file = snapshot({0, 2, 0, 0, 0, 0});
-  file.replace(268, 4, packed(NAN, false));
-  CHECK(contains(error_of(read_gadget, file), "particle 1 is not finite"));
+  const std::string whole = snapshot({0, 2, 0, 0, 0, 0});
+  const auto changed = [&](std::size_t at, const std::string& bytes) {
+    return error_of(read_gadget, std::string(whole).replace(at, bytes.size(), bytes));
+  };
+  CHECK(contains(changed(4, "\x05"), "counts 7 particles"));  // Gas that is not there.
+  CHECK(contains(changed(4, std::string(24, '\xff')), "counts 25769803770 particles"));
+  CHECK(contains(changed(260, "\x01"), "its length is 256 before the data and 257 after it"));
+  CHECK(contains(changed(268, packed(NAN, false)), "particle 1 is not finite"));
   CHECK(contains(error_of(read_gadget, snapshot({0, 0, 0, 0, 0, 0})), "no particles"));
-  CHECK(contains(error_of(read_gadget, record("HEAD1234") + file), "format 2"));
+  CHECK(contains(error_of(read_gadget, record("HEAD1234") + whole), "format 2"));
   CHECK(contains(error_of(read_gadget, "text"), "256"));
   CHECK_FALSE(looks_like_gadget(SharedBytes::own("text").bytes));
 }

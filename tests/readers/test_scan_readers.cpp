@@ -21,6 +21,7 @@
 
 using namespace thimble::tools;
 using namespace thimble::tools::test;
+using thimble::tests::glb;
 using thimble::tests::little;
 
 namespace {
@@ -119,12 +120,6 @@ std::string gltf_with(const std::string& head, const std::string& accessors, con
   put_behind(R"("count":3,"type":"SCALAR"})", accessors);
   put_behind(R"("byteLength":48})", views);
   return json.insert(1, head);
-}
-
-std::string glb(std::string json, const std::string& binary) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  return "glTF" + little(2, 4) + little(28 + json.size() + binary.size(), 4) + little(json.size(), 4) +
-         "JSON" + json + little(binary.size(), 4) + std::string("BIN\0", 4) + binary;
 }
 
 /// A grid of 2 x `columns` unit squares in the plane z = 0, 4 * `columns` triangles, as Draco's bytes; places have the
@@ -301,30 +296,37 @@ TEST_CASE("las: all versions and formats -> positions and colours") {
       CHECK(cloud_has_color(read_las, file) == has_color);
     }
   }
-  CHECK(read_points(read_las, las(2, 2, {{0, 0, 0, 255, 128, 0}}))[0].color == Rgb{255, 128, 0});
   CHECK_FALSE(cloud_has_color(read_las, las(2, 2, {{0, 0, 0}})));
   CHECK(accepted_lengths(read_las, las(2, 3, {{2, 4, 6}, {1, 2, 3}})).empty());
 }
 
+TEST_CASE(
+    "las: colours of 8, 12 and 16 bits -> bytes by the greatest of the file; what is guessed is noted") {
+  for (const auto& [red, green, wanted] :
+       std::vector<std::tuple<std::uint16_t, std::uint16_t, Rgb>>{{255, 128, {255, 128, 0}},
+                                                                  {4080, 2040, {255, 128, 0}},
+                                                                  {4095, 0, {255, 0, 0}},
+                                                                  {65535, 4080, {255, 16, 0}}}) {
+    CAPTURE(red);
+    const std::string file = las(2, 2, {{0, 0, 0, red, green, 0}});
+    CHECK(read_points(read_las, file)[0].color == wanted);
+    CHECK(notes_hold(source_of(read_las, file), "12 bits") == (red == 4080 || red == 4095));
+    CHECK((red != 65535 || notes_of(source_of(read_las, file)).empty()));
+  }
+}
+
 TEST_CASE("las: compressed, damaged, hostile -> a sentence") {
-  std::string file = las(2, 3, {{2, 4, 6}});
-  file[104] = static_cast<char>(0x80 | 3);
-  CHECK(contains(error_of(read_las, file), "no record says how"));
-  file[104] = 11;
-  CHECK(contains(error_of(read_las, file), "format 11"));
-  file = las(2, 3, {{2, 4, 6}});
-  file.replace(107, 4, little(0xFFFFFFFF, 4));
-  CHECK(contains(error_of(read_las, file),
+  const auto changed = [](std::size_t at, const std::string& bytes) {
+    return error_of(read_las, las(2, 3, {{2, 4, 6}}).replace(at, bytes.size(), bytes));
+  };
+  CHECK(contains(changed(104, "\x83"), "no record says how"));
+  CHECK(contains(changed(104, "\x0B"), "format 11"));
+  CHECK(contains(changed(107, little(0xFFFFFFFF, 4)),
                  "4294967295 points, but from byte offset 227 on the file has room for 1"));
-  file = las(4, 6, {{2, 4, 6}});
-  file.replace(247, 8, little(UINT64_MAX, 8));
-  CHECK(contains(error_of(read_las, file), "room for 1"));
-  file = las(2, 3, {{2, 4, 6}});
-  file.replace(105, 2, little(20, 2));
-  CHECK(contains(error_of(read_las, file), "at least 34"));
-  file = las(2, 3, {{2, 4, 6}});
-  file.replace(131, 8, little(std::nan("")));
-  CHECK(contains(error_of(read_las, file), "point 1 is not finite"));
+  CHECK(contains(changed(105, little(20, 2)), "at least 34"));
+  CHECK(contains(changed(131, little(std::nan(""))), "point 1 is not finite"));
+  CHECK(contains(error_of(read_las, las(4, 6, {{2, 4, 6}}).replace(247, 8, little(UINT64_MAX, 8))),
+                 "room for 1"));
   CHECK(contains(error_of(read_las, las(2, 0, {})), "no points"));
   CHECK(contains(error_of(read_las, las(2, 0, {{1, 1, 1, 0, 0, 0, true}})), "withheld"));
   CHECK(contains(error_of(read_las, "text"), "LASF"));

@@ -42,20 +42,18 @@ constexpr Pixel kBluePixel{0, 0, 255, 255};
 constexpr Pixel kWhitePixel{255, 255, 255, 255};
 constexpr Pixel kBlackPixel{0, 0, 0, 255};
 
+std::vector<std::uint8_t> bytes_of(const std::vector<Pixel>& pixels) {
+  const auto* const first = pixels.front().data();
+  return {first, first + 4 * pixels.size()};
+}
+
 Texture texture_of(std::int32_t width, std::int32_t height, const std::vector<Pixel>& pixels) {
-  auto bytes = std::make_shared<std::vector<std::uint8_t>>();
-  for (const Pixel& pixel : pixels) {
-    bytes->insert(bytes->end(), pixel.begin(), pixel.end());
-  }
+  const auto bytes = std::make_shared<std::vector<std::uint8_t>>(bytes_of(pixels));
   return Texture({bytes, bytes->data()}, width, height);
 }
 
 std::string png(std::int32_t width, std::int32_t height, const std::vector<Pixel>& pixels) {
-  std::vector<std::uint8_t> bytes;
-  for (const Pixel& pixel : pixels) {
-    bytes.insert(bytes.end(), pixel.begin(), pixel.end());
-  }
-  const auto file = png_file(width, height, 4, bytes);
+  const auto file = png_file(width, height, 4, bytes_of(pixels));
   return {file.begin(), file.end()};
 }
 
@@ -100,7 +98,7 @@ struct Quad {
     }
     binary += picture;
     binary.resize((binary.size() + 3) / 4 * 4);
-    std::string json =
+    const std::string json =
         R"({"asset":{"version":"2.0"},)" + more + R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)" +
         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1)" + attributes +
         R"(},"indices":3,"material":0}]}],"materials":[)" + material + R"(],"textures":[)" + texture +
@@ -115,9 +113,7 @@ struct Quad {
         R"({"buffer":0,"byteOffset":156,"byteLength":)" +
         std::to_string(picture.size()) + R"(}],"buffers":[{"byteLength":)" + std::to_string(binary.size()) +
         "}]}";
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    return "glTF" + little(2, 4) + little(28 + json.size() + binary.size(), 4) + little(json.size(), 4) +
-           "JSON" + json + little(binary.size(), 4) + std::string("BIN\0", 4) + binary;
+    return thimble::tests::glb(json, binary);
   }
   Source source() const { return read_gltf(SharedBytes::own(glb()), {}, {}); }
 };
@@ -462,79 +458,75 @@ TEST_CASE("gltf: alpha -> with MASK and BLEND what is clear is nothing, with OPA
 TEST_CASE(
     "gltf, obj: light that materials give off -> voxels of that light, by its picture, the others as they "
     "were") {
-  /// The first letters of the columns' colours, capital where they glow; and the power of what glows.
-  const auto glow_of = [](const Source& source, double* power) {
+  /// The first letters of the columns' colours, capital where they glow; and the power of what glows, or 0.
+  using Glow = std::pair<std::string, double>;
+  const auto glow_of = [](const Source& source) {
     const auto& mesh = std::get<TriangleMesh>(source);
     const PaletteMap colors(mesh_colors(mesh, 4, false));
-    std::string columns(16, ' ');
+    Glow glow(std::string(16, ' '), 0);
     voxelise(mesh, 4, false, &colors, [&](std::int32_t x, std::int32_t, std::int32_t, std::uint8_t material) {
       const Material& entry = colors.palette()[material];
       const bool glows = entry.kind == SurfaceKind::kEmit && entry.emission == 1;
-      *power = glows ? std::exp2(entry.flux) : *power;
+      glow.second = glows ? std::exp2(entry.flux) : glow.second;
       const std::size_t letter = entry.color == kRed     ? 0
                                  : entry.color == kGreen ? 1
                                  : entry.color == kBlue  ? 2
                                                          : 3;
-      columns[static_cast<std::size_t>(x)] = (glows ? "RGB?" : "rgb?")[letter];
+      glow.first[static_cast<std::size_t>(x)] = (glows ? "RGB?" : "rgb?")[letter];
     });
-    return columns;
-  };
-  const auto columns_of_quad = [&](const std::string& light, double* power,
-                                   std::string texture = R"({"source":0})") {
-    Quad quad;
-    quad.texture = std::move(texture);
-    quad.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})" + light + "}";
-    return glow_of(quad.source(), power);
-  };
-  const auto light = [](const std::string& factor, const std::string& more) {
-    return R"(,"emissiveFactor":)" + factor + more;
+    return glow;
   };
   const std::string by_picture = R"(,"emissiveTexture":{"index":0})";
-  const std::string strong = R"(,"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":4}})";
-  double power = 0;
-  CHECK(columns_of_quad("", &power) == "rrrrrrrrbbbbbbbb");
-  CHECK(power == 0);
-  CHECK(columns_of_quad(light("[0, 1, 0]", ""), &power) == "GGGGGGGGGGGGGGGG");
-  CHECK(power == 1);
-  CHECK(columns_of_quad(light("[0, 1, 0]", strong), &power) == "GGGGGGGGGGGGGGGG");
-  CHECK(power == 4);
-  const std::string glaring =
-      R"(,"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":10000000}})";
-  CHECK(columns_of_quad(light("[0.0001, 1, 0]", glaring), &power) == "GGGGGGGGGGGGGGGG");  // its hue stays
-  CHECK(power == 256);
-  CHECK(columns_of_quad(light("[1, 0, 0]", by_picture), &power) == "RRRRRRRRbbbbbbbb");
-  CHECK(columns_of_quad(light("[0.05, 0, 0]", ""), &power) == "rrrrrrrrbbbbbbbb");
-  CHECK(columns_of_quad(light("[0, 0, 0]", by_picture), &power) == "rrrrrrrrbbbbbbbb");
-  CHECK(columns_of_quad(light("[0.9, 0.9, 0.9]", ""), &power) ==
-        "rrrrrrrrbbbbbbbb");  // less than it reflects
+  const auto strong = [](const std::string& strength) {
+    return R"(,"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":)" + strength + "}}";
+  };
+  const std::string none = "rrrrrrrrbbbbbbbb";
+  const std::string green = "GGGGGGGGGGGGGGGG";
+  const auto light = [](const std::string& factor) { return R"(,"emissiveFactor":)" + factor; };
+  const auto glow_with = [&](const std::string& members) {
+    Quad quad;
+    quad.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})" + members + "}";
+    return glow_of(quad.source());
+  };
+  for (const auto& [members, glow] : std::vector<std::pair<std::string, Glow>>{
+           {"", {none, 0}},
+           {light("[0, 1, 0]"), {green, 1}},
+           {light("[0, 1, 0]") + strong("4"), {green, 4}},
+           {light("[0.0001, 1, 0]") + strong("10000000"), {green, 256}},  // its hue stays
+           {light("[1, 0, 0]") + by_picture, {"RRRRRRRRbbbbbbbb", 1}},
+           {light("[0.05, 0, 0]"), {none, 0}},
+           {light("[0, 0, 0]") + by_picture, {none, 0}}}) {
+    CAPTURE(members);
+    CHECK(glow_with(members) == glow);
+  }
+  CHECK(glow_with(light("[0.9, 0.9, 0.9]")).first == none);  // less than it reflects
   // Its picture lies elsewhere than the colour's: it is not drawn, and that is said.
   Quad apart;
   apart.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"emissiveFactor":[1,1,1],)"
                    R"("emissiveTexture":{"index":0,"texCoord":1}})";
-  CHECK(glow_of(apart.source(), &power) == "rrrrrrrrbbbbbbbb");
+  CHECK(glow_of(apart.source()).first == none);
   CHECK(notes_hold(apart.source(), "the light of material 0 is not drawn"));
   // A picture that has no place hides no light.
   Quad lost;
   lost.material =
       R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":5}},"emissiveFactor":[0,1,0]})";
-  CHECK(glow_of(lost.source(), &power) == "GGGGGGGGGGGGGGGG");
+  CHECK(glow_of(lost.source()).first == green);
   // Nothing but light, without any picture or coordinates.
   Quad plain;
   plain.material = R"({"emissiveFactor":[0,0,1]})";
-  CHECK(glow_of(plain.source(), &power) == "BBBBBBBBBBBBBBBB");
+  CHECK(glow_of(plain.source()).first == "BBBBBBBBBBBBBBBB");
 
   TemporaryFolder folder;
   const std::string quad = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
   folder.write("red.png", red_blue());
   folder.write("a.mtl", "newmtl a\nKd 1 0 0\nKe 0 0 2\n");
-  CHECK(glow_of(read_beside(folder, "a.obj", quad + "usemtl a\nf 1 2 3 4\n"), &power) == "BBBBBBBBBBBBBBBB");
-  CHECK(power == 2);
+  const std::string plain_face = quad + "usemtl a\nf 1 2 3 4\n";
+  CHECK(glow_of(read_beside(folder, "a.obj", plain_face)) == Glow{"BBBBBBBBBBBBBBBB", 2});
   folder.write("a.mtl", "newmtl a\nKd 0 0 0\nKe 1\n");
-  CHECK(glow_of(read_beside(folder, "a.obj", quad + "usemtl a\nf 1 2 3 4\n"), &power) == "????????????????");
-  CHECK(power == 1);
+  CHECK(glow_of(read_beside(folder, "a.obj", plain_face)) == Glow{"????????????????", 1});
   folder.write("a.mtl", "newmtl a\nKd 0 1 0\nKe 1 0 0\nmap_Ke red.png\n");
   const std::string places = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n";
-  CHECK(glow_of(read_beside(folder, "a.obj", quad + places), &power) == "RRRRRRRRgggggggg");
+  CHECK(glow_of(read_beside(folder, "a.obj", quad + places)).first == "RRRRRRRRgggggggg");
 }
 
 TEST_CASE("texture: clear beside a mesh's part of it -> no voxel of the mesh's rims is lost") {
@@ -596,11 +588,7 @@ TEST_CASE("texture: what is no picture, damaged, too large, not there -> the sha
   CHECK(contains(note(large), "16384 x 16384 pixels, too many for a file of"));
   // One pixel, and 16 MB behind it.
   const std::string bomb = deflated(std::string(std::size_t{16} << 20, '\0'), 15);
-  std::string one = png(1, 1, {kRedPixel}).substr(0, 33);
-  const auto size = static_cast<std::uint32_t>(bomb.size());
-  for (int shift = 24; shift >= 0; shift -= 8) {
-    one += static_cast<char>(size >> shift);
-  }
+  const std::string one = png(1, 1, {kRedPixel}).substr(0, 33) + thimble::tests::big(bomb.size(), 4);
   const std::string end = std::string(8, '\0') + "IEND" + std::string(4, '\0');
   CHECK(contains(note(one + "IDAT" + bomb + end), "damaged"));
   quad.texture = "{}";

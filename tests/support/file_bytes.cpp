@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 
 namespace thimble::tests {
@@ -15,6 +16,12 @@ std::string little(std::uint64_t value, std::size_t bytes) {
   return out;
 }
 
+std::string big(std::uint64_t value, std::size_t bytes) {
+  std::string out = little(value, bytes);
+  std::reverse(out.begin(), out.end());
+  return out;
+}
+
 std::string little(float value) {
   return little(std::bit_cast<std::uint32_t>(value), 4);
 }
@@ -23,8 +30,47 @@ std::string little(double value) {
   return little(std::bit_cast<std::uint64_t>(value), 8);
 }
 
+std::string repeated(const std::string& part, int times) {
+  std::string out;
+  for (int i = 0; i < times; ++i) {
+    out += part;
+  }
+  return out;
+}
+
 std::string vox_chunk(const std::string& id, const std::string& content, const std::string& children) {
   return id + little(content.size(), 4) + little(children.size(), 4) + content + children;
+}
+
+std::string vox_model(const std::array<int, 3>& sides, const std::vector<std::array<int, 4>>& voxels) {
+  std::string size;
+  for (const int side : sides) {
+    size += little(static_cast<std::uint32_t>(side), 4);
+  }
+  std::string places = little(voxels.size(), 4);
+  for (const std::array<int, 4>& voxel : voxels) {
+    for (const int part : voxel) {
+      places += static_cast<char>(part);
+    }
+  }
+  return vox_chunk("SIZE", size) + vox_chunk("XYZI", places);
+}
+
+std::string vox_file(const std::string& chunks, std::uint32_t version) {
+  return "VOX " + little(version, 4) + vox_chunk("MAIN", "", chunks);
+}
+
+std::string npy(const std::string& type, const std::string& shape, const std::string& data, bool fortran) {
+  std::string header = "{'descr': '" + type + "', 'fortran_order': " + (fortran ? "True" : "False") +
+                       ", 'shape': " + shape + ", }";
+  header += std::string(64 - (header.size() + 11) % 64, ' ') + "\n";
+  return std::string("\x93NUMPY\x01\x00", 8) + little(header.size(), 2) + header + data;
+}
+
+std::string glb(std::string json, const std::string& binary) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  return "glTF" + little(2, 4) + little(28 + json.size() + binary.size(), 4) + little(json.size(), 4) +
+         "JSON" + json + little(binary.size(), 4) + std::string("BIN\0", 4) + binary;
 }
 
 std::string deflated(const std::string& bytes, int window_bits) {

@@ -16,10 +16,6 @@ namespace thimble::tools::test {
 
 namespace {
 
-Source read(Reader reader, std::string text) {
-  return reader(SharedBytes::own(std::move(text)), {}, {});
-}
-
 bool is_sentence(const std::string& what) {
   return what.size() > 8 && what.size() < 400 && what.back() != '.' && what.find('\n') == std::string::npos;
 }
@@ -68,26 +64,30 @@ std::vector<CloudPoint> points_of(const PointCloud& cloud) {
   return points;
 }
 
+Source source_of(Reader reader, std::string text) {
+  return reader(SharedBytes::own(std::move(text)), {}, {});
+}
+
 std::vector<CloudPoint> read_points(Reader reader, std::string text) {
-  const Source source = read(reader, std::move(text));
+  const Source source = source_of(reader, std::move(text));
   REQUIRE(std::holds_alternative<std::unique_ptr<PointCloud>>(source));
   return points_of(*std::get<std::unique_ptr<PointCloud>>(source));
 }
 
 bool cloud_has_color(Reader reader, std::string text) {
-  const Source source = read(reader, std::move(text));
+  const Source source = source_of(reader, std::move(text));
   REQUIRE(std::holds_alternative<std::unique_ptr<PointCloud>>(source));
   return std::get<std::unique_ptr<PointCloud>>(source)->has_color();
 }
 
 TriangleMesh read_mesh(Reader reader, std::string text) {
-  Source source = read(reader, std::move(text));
+  Source source = source_of(reader, std::move(text));
   REQUIRE(std::holds_alternative<TriangleMesh>(source));
   return std::get<TriangleMesh>(std::move(source));
 }
 
 std::vector<GridVoxel> read_voxels(Reader reader, std::string text) {
-  const Source source = read(reader, std::move(text));
+  const Source source = source_of(reader, std::move(text));
   REQUIRE(std::holds_alternative<std::unique_ptr<VoxelGrid>>(source));
   std::vector<GridVoxel> voxels;
   std::get<std::unique_ptr<VoxelGrid>>(source)->for_each(
@@ -99,7 +99,7 @@ std::vector<GridVoxel> read_voxels(Reader reader, std::string text) {
 
 std::string error_of(Reader reader, std::string text) {
   try {
-    read(reader, std::move(text));
+    source_of(reader, std::move(text));
   } catch (const InputError& error) {
     INFO(error.what());
     CHECK(is_sentence(error.what()));
@@ -110,7 +110,7 @@ std::string error_of(Reader reader, std::string text) {
 
 long long outcome_of(Reader reader, std::string bytes) {
   try {
-    const Source source = read(reader, std::move(bytes));
+    const Source source = source_of(reader, std::move(bytes));
     bool kept = true;
     long long count = 0;
     if (const TriangleMesh* mesh = std::get_if<TriangleMesh>(&source)) {
@@ -131,7 +131,12 @@ long long outcome_of(Reader reader, std::string bytes) {
         ++count;
       });
     } else if (const auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
-      (*model)->for_each([&](auto, auto, auto, auto) { ++count; });
+      const auto size = (*model)->size();
+      (*model)->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+        kept =
+            kept && x >= 0 && y >= 0 && z >= 0 && x < size[0] && y < size[1] && z < size[2] && material > 0;
+        ++count;
+      });
       count += 1;  // a model may be empty
     } else if (const auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source); cloud == nullptr) {
       return 1;

@@ -23,6 +23,8 @@ std::string contents_of(const std::filesystem::path& path);
 /// All points of a cloud, having checked that a second walk gives the same.
 std::vector<CloudPoint> points_of(const PointCloud& cloud);
 
+/// What a reader makes of these bytes.
+Source source_of(Reader reader, std::string text);
 /// Reads text that must be points, or must be a mesh; a failed check otherwise.
 std::vector<CloudPoint> read_points(Reader reader, std::string text);
 TriangleMesh read_mesh(Reader reader, std::string text);
