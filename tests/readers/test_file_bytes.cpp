@@ -17,41 +17,33 @@
 
 #include "readers/file_bytes.h"
 #include "support/file_bytes.h"
+#include "support/reader_inputs.h"
 #include "support/run_command.h"
 
 using namespace thimble::tools;
+using test::contains;
+using thimble::tests::deflated;
+using thimble::tests::TemporaryFolder;
 
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A folder for files of bytes.
-class BytesFolder : public thimble::tests::TemporaryFolder {
- public:
-  std::string write(const std::string& name, const Bytes& bytes) const {
-    return TemporaryFolder::write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  }
-};
-
-Bytes noise(std::size_t count, std::uint32_t seed) {
+std::string noise(std::size_t count, std::uint32_t seed) {
   std::mt19937 random(seed);
-  Bytes bytes(count);
-  for (std::uint8_t& byte : bytes) {
-    byte = static_cast<std::uint8_t>(random() >> 24);
-  }
-  if (!bytes.empty()) {
-    bytes[0] = 'x';  // never a gzip signature by chance
+  std::string bytes(count, 'x');  // the first stays: never a gzip signature by chance
+  for (std::size_t i = 1; i < count; ++i) {
+    bytes[i] = static_cast<char>(random() >> 24);
   }
   return bytes;
 }
 
-Bytes gzip(const Bytes& bytes) {
-  const std::string packed = thimble::tests::deflated({bytes.begin(), bytes.end()}, thimble::tests::kGzip);
-  return {packed.begin(), packed.end()};
+std::string gzip(const std::string& bytes) {
+  return deflated(bytes, thimble::tests::kGzip);
 }
 
-Bytes zstd(const Bytes& bytes) {
-  Bytes packed(ZSTD_compressBound(bytes.size()));
+std::string zstd(const std::string& bytes) {
+  std::string packed(ZSTD_compressBound(bytes.size()), '\0');
   // Checked, so that any damage is seen.
   const std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
@@ -59,31 +51,25 @@ Bytes zstd(const Bytes& bytes) {
   return packed;
 }
 
-Bytes xz(const Bytes& bytes) {
+std::string xz(const std::string& bytes) {
   Bytes packed(lzma_stream_buffer_bound(bytes.size()));
   std::size_t size = 0;
-  REQUIRE(lzma_easy_buffer_encode(1, LZMA_CHECK_CRC32, nullptr, bytes.data(), bytes.size(), packed.data(),
-                                  &size, packed.size()) == LZMA_OK);
-  packed.resize(size);
-  return packed;
+  REQUIRE(lzma_easy_buffer_encode(1, LZMA_CHECK_CRC32, nullptr,
+                                  reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(),
+                                  packed.data(), &size, packed.size()) == LZMA_OK);
+  return {packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
 /// The ways in which whole files are packed.
 struct Packer {
   const char* name;
-  Bytes (*pack)(const Bytes& bytes);
+  std::string (*pack)(const std::string& bytes);
   const char* ending;
 };
 constexpr Packer kPackers[] = {{"gzip", gzip, ".gz"}, {"zstd", zstd, ".zst"}, {"xz", xz, ".xz"}};
 
-Bytes operator+(Bytes a, const Bytes& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-Bytes loaded(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes) {
-  const FileBytes file = load_file(path, limit_bytes);
-  return {file.bytes().begin(), file.bytes().end()};
+std::string loaded(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes) {
+  return std::string(load_file(path, limit_bytes).text());
 }
 
 std::string refusal(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes) {
@@ -95,12 +81,8 @@ std::string refusal(const std::string& path, std::uint64_t limit_bytes = kFileLi
   return "";
 }
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 /// What `load_file` makes of `bytes` that come through a pipe.
-Bytes loaded_from_pipe(const Bytes& bytes) {
+std::string loaded_from_pipe(const std::string& bytes) {
   int ends[2];
   REQUIRE(::pipe(ends) == 0);
   std::thread writer([&] {
@@ -116,7 +98,7 @@ Bytes loaded_from_pipe(const Bytes& bytes) {
     }
     ::close(ends[1]);
   });
-  Bytes result;
+  std::string result;
   try {
     result = loaded("/dev/fd/" + std::to_string(ends[0]));
   } catch (const InputError& error) {
@@ -130,81 +112,80 @@ Bytes loaded_from_pipe(const Bytes& bytes) {
 }  // namespace
 
 TEST_CASE("load_file: plain files of any length -> their bytes") {
-  const BytesFolder folder;
+  const TemporaryFolder folder;
   for (const std::size_t size : {1u, 2u, 65535u, 65536u, 65537u, 131072u, 300000u}) {
     CAPTURE(size);
-    const Bytes bytes = noise(size, 1);
+    const std::string bytes = noise(size, 1);
     CHECK(loaded(folder.write("plain", bytes)) == bytes);
   }
 }
 
 TEST_CASE("load_file: packed by name or only by signature -> what it holds") {
-  const BytesFolder folder;
+  const TemporaryFolder folder;
   for (const Packer& packer : kPackers) {
     CAPTURE(packer.name);
     const auto name = [&](const char* stem) { return std::string(stem) + packer.ending; };
     for (const std::size_t size : {1u, 65536u, 300000u}) {
       CAPTURE(size);
-      const Bytes bytes = noise(size, 2);
+      const std::string bytes = noise(size, 2);
       CHECK(loaded(folder.write(name("named"), packer.pack(bytes))) == bytes);
       CHECK(loaded(folder.write("unnamed", packer.pack(bytes))) == bytes);
     }
-    const Bytes zeros(3'000'000, 0);  // far more comes out than goes in
+    const std::string zeros(3'000'000, '\0');  // far more comes out than goes in
     CHECK(loaded(folder.write(name("zeros"), packer.pack(zeros))) == zeros);
     CHECK(contains(refusal(folder.write(name("plain"), noise(100, 7))),
                    std::string(packer.name) + " signature"));
-    CHECK(refusal(folder.write(name("nothing"), packer.pack({}))) ==
+    CHECK(refusal(folder.write(name("nothing"), packer.pack(""))) ==
           std::string(packer.name) + " data holds no bytes");
   }
   CHECK(loaded(folder.write("other.gz", zstd(noise(100, 3)))) == noise(100, 3));
 }
 
 TEST_CASE("load_file: beyond 256 MiB, more than a hundred to one -> refused; less of either -> read") {
-  const BytesFolder folder;
-  const Bytes zeros(std::size_t{65} << 20, 0);
+  const TemporaryFolder folder;
+  const std::string zeros(std::size_t{65} << 20, '\0');
   for (const Packer& packer : kPackers) {
     CAPTURE(packer.name);
-    const Bytes part = packer.pack(zeros);
+    const std::string part = packer.pack(zeros);
     REQUIRE(part.size() < zeros.size() / 100);
-    const Bytes three = part + part + part;
+    const std::string three = part + part + part;
     CHECK(contains(refusal(folder.write("four", three + part)), "inflates to more than 256 MiB"));
     if (packer.pack == gzip) {
       CHECK(load_file(folder.write("three", three)).size() == 3 * zeros.size());
-      const Bytes hard = gzip(noise(std::size_t{3} << 20, 11));
+      const std::string hard = gzip(noise(std::size_t{3} << 20, 11));
       CHECK(load_file(folder.write("hard", hard + three + part)).size() > 4 * zeros.size());
     }
   }
 }
 
 TEST_CASE("load_file: several members and zero padding -> all members in order") {
-  const BytesFolder folder;
-  const Bytes a = noise(70000, 3), b = noise(5, 4);
-  const Bytes none;
+  const TemporaryFolder folder;
+  const std::string a = noise(70000, 3), b = noise(5, 4);
   for (const auto& [name, pack, ending] : kPackers) {
     CAPTURE(name);
     CHECK(loaded(folder.write("two", pack(a) + pack(b))) == a + b);
-    CHECK(loaded(folder.write("padded", pack(a) + Bytes(100000, 0))) == a);
-    CHECK(loaded(folder.write("gap", pack(a) + Bytes(512, 0) + pack(b))) == a + b);
-    CHECK(loaded(folder.write("empty_member", pack(none) + pack(b))) == b);
+    CHECK(loaded(folder.write("padded", pack(a) + std::string(100000, '\0'))) == a);
+    CHECK(loaded(folder.write("gap", pack(a) + std::string(512, '\0') + pack(b))) == a + b);
+    CHECK(loaded(folder.write("empty_member", pack("") + pack(b))) == b);
   }
   for (int kind = 0x50; kind <= 0x5f; ++kind) {  // for those who seek
-    const Bytes table{static_cast<std::uint8_t>(kind), 0x2a, 0x4d, 0x18, 3, 0, 0, 0, 1, 2, 3};
+    const std::string table{static_cast<char>(kind), 0x2a, 0x4d, 0x18, 3, 0, 0, 0, 1, 2, 3};
     CHECK(loaded(folder.write("table", zstd(a) + table)) == a);
   }
 }
 
 TEST_CASE("load_file: a pipe, plain or gzip -> read to its end") {
-  const Bytes bytes = noise(300000, 5);
+  const std::string bytes = noise(300000, 5);
   CHECK(loaded_from_pipe(bytes) == bytes);
   CHECK(loaded_from_pipe(gzip(bytes)) == bytes);
 }
 
 TEST_CASE("load_file: exactly the limit -> read, one byte more -> refused with the limit") {
-  const BytesFolder folder;
+  const TemporaryFolder folder;
   for (const std::size_t size : {1u, 1000u, 65536u, 200000u}) {
     CAPTURE(size);
-    const Bytes bytes = noise(size + 1, 6);
-    const Bytes fits(bytes.begin(), bytes.end() - 1);
+    const std::string bytes = noise(size + 1, 6);
+    const std::string fits = bytes.substr(0, size);
     CHECK(loaded(folder.write("fits", fits), size) == fits);
     CHECK(loaded(folder.write("fits.gz", gzip(fits)), size) == fits);
     const std::string sentence = "holds more than the limit of " + std::to_string(size) + " bytes";
@@ -213,28 +194,21 @@ TEST_CASE("load_file: exactly the limit -> read, one byte more -> refused with t
   }
 }
 
-TEST_CASE("load_file: a gzip bomb -> refused at the limit, without the memory it asks for") {
-  const BytesFolder folder;
-  const Bytes bomb = gzip(Bytes(32u << 20, 0));
-  REQUIRE(bomb.size() < 64 * 1024);
-  CHECK(contains(refusal(folder.write("bomb.gz", bomb), 1 << 20), "limit of 1048576 bytes"));
-}
-
 TEST_CASE("load_file: a sparse file over the limit -> refused before it is read") {
-  const BytesFolder folder;
-  const std::string path = folder.write("sparse", {'a'});
+  const TemporaryFolder folder;
+  const std::string path = folder.write("sparse", "a");
   REQUIRE(::truncate(path.c_str(), off_t{1} << 40) == 0);
   CHECK(contains(refusal(path), "limit of 4294967296 bytes"));
 }
 
 TEST_CASE("load_file: what cannot be read -> a sentence with the reason") {
-  const BytesFolder folder;
+  const TemporaryFolder folder;
   CHECK(refusal(folder.path("missing")) == "cannot be opened: No such file or directory");
   CHECK(refusal(folder.path("")) == "is a directory, not a file");
-  CHECK(refusal(folder.write("empty", {})) == "is empty");
+  CHECK(refusal(folder.write("empty", "")) == "is empty");
   CHECK(refusal("/dev/null") == "is empty");
 
-  const std::string secret = folder.write("secret", {'a'});
+  const std::string secret = folder.write("secret", "a");
   REQUIRE(::chmod(secret.c_str(), 0) == 0);
   const bool root = ::geteuid() == 0;  // root reads everything
   if (root && ::seteuid(65534) != 0) {
@@ -249,13 +223,12 @@ TEST_CASE("load_file: what cannot be read -> a sentence with the reason") {
 }
 
 TEST_CASE("load_file: packed data cut off anywhere -> refused") {
-  const BytesFolder folder;
+  const TemporaryFolder folder;
   for (const Packer& packer : kPackers) {
-    const Bytes whole = packer.pack(noise(150, 8));
+    const std::string whole = packer.pack(noise(150, 8));
     for (std::size_t length = 6; length < whole.size(); ++length) {
       CAPTURE(length);
-      const std::string path =
-          folder.write("cut", Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)));
+      const std::string path = folder.write("cut", whole.substr(0, length));
       CHECK(contains(refusal(path), std::string(packer.name) + " data is truncated"));
     }
   }
@@ -263,34 +236,34 @@ TEST_CASE("load_file: packed data cut off anywhere -> refused") {
 
 TEST_CASE(
     "load_file: packed data with any one bit flipped -> refused, or the same bytes where it was decoration") {
-  const BytesFolder folder;
-  const Bytes bytes = noise(40, 9);
+  const TemporaryFolder folder;
+  const std::string bytes = noise(40, 9);
   for (const Packer& packer : kPackers) {
     CAPTURE(packer.name);
-    Bytes damaged = packer.pack(bytes);
+    std::string damaged = packer.pack(bytes);
     int refused = 0;
     for (std::size_t bit = 48; bit < damaged.size() * 8; ++bit) {  // behind the signature
       CAPTURE(bit);
-      damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+      damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ 1 << bit % 8);
       const std::string path = folder.write("flipped", damaged);
       try {
-        const Bytes read = loaded(path);
+        const std::string read = loaded(path);
         CHECK(read == bytes);
       } catch (const InputError& error) {
         CHECK(contains(error.what(), std::string(packer.name) + " data"));
         ++refused;
       }
-      damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+      damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ 1 << bit % 8);
     }
     CHECK(refused > 300);
   }
 }
 
 TEST_CASE("load_file: something else behind packed data -> refused with the offset") {
-  const BytesFolder folder;
+  const TemporaryFolder folder;
   for (const Packer& packer : kPackers) {
-    const Bytes member = packer.pack(noise(50, 10));
-    const std::string sentence = refusal(folder.write("tail", member + Bytes{0, 0, 'x'}));
+    const std::string member = packer.pack(noise(50, 10));
+    const std::string sentence = refusal(folder.write("tail", member + std::string("\0\0x", 3)));
     CHECK(contains(sentence, "byte offset " + std::to_string(member.size() + 2)));
   }
 }

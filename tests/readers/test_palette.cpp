@@ -12,10 +12,9 @@ namespace {
 
 using namespace thimble::tools;
 
-Rgb random_color(SplitMix64& random) {
-  const std::uint64_t bits = random.next();
-  return {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
-          static_cast<std::uint8_t>(bits >> 16)};
+Rgb grey(int level) {
+  const auto byte = static_cast<std::uint8_t>(level);
+  return {byte, byte, byte};
 }
 
 ColorHistogram histogram_of(const std::vector<Rgb>& colors) {
@@ -95,8 +94,7 @@ TEST_CASE("palette: colours that differ by one -> each exactly; 256 greys -> one
   }
   std::vector<Rgb> greys;
   for (int i = 0; i < 256; ++i) {
-    const auto level = static_cast<std::uint8_t>(i);
-    greys.push_back({level, level, level});
+    greys.push_back(grey(i));
   }
   const PaletteMap ramp(histogram_of(greys));
   CHECK(ramp.colors() == 255);
@@ -175,20 +173,17 @@ TEST_CASE("palette: a rare colour among many shades -> the frequent ones get the
   SplitMix64 random(kSeed);
   ColorHistogram histogram;
   for (int i = 0; i < 2000; ++i) {
-    histogram.add(random_color(random));
+    histogram.add(bin_color(random.below(kColorBins)));
   }
   for (int shade = 0; shade < 256; shade += 8) {
     for (int i = 0; i < 100000; ++i) {
-      const auto level = static_cast<std::uint8_t>(shade);
-      histogram.add({level, level, level});
+      histogram.add(grey(shade));
     }
   }
   const PaletteMap map(histogram);
   CAPTURE(kSeed);
   for (int shade = 0; shade < 256; shade += 8) {
-    const auto level = static_cast<std::uint8_t>(shade);
     CAPTURE(shade);
-    CHECK(largest_difference({level, level, level}, map.palette()[map.index({level, level, level})].color) <=
-          1);
+    CHECK(largest_difference(grey(shade), map.palette()[map.index(grey(shade))].color) <= 1);
   }
 }

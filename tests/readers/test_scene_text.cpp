@@ -10,13 +10,13 @@
 #include <vector>
 
 #include <sys/stat.h>
-#include <zlib.h>
 
 #include "readers/file_bytes.h"
 #include "readers/read_any.h"
 #include "readers/scene_text.h"
 #include "scene/scene_source.h"
 #include "support/check_command.h"
+#include "support/file_bytes.h"
 #include "support/reader_inputs.h"
 
 namespace {
@@ -424,36 +424,29 @@ TEST_CASE("scene: models turned and mirrored -> the lowest corner of the turned 
 
 TEST_CASE("scene: a model out of the world -> an error with the depth; crop -> cut off") {
   const TemporaryFolder folder;
-  CHECK(contains(open_error(folder.write("a.scene", "depth 4\nmodel spheres,depth=4 at 1 0 0\n")),
-                 "line 2, column 1: the model's voxels from"));
   const auto cropped = open_file(folder.write("b.scene", "depth 4\nmodel spheres,depth=4 at 8 -3 0 crop\n"));
   const VoxelMaterials part = voxels_of(*cropped);
   CHECK_FALSE(part.empty());
   for (const auto& [at, material] : part) {
     CHECK((at[0] >= 8 && at[0] < 16 && at[1] >= 0 && at[1] < 16));
   }
-  CHECK(contains(open_error(folder.write("c.scene", "depth 3\nmaterial m\nbox m from 8 0 0 to 9 9 9\n")),
-                 "line 3, column 1: all of this lies outside the world of 8 voxels a side (depth 3)"));
-  CHECK(contains(open_error(folder.write("d.scene", "material m\nbox m from 0 0 0 to 1 1 4097\n")),
-                 "line 2, column 1: this reaches to 4097; the largest world ends at 4096"));
-  CHECK(contains(open_error(folder.write("e.scene", "material m\nbox m from 0 0 0 to 4096 4096 65\n")),
-                 "the limit is 1,073,741,824"));
-  CHECK(
-      contains(open_error(folder.write("f.scene", "material m\nbox m from 0 0 0 to 2 2 2\nlamp at 0 0 11\n")),
-               "line 3, column 1: the lamp is outside the accepted -8 to 10"));
-  CHECK(contains(open_error(folder.write(
-                     "g.scene", "material m\nbox m from 0 0 0 to 2 2 2\n camera eye 0 0 11 target 1 1 1\n")),
-                 "line 3, column 2: the eye of the camera is outside"));
-  CHECK(contains(
-      open_error(folder.write("h.scene",
-                              "material m\nbox m from 0 0 0 to 2 2 2\ncamera eye 1 1 9 target 1 1 1 up 0 0 "
-                              "1\n")),
-      "up of the camera is parallel"));
-  CHECK(contains(
-      open_error(folder.write("i.scene", "material m\nbox m from 0 0 0 to 2 2 2\nwater level 2.5\n")),
-      "the water leaves the world of 2 voxels"));
+  const std::string box = "material m\nbox m from 0 0 0 to 2 2 2\n";
+  for (const auto& [text, says] : std::vector<std::array<std::string, 2>>{
+           {"depth 4\nmodel spheres,depth=4 at 1 0 0\n", "line 2, column 1: the model's voxels from"},
+           {"depth 3\nmaterial m\nbox m from 8 0 0 to 9 9 9\n",
+            "line 3, column 1: all of this lies outside the world of 8 voxels a side (depth 3)"},
+           {"material m\nbox m from 0 0 0 to 1 1 4097\n",
+            "line 2, column 1: this reaches to 4097; the largest world ends at 4096"},
+           {"material m\nbox m from 0 0 0 to 4096 4096 65\n", "the limit is 1,073,741,824"},
+           {box + "lamp at 0 0 11\n", "line 3, column 1: the lamp is outside the accepted -8 to 10"},
+           {box + " camera eye 0 0 11 target 1 1 1\n", "line 3, column 2: the eye of the camera is outside"},
+           {box + "camera eye 1 1 9 target 1 1 1 up 0 0 1\n", "up of the camera is parallel"},
+           {box + "water level 2.5\n", "the water leaves the world of 2 voxels"}}) {
+    CAPTURE(text);
+    CHECK(contains(open_error(folder.write("a.scene", text)), says));
+  }
   SceneArguments arguments;
-  arguments.scene = folder.write("j.scene", "depth 3\nmaterial m\nbox m from 0 0 0 to 2 2 2\n");
+  arguments.scene = folder.write("j.scene", "depth 3\n" + box);
   arguments.depth = 5;
   CHECK(open_scene(arguments)->level() == 5);  // --depth decides
 }
@@ -569,11 +562,8 @@ TEST_CASE("scene: models that cannot be read, .gz, options -> as for the command
   folder.write("cube.off", "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
   CHECK(open_file(folder.write("m.scene", "model cube.off depth 4 z-up at 1 1 1\n"))->level() == 5);
 
-  const std::string text = "model points:10,depth=3\n";
-  gzFile file = gzopen(folder.path("z.scene.gz").c_str(), "wb");
-  REQUIRE(gzwrite(file, text.data(), static_cast<unsigned>(text.size())) == static_cast<int>(text.size()));
-  gzclose(file);
-  CHECK(open_file(folder.path("z.scene.gz"))->level() == 3);
+  CHECK(open_file(folder.write("z.scene.gz", tests::deflated("model points:10,depth=3\n", tests::kGzip)))
+            ->level() == 3);
   CHECK((find_reader("a.SCENE.gz", {})->read == read_scene_text));
 }
 
