@@ -1,6 +1,5 @@
 // `thimble image`: a scene behind a program that is there, or a sentence that says why not.
 #include <doctest/doctest.h>
-#include <zlib.h>
 
 #include <cstdint>
 #include <cstring>
@@ -33,10 +32,7 @@ class Programs {
     board.copy(mark.board, sizeof mark.board - 1);
     platform::Program program;
     program.segments = {{0, 0, 0, std::string(reinterpret_cast<const char*>(&mark), sizeof mark)}};
-    const std::string elf = platform::elf_of(program);
-    gzFile file = gzopen(folder_.path(name + ".elf.gz").c_str(), "wb");
-    REQUIRE(gzwrite(file, elf.data(), static_cast<unsigned>(elf.size())) == static_cast<int>(elf.size()));
-    REQUIRE(gzclose(file) == Z_OK);
+    folder_.write(name + ".elf.gz", deflated(platform::elf_of(program), kGzip));
   }
   Words image(const Words& words) const {
     return Words{"image"} + words +

@@ -1,7 +1,6 @@
 // `thimble sheet` and `thimble thumbnail`: small pictures of files that nobody vouches for. tests/web/test_share.js looks at
 // the page of a sheet.
 #include <doctest/doctest.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "support/check_command.h"
+#include "support/file_bytes.h"
 #include "support/run_command.h"
 
 namespace {
@@ -26,22 +26,7 @@ std::vector<std::string> size_of(const std::string& path) {
 
 // `megabytes` of zeros, in members of one each.
 std::string packed_zeros(int megabytes) {
-  const std::string zeros(1 << 20, '\0');
-  std::string member(zeros.size(), '\0');
-  z_stream stream{};
-  REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(zeros.data()));
-  stream.avail_in = static_cast<uInt>(zeros.size());
-  stream.next_out = reinterpret_cast<Bytef*>(member.data());
-  stream.avail_out = static_cast<uInt>(member.size());
-  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
-  member.resize(stream.total_out);
-  deflateEnd(&stream);
-  std::string all;
-  for (int i = 0; i < megabytes; ++i) {
-    all += member;
-  }
-  return all;
+  return repeated(deflated(std::string(1 << 20, '\0'), kGzip), megabytes);
 }
 
 }  // namespace

@@ -18,29 +18,25 @@ struct Digest {
   std::uint32_t crc = 0;
 };
 
-/// The CRC-32 is of x, y, z as two bytes each, low byte first, and the material.
-Digest digest(const std::string& text) {
-  Digest result;
-  generate(*parse_generator(text), [&](int x, int y, int z, std::uint8_t material) {
-    ++result.calls;
-    const std::array<std::uint8_t, 7> bytes{static_cast<std::uint8_t>(x),
-                                            static_cast<std::uint8_t>(x >> 8),
-                                            static_cast<std::uint8_t>(y),
-                                            static_cast<std::uint8_t>(y >> 8),
-                                            static_cast<std::uint8_t>(z),
-                                            static_cast<std::uint8_t>(z >> 8),
-                                            material};
-    result.crc = static_cast<std::uint32_t>(crc32(result.crc, bytes.data(), bytes.size()));
-  });
-  return result;
-}
-
 std::vector<std::array<int, 4>> voxels_of(const std::string& text) {
   std::vector<std::array<int, 4>> voxels;
   generate(*parse_generator(text), [&](int x, int y, int z, std::uint8_t material) {
     voxels.push_back({x, y, z, material});
   });
   return voxels;
+}
+
+/// The CRC-32 is of x, y, z as two bytes each, low byte first, and the material.
+Digest digest(const std::string& text) {
+  Digest result;
+  for (const auto& [x, y, z, material] : voxels_of(text)) {
+    ++result.calls;
+    for (const int part : {x, x >> 8, y, y >> 8, z, z >> 8, material}) {
+      const auto byte = static_cast<std::uint8_t>(part);
+      result.crc = static_cast<std::uint32_t>(crc32(result.crc, &byte, 1));
+    }
+  }
+  return result;
 }
 
 }  // namespace

@@ -574,20 +574,13 @@ TEST_CASE("npz: stored and deflated -> the largest array; damage -> a sentence")
   CHECK(accepted_lengths(read_npy, large).empty());
 }
 
+static Source read_archive(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
+  return read_any({"/tmp/a.zip"}, file, progress);
+}
+
 TEST_CASE("zip: one scene among other files -> the scene; none or several -> a sentence") {
   const std::string array = npy("|u1", "(1, 2, 2)", "\x01\x01\x01\x01");
   const std::string cloud = "1 2 3\n4 5 6\n";
-  const auto read = [](const std::string& file) {
-    return read_any(ReadOptions{"/tmp/a.zip", std::nullopt}, SharedBytes::own(file));
-  };
-  const auto refusal = [&](const std::string& file) {
-    try {
-      read(file);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
   for (const bool deflate : {false, true}) {
     const std::string file = zip({{"a/", ""},
                                   {"__MACOSX/._b.ply", "junk"},
@@ -596,17 +589,18 @@ TEST_CASE("zip: one scene among other files -> the scene; none or several -> a s
                                   {"a/picture.png", "\x89PNG"},
                                   {"a/b.npy", array}},
                                  deflate);
-    CHECK(std::get<std::unique_ptr<VoxelGrid>>(read(file))->size() == std::array<std::int32_t, 3>{1, 2, 2});
-    CHECK(std::holds_alternative<std::unique_ptr<PointCloud>>(read(zip({{"a.txt", cloud}}, deflate))));
+    CHECK(read_voxels(read_archive, file) == read_voxels(read_npy, array));
+    CHECK(read_points(read_archive, zip({{"a.txt", cloud}}, deflate)).size() == 2);
     for (std::size_t length = 30; length < file.size(); ++length) {
-      CHECK_FALSE(refusal(file.substr(0, length)).empty());
+      CHECK_FALSE(error_of(read_archive, file.substr(0, length)).empty());
     }
   }
-  CHECK(refusal(zip({{"a.png", "x"}}, false)) == "the archive holds no scene");
-  CHECK(contains(refusal(zip({{"a.xyz", cloud}, {"b/c.npy", array}}, true)),
+  CHECK(error_of(read_archive, zip({{"a.png", "x"}}, false)) == "the archive holds no scene");
+  CHECK(contains(error_of(read_archive, zip({{"a.xyz", cloud}, {"b/c.npy", array}}, true)),
                  "2 scenes, 'a.xyz' and 'b/c.npy'"));
-  CHECK(contains(refusal(zip({{"b.zip", zip({{"a.txt", cloud}}, false)}}, false)), "no scene"));
-  CHECK(contains(refusal(zip({{"a.xyz", "1 2\n"}}, false)), "line 1"));
+  CHECK(
+      contains(error_of(read_archive, zip({{"b.zip", zip({{"a.txt", cloud}}, false)}}, false)), "no scene"));
+  CHECK(contains(error_of(read_archive, zip({{"a.xyz", "1 2\n"}}, false)), "line 1"));
 }
 
 TEST_CASE("asc: an ESRI grid -> a landscape; holes where there is no data") {
