@@ -1,12 +1,9 @@
-/// Arguments that nobody means: ends of what a number can say, powers of two and their neighbours, bytes
-/// that are
+/// Arguments that nobody means: ends of what a number can say, powers of two and their neighbours, bytes that are
 /// too few, damaged views. The tests of this folder call every public function of the core with them, under
-/// AddressSanitizer and UndefinedBehaviorSanitizer (the `sanitize` build), and check what a header promises
-/// of a
+/// AddressSanitizer and UndefinedBehaviorSanitizer (the `sanitize` build), and check what a header promises of a
 /// call that is refused.
 ///
-/// Deterministic: the seed of a test is in it. A run takes seconds; THIMBLE_MISUSE_SECONDS=3600 runs
-/// with other
+/// Deterministic: the seed of a test is in it. A run takes seconds; THIMBLE_MISUSE_SECONDS=3600 runs with other
 /// seeds for that long in each test.
 #pragma once
 
@@ -44,6 +41,10 @@ class OddValues {
   }
   std::int32_t between_32(std::int32_t low, std::int32_t high) {
     return static_cast<std::int32_t>(between(low, high));
+  }
+  /// Any number at all one time in `n`, else one from low to high.
+  std::int32_t any_or(std::uint64_t n, std::int32_t low, std::int32_t high) {
+    return one_in(n) ? any<std::int32_t>() : between_32(low, high);
   }
   /// Any value of the type: its ends, those of others, zero, powers of two, and what stands beside them.
   template <class T>

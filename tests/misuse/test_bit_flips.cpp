@@ -31,7 +31,6 @@
 namespace thimble::tests {
 namespace {
 
-constexpr int kFlipLevel = 3;
 // Odd, so that neither half of the flips, repaired or not, is left out.
 constexpr std::size_t kFewLit = 5;
 // A sanitized run, which sees what is read outside, takes each third.
@@ -47,54 +46,19 @@ bool all_flips() {
   return given != nullptr && std::string(given) == "all";
 }
 
-// A floor, a pane of glass, a mirror, a lamp, fog; merged blocks; a lamp and a sun; water in a corner.
+// small_scene.h's scene of that level, in as many bytes as it has, and its tree, shared.
 struct FlippedWorld {
-  HeapBytes tree_bytes;
-  HeapBytes map_bytes;
-  HeapBytes lighting;
   HeapBytes scene;
   HeapBytes shared;
 
-  FlippedWorld() {
-    OwnedPool pool(kFlipLevel);
-    Octree& octree = pool.octree;
-    REQUIRE(octree.insert_box({{0, 0, 0}, {8, 8, 1}}, 0) == Status::kOk);
-    REQUIRE(octree.insert_box({{4, 4, 2}, {6, 6, 4}}, 1) == Status::kOk);
-    REQUIRE(octree.insert_box({{1, 5, 1}, {3, 7, 4}}, 2) == Status::kOk);
-    REQUIRE(octree.insert_box({{6, 1, 1}, {8, 3, 2}}, 4) == Status::kOk);
-    REQUIRE(octree.insert({1, 6, 5}, 3) == Status::kOk);
-    REQUIRE(octree.insert({5, 6, 6}, 2) == Status::kOk);
-    REQUIRE(octree.coarsen_to(octree.nodes_used() - 3) == Status::kOk);
-    tree_bytes = compact_of(octree);
-    const CompactTree tree = open_or_throw(tree_bytes);
-    REQUIRE(tree.merged());
-    map_bytes = map_of(tree);
-    shared = shared_of(tree);
-    bake();
-  }
-
- private:
-  void bake() {
-    const std::vector<std::uint8_t> lit = lighting_of_all_effects(kFlipLevel);
-    REQUIRE(!lit.empty());
-    lighting = HeapBytes(ConstBytes{lit.data(), lit.size()});
-
-    constexpr Rgb8 kPalette[] = {{180, 170, 160}, {200, 240, 230}, {230, 220, 200}, {255, 200, 90}};
-    SceneCamera camera;
-    camera.eye = {Q8::saturate(-3), Q8::saturate(-4), Q8::saturate(7)};
-    camera.target = {Q8::saturate(4), Q8::saturate(4), Q8::saturate(2)};
-    camera.fov_degrees = Q16::saturate(50);
-    constexpr std::uint8_t kName[] = {'f', 'l', 'i', 'p', 's'};
-    BakedParts parts;
-    parts.tree = tree_bytes.span();
-    parts.palette = Span<const Rgb8>(kPalette);
-    parts.camera = &camera;
-    parts.brick_map = map_bytes.span();
-    parts.lighting = lighting.span();
-    parts.name = {kName, sizeof kName};
-    scene = HeapBytes(baked_bytes(parts));
-    REQUIRE(BakedScene::make(parts, scene.span(), nullptr) == Status::kOk);
+  explicit FlippedWorld(int level) {
+    const std::vector<std::uint8_t> bytes = small_scene(level);
+    scene = HeapBytes(ConstBytes{bytes.data(), bytes.size()});
+    BakedScene sound;
+    REQUIRE(BakedScene::open(scene.view(), &sound) == Status::kOk);
     REQUIRE(BakedScene::validate(scene.view()) == nullptr);
+    REQUIRE(sound.tree().merged());
+    shared = shared_of(sound.tree());
   }
 };
 
@@ -268,19 +232,17 @@ void flip_scene(ConstBytes sound) {
 
 }  // namespace
 
-TEST_CASE("bit flips: a baked scene with light, water and bricks -> refused, or read and drawn inside it") {
-  const FlippedWorld world;
-  flip_scene(world.scene.view());
-}
-
-TEST_CASE("bit flips: a baked scene of level 9 with its bricks -> refused, or read and drawn inside it") {
-  const std::vector<std::uint8_t> sound = small_scene(9);
-  REQUIRE(BakedScene::validate({sound.data(), sound.size()}) == nullptr);
-  flip_scene({sound.data(), sound.size()});
+TEST_CASE(
+    "bit flips: a baked scene with light, water and bricks, one of level 9 -> refused, or read and drawn "
+    "inside it") {
+  for (const int level : {5, 9}) {
+    CAPTURE(level);
+    flip_scene(FlippedWorld(level).scene.view());
+  }
 }
 
 TEST_CASE("bit flips: a shared tree -> refused, or traced and drawn inside it") {
-  const FlippedWorld world;
+  const FlippedWorld world(5);
   const ConstBytes sound = world.shared.span();
   HeapBytes work(shared_check_bytes(sound.size));
   const auto repair = [](Bytes bytes) { repair_checksum(bytes); };
@@ -309,8 +271,6 @@ TEST_CASE("bit flips: a shared tree -> refused, or traced and drawn inside it") 
 }
 
 TEST_CASE("bit flips: thimble info -> a description, or a sentence and status 1") {
-  const FlippedWorld world;
-  const std::vector<std::uint8_t> deep = small_scene(9);
   const TemporaryFolder folder;
   const std::string path = folder.path("flipped.oct");
   int described = 0;
@@ -324,8 +284,9 @@ TEST_CASE("bit flips: thimble info -> a description, or a sentence and status 1"
     described += result.status == 0 ? 1 : 0;
     refused += result.status == 1 ? 1 : 0;
   };
-  flip_each(world.scene.view(), kFewCommands, repair_baked_checksums, describe);
-  flip_each({deep.data(), deep.size()}, kFewCommands, repair_baked_checksums, describe);
+  for (const int level : {5, 9}) {
+    flip_each(FlippedWorld(level).scene.view(), kFewCommands, repair_baked_checksums, describe);
+  }
   CHECK(described > 0);
   CHECK(refused > 0);
 }

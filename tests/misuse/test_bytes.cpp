@@ -42,9 +42,7 @@ TEST_CASE(
     "enough") {
   misuse(60, 500, [](OddValues& odd) {
     // One number in a few is odd: where all are, nothing is ever made.
-    const auto number = [&odd](std::int32_t low, std::int32_t high) {
-      return odd.one_in(12) ? odd.any<std::int32_t>() : odd.between_32(low, high);
-    };
+    const auto number = [&odd](std::int32_t low, std::int32_t high) { return odd.any_or(12, low, high); };
     const ParticleConfig config = particles_of(odd, number);
     hold_to(particles_bytes(config), [&config](Bytes bytes) {
       ParticleWorld world;

@@ -148,9 +148,7 @@ TEST_CASE("misuse: water of any numbers -> refused or done, its volume kept, its
     }
     const std::uint64_t volume = water.volume_q16();
     for (int i = 0; i < 12; ++i) {
-      const auto number = [&](std::int32_t most) {
-        return odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(-most, most);
-      };
+      const auto number = [&](std::int32_t most) { return odd.any_or(3, -most, most); };
       (void)water.touch(number(12000), number(12000), number(1 << 14), number(1 << 14));
       (void)water.drop(number(12000), number(12000), number(1 << 14), number(1 << 20), number(1 << 16));
       water.step();
@@ -173,38 +171,22 @@ TEST_CASE("misuse: water of any numbers -> refused or done, its volume kept, its
   });
 }
 
-TEST_CASE("misuse: lit bands of any scene, set and band over sound and damaged trees -> refused or drawn") {
+TEST_CASE(
+    "misuse: lit bands of any scene, set and band over sound and damaged trees, by maps and without -> "
+    "refused or drawn") {
   const Rgb8 palette[] = {{200, 100, 50}, {30, 60, 90}};
-  misuse(32, 400, [&](OddValues& odd) {
-    const int level = odd.between_32(kMinLevel, 5);
-    OddWorld world(odd, level);
-    if (odd.one_in(2)) {
-      world.damage(odd);
-    }
-    const OddScene lit(odd, level);
-    const Camera camera = odd_camera(odd, level);
-    const Shading shading = odd_shading(odd, Span<const Rgb8>(palette));
-    HeapBytes pixels;
-    const Band band = odd_band(odd, camera, &pixels);
-    LitCounts counts;
-    const LitOptions options{odd.one_in(2) ? UINT32_MAX : odd.any<std::uint32_t>(), odd.one_in(2)};
-    const EffectSet effects = odd.one_in(2) ? effects_of(lit.scene) : odd.any<EffectSet>();
-    (void)render_lit_band(effects, world.compact, camera, shading, lit.scene, band,
-                          odd.one_in(2) ? &counts : nullptr, options);
-  });
-}
-
-TEST_CASE("misuse: light by maps, up to level 8 and beyond -> refused, or drawn inside the bytes") {
-  const Rgb8 palette[] = {{200, 100, 50}, {30, 60, 90}};
-  misuse(34, 300, [&](OddValues& odd) {
+  misuse(34, 400, [&](OddValues& odd) {
     const bool is_deep = odd.one_in(2);
-    OddWorld small(odd, odd.between_32(kMinBrickMapLevel, 5));
+    const int level = odd.between_32(kMinLevel, 5);
+    OddWorld small(odd, level);
     const OddDeepWorld deep(odd);
-    HeapBytes room(most_brick_map_bytes(small.compact));
-    BrickMap small_map;
-    REQUIRE(BrickMap::make(small.compact, room.span(), &small_map) == Status::kOk);
+    const OwnedMap small_map(small.compact, most_brick_map_bytes(small.compact));
+    REQUIRE((small_map.status == Status::kOk) == (level >= kMinBrickMapLevel));
+    if (odd.one_in(2)) {
+      small.damage(odd);
+    }
     const CompactTree& tree = is_deep ? deep.compact : small.compact;
-    const BrickMap& map = odd.one_in(8) ? BrickMap() : is_deep ? deep.map : small_map;
+    const BrickMap& map = odd.one_in(8) ? BrickMap() : is_deep ? deep.map : small_map.map;
     const OddScene lit(odd, std::min(tree.level(), 6));
     HeapBytes bits(odd_size(odd, SunBricks::bytes(map)));
     SunBricks sun;
@@ -224,8 +206,9 @@ TEST_CASE("misuse: light by maps, up to level 8 and beyond -> refused, or drawn 
     LitCounts counts;
     const LitOptions options{odd.one_in(2) ? UINT32_MAX : odd.any<std::uint32_t>(), odd.one_in(2)};
     const EffectSet effects = odd.one_in(2) ? effects_of(lit.scene) : odd.any<EffectSet>();
-    (void)render_lit_band(effects, tree, map, camera, shading, lit.scene, {&sun, 1}, band,
-                          odd.one_in(2) ? &counts : nullptr, options);
+    LitCounts* const counted = odd.one_in(2) ? &counts : nullptr;
+    (void)render_lit_band(effects, tree, map, camera, shading, lit.scene, {&sun, 1}, band, counted, options);
+    (void)render_lit_band(effects, tree, camera, shading, lit.scene, band, counted, options);
   });
 }
 

@@ -57,9 +57,8 @@ TEST_CASE(
   misuse(20, 350, [](OddValues& odd) {
     const int level = odd.between_32(kMinLevel, 6);
     OddWorld world(odd, level);
-    HeapBytes map_bytes(most_brick_map_bytes(std::max(level, kMinBrickMapLevel)));
-    BrickMap map;
-    (void)BrickMap::make(world.compact, map_bytes.span(), &map);
+    const OwnedMap made(world.compact, most_brick_map_bytes(world.compact));
+    const BrickMap& map = made.map;
     if (odd.one_in(2)) {
       world.damage(odd);
     }
@@ -69,18 +68,15 @@ TEST_CASE(
       const TraceOptions options = odd_options(odd);
       RenderCounts counts;
       RenderCounts* const counted = odd.one_in(2) ? &counts : nullptr;
-      draw_band(odd, camera, [&](const Band& band) {
-        return render_band(world.compact, camera, shading, band, counted, options);
-      });
-      draw_band(odd, camera, [&](const Band& band) {
-        return render_band(world.octree, camera, shading, band, counted, options);
-      });
-      draw_band(odd, camera, [&](const Band& band) {
-        return render_band(world.shared, camera, shading, band, counted, options);
-      });
-      draw_band(odd, camera, [&](const Band& band) {
-        return render_band(world.grid, camera, shading, band, counted, options);
-      });
+      const auto draw = [&](const auto& tree) {
+        draw_band(odd, camera, [&](const Band& band) {
+          return render_band(tree, camera, shading, band, counted, options);
+        });
+      };
+      draw(world.compact);
+      draw(world.octree);
+      draw(world.shared);
+      draw(world.grid);
       draw_band(odd, camera, [&](const Band& band) {
         return render_band_32(world.compact, camera, shading, band, counted, options.max_visits);
       });
@@ -94,7 +90,7 @@ TEST_CASE(
       Cutoff cutoff;
       (void)cutoff.set(camera, odd.one_in(2) ? Q16::from_raw(odd.any<std::int32_t>())
                                              : Q16::from_raw(odd.between_32(0, kMaxCutoff.raw)));
-      (void)cutoff.set_level(odd.one_in(2) ? odd.any<std::int32_t>() : odd.between_32(0, kMaxLevel));
+      (void)cutoff.set_level(odd.any_or(2, 0, kMaxLevel));
       HeapBytes color_bytes(odd_size(odd, node_colors_bytes(world.compact)));
       NodeColors colors;
       (void)NodeColors::make(world.compact, kColors, {9, 9, 9}, color_bytes.span(), &colors);
@@ -105,30 +101,6 @@ TEST_CASE(
       (void)closest_hit_cut(world.compact, odd_ray(odd, level), cutoff, &cut, options);
       refine(odd, world.compact, camera, shading);
       (void)depth_range(camera, world.compact.bounds());
-    }
-  });
-}
-
-TEST_CASE("misuse: any map under a tree -> refused, or drawn within the band") {
-  misuse(21, 400, [](OddValues& odd) {
-    const int level = odd.between_32(kMinBrickMapLevel, 6);
-    OddWorld world(odd, level);
-    const HeapBytes bad = map_of(world.compact);
-    const std::size_t size = bad.view().size;
-    // Behind the checksum of its tree everything may be wrong.
-    for (int i = 0; i < 8; ++i) {
-      bad.span()[odd.one_in(2) && size > 32 ? 32 + odd.bits() % (size - 32) : odd.bits() % size] =
-          odd.any<std::uint8_t>();
-    }
-    BrickMap opened;
-    if (BrickMap::open(bad.span(), &opened) != Status::kOk) {
-      return;
-    }
-    for (int i = 0; i < 4; ++i) {
-      const Camera camera = odd_camera(odd, level);
-      const Shading shading = odd_shading(odd, kColors);
-      draw_band(odd, camera,
-                [&](const Band& band) { return render_band(world.compact, opened, camera, shading, band); });
     }
   });
 }
@@ -195,15 +167,15 @@ TEST_CASE(
 
 TEST_CASE("misuse: samples, colours and pixels of any numbers -> refused, or within their bytes") {
   misuse(22, 4000, [](OddValues& odd) {
-    const int across = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, kMaxSamplesAcross + 1);
-    const std::int32_t width = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 70);
+    const int across = odd.any_or(3, 0, kMaxSamplesAcross + 1);
+    const std::int32_t width = odd.any_or(3, 0, 70);
     const auto format = static_cast<PixelFormat>(odd.bits() % 5);
     const bool small = across >= 0 && across <= 16 && width >= 0 && width <= 1000;
     HeapBytes fine(odd_size(odd, small ? samples_bytes(width, across) : 64));
     HeapBytes row(odd_size(odd, small ? row_bytes(format, width) : 64));
     (void)average_samples(fine.span(), across, width, odd.any<std::int32_t>(), format, row.span());
 
-    const int channels = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 5);
+    const int channels = odd.any_or(3, 0, 5);
     const std::size_t line =
         small && channels > 0 && channels < 5 ? static_cast<std::size_t>(width * channels) : 8;
     HeapBytes above(odd.one_in(3) ? 0 : odd_size(odd, line));

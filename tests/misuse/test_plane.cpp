@@ -21,7 +21,7 @@ Vec2i odd_cell(OddValues& odd) {
 
 void use(OddValues& odd, BitField& field) {
   const CellBox box{odd_cell(odd), odd_cell(odd)};
-  const DiscStamp disc = disc_stamp(odd.one_in(4) ? odd.any<std::int32_t>() : odd.between_32(-1, 40));
+  const DiscStamp disc = disc_stamp(odd.any_or(4, -1, 40));
   const Vec2i corner = odd_cell(odd);
   (void)field.window(odd.any<std::int32_t>(), odd.any<std::int32_t>());
   field.set(odd_cell(odd));
@@ -62,12 +62,10 @@ void use(OddValues& odd, BitField& field) {
 }
 
 void use(OddValues& odd, ParticleWorld& world) {
-  const auto number = [&](std::int32_t most) {
-    return odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(-most, most);
-  };
+  const auto number = [&](std::int32_t most) { return odd.any_or(3, -most, most); };
   const std::uint32_t id =
       odd.one_in(3) ? odd.any<std::uint32_t>() : static_cast<std::uint32_t>(odd.bits() % 12);
-  const std::int32_t thick = odd.one_in(20) ? odd.any<std::int32_t>() : odd.between_32(0, 20);
+  const std::int32_t thick = odd.any_or(20, 0, 20);
   switch (odd.bits() % 14) {
     case 0:
       (void)world.spawn(number(120 << 16), number(120 << 16), number(1 << 16), number(1 << 16), number(20),
@@ -136,8 +134,8 @@ void use(OddValues& odd, ParticleWorld& world) {
 
 TEST_CASE("misuse: bit fields of any size -> refused or done, inside their bytes") {
   misuse(40, 1200, [](OddValues& odd) {
-    const std::int32_t width = odd.one_in(4) ? odd.any<std::int32_t>() : odd.between_32(0, 130);
-    const std::int32_t height = odd.one_in(4) ? odd.any<std::int32_t>() : odd.between_32(0, 130);
+    const std::int32_t width = odd.any_or(4, 0, 130);
+    const std::int32_t height = odd.any_or(4, 0, 130);
     HeapBytes bytes(odd_size(odd, bitfield_bytes(width, height)));
     BitField field;
     const Status status = BitField::make(width, height, bytes.span(), &field);

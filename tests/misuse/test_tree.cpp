@@ -156,7 +156,7 @@ TEST_CASE("misuse: dense grid -> refused or done, inside its bytes") {
 
 TEST_CASE("misuse: octree -> refused or done, inside its pool, and its compact tree is sound") {
   misuse(2, 1500, [](OddValues& odd) {
-    const int level = odd.one_in(4) ? odd.any<std::int32_t>() : odd.between_32(kMinLevel, kMaxLevel);
+    const int level = odd.any_or(4, kMinLevel, kMaxLevel);
     const std::size_t nodes = odd.one_in(4) ? 0 : odd.bits() % 400;
     HeapBytes pool(odd_size(odd, Octree::octree_bytes(nodes)));
     Octree octree;
@@ -172,7 +172,7 @@ TEST_CASE("misuse: octree -> refused or done, inside its pool, and its compact t
         (void)octree.child(node, static_cast<int>(odd.bits() % 8));
       }
     }
-    const int shift = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(kMinRankShift, kMaxRankShift);
+    const int shift = odd.any_or(3, kMinRankShift, kMaxRankShift);
     std::size_t size = 0;
     HeapBytes none;
     CompactTree tree;
@@ -211,7 +211,7 @@ TEST_CASE("misuse: a pool that something else wrote over -> no read or write out
 
 TEST_CASE("misuse: keys and parts to compact trees -> refused or done, inside their bytes") {
   misuse(4, 1500, [](OddValues& odd) {
-    const int level = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(kMinLevel, 10);
+    const int level = odd.any_or(6, kMinLevel, 10);
     const int bits = level >= 1 && level <= 10 ? 3 * level : 30;
     std::vector<std::uint32_t> keys(odd.bits() % 60);
     for (std::uint32_t& key : keys) {
@@ -222,7 +222,7 @@ TEST_CASE("misuse: keys and parts to compact trees -> refused or done, inside th
     keys.resize(unique_keys(Span<std::uint32_t>(keys.data(), keys.size())));
     std::size_t size = 0;
     HeapBytes none;
-    const int shift = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(kMinRankShift, kMaxRankShift);
+    const int shift = odd.any_or(6, kMinRankShift, kMaxRankShift);
     const Span<const std::uint32_t> span(keys.data(), keys.size());
     if (CompactTree::make(span, level, odd.any<std::uint8_t>(), none.span(), nullptr, &size, shift) !=
         Status::kOutOfMemory) {
@@ -328,12 +328,10 @@ void edit_at_random(OddValues& odd, const CompactTree& tree) {
   (void)SunBricks::make(world.map(), towards, bits.span(), &sun);
   HeapBytes entries(odd.bits() % 3000);
   EditJournal journal(entries.span());
-  const auto number = [&] {
-    return odd.one_in(9) ? odd.any<std::int32_t>() : odd.between_32(0, (1 << tree.level()) - 1);
-  };
+  const auto number = [&] { return odd.any_or(9, 0, (1 << tree.level()) - 1); };
   for (int edit = 0; edit < 12; ++edit) {
     const Vec3i at{number(), number(), number()};
-    const auto side = [&] { return odd.one_in(9) ? odd.any<std::int32_t>() : odd.between_32(-1, 7); };
+    const auto side = [&] { return odd.any_or(9, -1, 7); };
     const auto plus = [](std::int32_t a, std::int32_t b) {
       return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
     };
@@ -362,11 +360,8 @@ void edit_at_random(OddValues& odd, const CompactTree& tree) {
     (void)fresh.prove();
     CHECK(std::memcmp(bits.span().data, fresh_bits.span().data, bits.span().size) == 0);
   }
-  std::size_t size = 0;
-  REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
-  HeapBytes packed(size);
-  REQUIRE(world.pack(packed.span()) == Status::kOk);
-  CHECK(CompactTree::validate(packed.span()) == nullptr);
+  const HeapBytes bytes_of_it = packed(world);
+  CHECK(CompactTree::validate(bytes_of_it.view()) == nullptr);
 }
 
 TEST_CASE(

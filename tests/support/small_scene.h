@@ -50,8 +50,8 @@ inline std::vector<std::uint8_t> lighting_of_all_effects(int level) {
 }
 
 /// Of level 5 or more, so with a map of version 1 or 2: stairs of three materials in a mixed brick and one that is not, a
-/// solid brick, a voxel on a page of its own, a camera that sees them, and light up to level 8. Empty where something is
-/// refused.
+/// solid brick, one voxel of it merged, a voxel on a page of its own, a palette, a name, a camera that sees them, and light up
+/// to level 8. Empty where something is refused.
 inline std::vector<std::uint8_t> small_scene(int level) {
   std::vector<std::uint8_t> pool(Octree::octree_bytes(100));
   Octree octree;
@@ -60,7 +60,8 @@ inline std::vector<std::uint8_t> small_scene(int level) {
     is_made = is_made && octree.insert({x, x / 2, 0}, static_cast<std::uint8_t>(x / 2)) == Status::kOk;
   }
   is_made = is_made && octree.insert_block({8, 4, 0}, 2, 1) == Status::kOk &&
-            octree.insert({20, 3, 5}, 3) == Status::kOk;
+            octree.remove({8, 4, 0}) == Status::kOk && octree.insert({20, 3, 5}, 3) == Status::kOk &&
+            octree.coarsen_to(octree.nodes_used() - 1) == Status::kOk;
   std::vector<std::uint8_t> tree_bytes(compact_bytes(compact_shape(octree)));
   CompactTree tree;
   is_made =
@@ -73,8 +74,12 @@ inline std::vector<std::uint8_t> small_scene(int level) {
   camera.eye = {Q8::saturate(10), Q8::saturate(-9), Q8::saturate(8)};
   camera.forward = {0, 12, -6};
   camera.fov_degrees = Q16::saturate(80);
+  constexpr Rgb8 kPalette[] = {{180, 170, 160}, {200, 240, 230}, {230, 220, 200}, {255, 200, 90}};
+  constexpr std::uint8_t kName[] = {'s', 'm', 'a', 'l', 'l'};
   BakedParts parts;
   parts.tree = {tree_bytes.data(), tree_bytes.size()};
+  parts.palette = Span<const Rgb8>(kPalette);
+  parts.name = {kName, sizeof kName};
   parts.camera = &camera;
   parts.brick_map = {map.data(), map_size};
   std::vector<std::uint8_t> lighting;
