@@ -8,11 +8,10 @@
 
 #include <doctest/doctest.h>
 
+#include "support/scene_under_test.h"
+#include "support/small_scene.h"
 #include "thimble/bake/baked_scene.h"
-#include "thimble/light/scene.h"
 #include "thimble/thimble_c.h"
-#include "thimble/tree/brick_map.h"
-#include "thimble/tree/octree.h"
 
 namespace thimble::tests {
 
@@ -22,18 +21,21 @@ constexpr int kWorldLevel = 5;
 class CWorld {
  public:
   explicit CWorld(std::uint64_t salt = 0, bool with_extras = true) {
-    pool_.resize(Octree::octree_bytes(20000));
-    REQUIRE(Octree::make(kWorldLevel, {pool_.data(), pool_.size()}, &octree) == Status::kOk);
     fill(octree, salt);
-    tree_.resize(compact_bytes(compact_shape(octree)));
-    REQUIRE(CompactTree::make(octree, {tree_.data(), tree_.size()}, &compact) == Status::kOk);
+    tree_ = compact_of(octree);
+    compact = open_or_throw(tree_);
     bake(with_extras);
   }
   CWorld(const CWorld&) = delete;
   CWorld& operator=(const CWorld&) = delete;
 
   /// The bytes, which start at a multiple of 8.
-  ConstBytes bytes() const { return {reinterpret_cast<const std::uint8_t*>(words_.data()), size_}; }
+  ConstBytes bytes() const { return bytes_.view(); }
+  thimble_scene_t opened() const {
+    thimble_scene_t handle = {};
+    REQUIRE(thimble_scene_open(&handle, bytes().data, bytes().size) == THIMBLE_OK);
+    return handle;
+  }
 
   /// A floor, three balls that overlap, and single voxels, in five materials. The same with both faces.
   template <class Tree>
@@ -65,7 +67,8 @@ class CWorld {
     return z < 2 ? 0 : (x * 7 + y * 5 + z * 3) % 97 == 0 ? 4 : -1;
   }
 
-  Octree octree;
+  OwnedPool pool{kWorldLevel};
+  Octree& octree = pool.octree;
   CompactTree compact;
   BakedScene scene;
   BakedLighting lighting;
@@ -81,32 +84,8 @@ class CWorld {
   void bake(bool with_extras) {
     static constexpr Rgb8 kColors[] = {{120, 110, 90}, {230, 40, 30}, {40, 200, 60}, {40, 80, 240}};
     static constexpr char kName[] = "a world";
-    const Surface surfaces[] = {{kColors[0], SurfaceKind::kDiffuse, 0, 255, 5325, 64, 256},
-                                {kColors[1], SurfaceKind::kMetal, 40, 200, 5325, 64, 256},
-                                {kColors[2], SurfaceKind::kGlass, 0, 255, 6144, 64, 256},
-                                {kColors[3], SurfaceKind::kMedia, 0, 255, 5325, 300, 256},
-                                {{255, 240, 200}, SurfaceKind::kEmit, 0, 255, 5325, 64, 512}};
-    Light lights[2];
-    lights[1].is_point = true;
-    lights[1].place = PackedVec3i(16 * 256, 16 * 256, 28 * 256);
-    lights[1].reach = 12;
-    BakedLighting lit;
-    lit.scene.surfaces = Span<const Surface>(surfaces);
-    lit.scene.lights = Span<const Light>(lights);
-    lit.scene.has_shadows = true;
-    lit.scene.has_sky = true;
-    lit.scene.fog.density_q16 = 900;
-    lit.scene.occlusion.rays = 4;
-    lit.scene.has_water = true;
-    lit.scene.water = still_water({0, 0, 2}, 32, 12, 3 * 256);
-    lit.effects = effects_of(lit.scene);
-    std::vector<std::uint8_t> section(lighting_bytes(lit.scene));
-    REQUIRE(BakedLighting::make(lit, kWorldLevel, {section.data(), section.size()}) == Status::kOk);
-
-    std::vector<std::uint64_t> map(most_brick_map_bytes(kWorldLevel) / 8 + 1);
-    std::size_t map_size = 0;
-    REQUIRE(BrickMap::make(compact, {reinterpret_cast<std::uint8_t*>(map.data()), map.size() * 8}, nullptr,
-                           &map_size) == Status::kOk);
+    const std::vector<std::uint8_t> section = lighting_of_all_effects(kWorldLevel);
+    const HeapBytes map = map_of(compact);
     SceneCamera camera;
     camera.eye = {Q8::from_raw(-3000), Q8::from_raw(-5100), Q8::from_raw(7900)};
     camera.target = {Q8::from_raw(4096), Q8::from_raw(4096), Q8::from_raw(2300)};
@@ -117,24 +96,20 @@ class CWorld {
     if (with_extras) {
       parts.palette = Span<const Rgb8>(kColors);
       parts.camera = &camera;
-      parts.brick_map = {reinterpret_cast<const std::uint8_t*>(map.data()), map_size};
+      parts.brick_map = map.view();
       parts.name = {reinterpret_cast<const std::uint8_t*>(kName), sizeof kName - 1};
       parts.lighting = {section.data(), section.size()};
     }
-    size_ = baked_bytes(parts);
-    words_.resize(size_ / 8 + 1);
-    REQUIRE(BakedScene::make(parts, {reinterpret_cast<std::uint8_t*>(words_.data()), size_}, &scene) ==
-            Status::kOk);
+    bytes_ = HeapBytes(baked_bytes(parts));
+    REQUIRE(BakedScene::make(parts, bytes_.span(), &scene) == Status::kOk);
     if (with_extras) {
       REQUIRE(BakedLighting::open(scene.section(SectionKind::kLighting), kWorldLevel, &lighting) ==
               Status::kOk);
     }
   }
 
-  std::vector<std::uint8_t> pool_;
-  std::vector<std::uint8_t> tree_;
-  std::vector<std::uint64_t> words_;
-  std::size_t size_ = 0;
+  HeapBytes tree_;
+  HeapBytes bytes_;
 };
 
 }  // namespace thimble::tests

@@ -139,7 +139,7 @@ thimble_view_t odd_view(OddValues& odd, const thimble_view_t& good) {
 
 thimble_shading_t odd_shading(OddValues& odd, const thimble_shading_t& good) {
   thimble_shading_t shading = good;
-  shading.mode = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 3);
+  shading.mode = odd.any_or(3, 0, 3);
   if (odd.one_in(4)) {
     shading.palette_rgb = nullptr;
     shading.palette_colors = odd.one_in(2) ? 0 : odd.any<std::uint32_t>();
@@ -158,9 +158,9 @@ thimble_band_t odd_band(OddValues& odd, HeapBytes* bytes) {
   band.pixels = odd.one_in(9) ? nullptr : bytes->span().data;
   band.size_bytes = odd.one_in(9) ? 0 : bytes->span().size;
   band.stride_bytes = odd.one_in(2) ? 0 : odd.one_in(2) ? odd.bits() % 100 : odd.any<std::size_t>();
-  band.format = odd.one_in(6) ? odd.any<std::int32_t>() : odd.between_32(0, kPixelFormats);
+  band.format = odd.any_or(6, 0, kPixelFormats);
   band.first_row = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 2) * 8;
-  band.rows = odd.one_in(3) ? odd.any<std::int32_t>() : odd.between_32(0, 16);
+  band.rows = odd.any_or(3, 0, 16);
   return band;
 }
 
@@ -183,8 +183,8 @@ TEST_CASE("misuse: C face, pictures and rays with anything in place of any argum
     Odd odd(values, values.one_in(2) ? 12 : 1000000);
     if (values.one_in(2)) {
       const thimble_view_t view = odd_view(values, things.view);
-      const std::int32_t width = values.one_in(3) ? values.any<std::int32_t>() : values.between_32(0, 40);
-      const std::int32_t height = values.one_in(3) ? values.any<std::int32_t>() : values.between_32(0, 40);
+      const std::int32_t width = values.any_or(3, 0, 40);
+      const std::int32_t height = values.any_or(3, 0, 40);
       const std::int32_t level = values.one_in(3) ? values.any<std::int32_t>() : kWorldLevel;
       const thimble_view_t* const from = odd.data(&view);
       check(thimble_camera_set(odd.target(&things.camera), from, width, height, level), odd);
@@ -243,8 +243,7 @@ TEST_CASE("misuse: C face, pictures and rays with anything in place of any argum
     (void)thimble_band_bytes(values.any<std::int32_t>(), values.any<std::int32_t>(),
                              values.any<std::int32_t>());
     (void)thimble_band_row_multiple(values.any<std::int32_t>());
-    const std::int32_t frame_format =
-        values.one_in(2) ? values.any<std::int32_t>() : values.between_32(0, kPixelFormats - 1);
+    const std::int32_t frame_format = values.any_or(2, 0, kPixelFormats - 1);
     (void)thimble_frame_bytes(frame_format, values.any<std::int32_t>(), values.any<std::int32_t>());
     HeapBytes memory(values.bits() % 3000);
     thimble_frame_t frame = {};
@@ -345,17 +344,14 @@ TEST_CASE("misuse: C face, edited worlds with any numbers -> a status, and the w
     CHECK(thimble_world_make(&edited, &things.tree, nullptr, 100) == THIMBLE_BAD_ARGUMENT);
     CHECK(thimble_world_make(&edited, &things.tree, room.span().data, least - 1) == THIMBLE_OUT_OF_MEMORY);
     (void)odd.spoiled();
-    const auto number = [&] {
-      return values.one_in(4) ? values.any<std::int32_t>() : values.between_32(-1, 16);
-    };
+    const auto number = [&] { return values.any_or(4, -1, 16); };
     for (int i = 0; i < 30; ++i) {
-      const std::int32_t material = values.one_in(4) ? values.any<std::int32_t>() : values.between_32(-1, 3);
+      const std::int32_t material = values.any_or(4, -1, 3);
       thimble_box_t box = {{number(), number(), number()}, {}};
       box.high = {box.low.x / 2 + number() % 8, box.low.y / 2 + 5, box.low.z / 2 + 9};
       check(thimble_world_put(odd.handle(&edited), number(), number(), number(), material), odd);
       check(thimble_world_edit(odd.handle(&edited), odd.handle(&journal), odd.data(&box),
-                               values.one_in(4) ? values.any<std::int32_t>() : values.between_32(0, 1),
-                               material),
+                               values.any_or(4, 0, 1), material),
             odd);
       (void)thimble_world_material(odd.handle(&edited), number(), number(), number());
       (void)odd.spoiled();
@@ -388,11 +384,9 @@ TEST_CASE("misuse: C face, octrees and particles with any numbers -> a status, a
                               values.one_in(9) ? nullptr : pool.span().data, pool.span().size);
     thimble_octree_info_t info;
     REQUIRE(thimble_octree_get_info(&things.octree, &info) == THIMBLE_OK);
-    const auto number = [&] {
-      return values.one_in(4) ? values.any<std::int32_t>() : values.between_32(-1, 16);
-    };
+    const auto number = [&] { return values.any_or(4, -1, 16); };
     for (int i = 0; i < 30; ++i) {
-      const std::int32_t material = values.one_in(4) ? values.any<std::int32_t>() : values.between_32(0, 3);
+      const std::int32_t material = values.any_or(4, 0, 3);
       const thimble_box_t box = {{number(), number(), number()}, {number(), number(), number()}};
       check(thimble_octree_insert(odd.handle(&things.octree), number(), number(), number(), material), odd);
       check(thimble_octree_erase(odd.handle(&things.octree), number(), number(), number()), odd);
@@ -433,15 +427,9 @@ TEST_CASE("misuse: C face, octrees and particles with any numbers -> a status, a
     REQUIRE(thimble_particles_make(&things.particles, &things.config, again.span().data, again.span().size) ==
             THIMBLE_OK);
     for (int i = 0; i < 12; ++i) {
-      const auto cell = [&] {
-        return values.one_in(3) ? values.any<std::int32_t>() : values.between_32(-9, 70);
-      };
-      const auto speed = [&] {
-        return values.one_in(3) ? values.any<std::int32_t>() : values.between_32(-99999, 99999);
-      };
-      const auto cell_q16 = [&] {
-        return values.one_in(4) ? values.any<std::int32_t>() : values.between_32(-(9 << 16), 70 << 16);
-      };
+      const auto cell = [&] { return values.any_or(3, -9, 70); };
+      const auto speed = [&] { return values.any_or(3, -99999, 99999); };
+      const auto cell_q16 = [&] { return values.any_or(4, -(9 << 16), 70 << 16); };
       std::int32_t id = 0;
       thimble_particle_t particle;
       check(thimble_particles_add(odd.handle(&things.particles), cell_q16(), cell_q16(), speed(), speed(),

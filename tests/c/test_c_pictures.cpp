@@ -39,11 +39,15 @@ std::vector<std::int32_t> formats() {
   return all;
 }
 
-thimble_scene_t open(const CWorld& world) {
-  thimble_scene_t scene = {};
-  REQUIRE(thimble_scene_open(&scene, world.bytes().data, world.bytes().size) == THIMBLE_OK);
-  return scene;
-}
+// The octree of C, filled as that of C++ is.
+struct COctree {
+  COctree() : pool(thimble_octree_bytes(20000)) {
+    REQUIRE(thimble_octree_make(&octree, kWorldLevel, pool.data(), pool.size()) == THIMBLE_OK);
+    CWorld::fill(octree, 0);
+  }
+  std::vector<std::uint8_t> pool;
+  thimble_octree_t octree = {};
+};
 
 // The picture in bands of some rows, the last one lower, from the bottom up. `draw(band)` is a C function's status.
 template <class Draw>
@@ -158,13 +162,10 @@ void check_hit(const thimble_hit_t& told, const Ray& ray, const Hit& hit) {
 
 TEST_CASE("C face: scene, tree and octree in every format, mode and projection -> the bytes of C++") {
   const CWorld world;
-  const thimble_scene_t scene = open(world);
+  const thimble_scene_t scene = world.opened();
   thimble_tree_t tree = {};
   REQUIRE(thimble_scene_tree(&scene, &tree) == THIMBLE_OK);
-  std::vector<std::uint8_t> pool(thimble_octree_bytes(20000));
-  thimble_octree_t octree = {};
-  REQUIRE(thimble_octree_make(&octree, kWorldLevel, pool.data(), pool.size()) == THIMBLE_OK);
-  CWorld::fill(octree, 0);
+  const COctree filled;
   REQUIRE(formats().size() == std::size_t{kPixelFormats});
   for (const Look& look : looks(world, scene)) {
     for (const std::int32_t format : formats()) {
@@ -182,7 +183,7 @@ TEST_CASE("C face: scene, tree and octree in every format, mode and projection -
       };
       CHECK(draws([&](auto... rest) { return thimble_scene_render(&scene, rest...); }));
       CHECK(draws([&](auto... rest) { return thimble_tree_render(&tree, rest...); }));
-      CHECK(draws([&](auto... rest) { return thimble_octree_render(&octree, rest...); }));
+      CHECK(draws([&](auto... rest) { return thimble_octree_render(&filled.octree, rest...); }));
       thimble_bricks_t bricks;
       REQUIRE(thimble_scene_bricks(&scene, &bricks) == THIMBLE_OK);
       CHECK(draws([&](auto... rest) { return thimble_scene_render_fast(&scene, &bricks, rest...); }));
@@ -212,9 +213,9 @@ TEST_CASE("C face: another scene's brick map -> damaged; none in the scene -> da
   const CWorld world;
   const CWorld other(1);
   const CWorld bare(0, false);
-  const thimble_scene_t scene = open(world);
-  const thimble_scene_t other_scene = open(other);
-  const thimble_scene_t bare_scene = open(bare);
+  const thimble_scene_t scene = world.opened();
+  const thimble_scene_t other_scene = other.opened();
+  const thimble_scene_t bare_scene = bare.opened();
   thimble_bricks_t bricks = {};
   CHECK(thimble_scene_bricks(&bare_scene, &bricks) == THIMBLE_DAMAGED);
   CHECK(bricks.opaque[0] == 0);
@@ -229,7 +230,7 @@ TEST_CASE("C face: another scene's brick map -> damaged; none in the scene -> da
 TEST_CASE(
     "C face: bands that are too small, outside the picture, with gaps -> what C++ says, byte for byte") {
   const CWorld world;
-  const thimble_scene_t scene = open(world);
+  const thimble_scene_t scene = world.opened();
   const Look look = looks(world, scene)[2];
   std::mt19937 random(7);
   int drawn = 0;
@@ -254,7 +255,7 @@ TEST_CASE(
 
 TEST_CASE("C face: the rays of every pixel, and what is under it -> those of C++") {
   const CWorld world;
-  const thimble_scene_t scene = open(world);
+  const thimble_scene_t scene = world.opened();
   int hits = 0;
   for (const Look& look : looks(world, scene)) {
     std::int32_t width = 0;
@@ -291,13 +292,10 @@ TEST_CASE("C face: the rays of every pixel, and what is under it -> those of C++
 
 TEST_CASE("C face: rays from anywhere, with and without a limit of visits -> the hits of C++") {
   const CWorld world;
-  const thimble_scene_t scene = open(world);
+  const thimble_scene_t scene = world.opened();
   thimble_tree_t tree = {};
   REQUIRE(thimble_scene_tree(&scene, &tree) == THIMBLE_OK);
-  std::vector<std::uint8_t> pool(thimble_octree_bytes(20000));
-  thimble_octree_t octree = {};
-  REQUIRE(thimble_octree_make(&octree, kWorldLevel, pool.data(), pool.size()) == THIMBLE_OK);
-  CWorld::fill(octree, 0);
+  const COctree filled;
   std::mt19937 random(11);
   const auto between = [&](std::int32_t low, std::int32_t high) {
     return low + static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(high - low + 1));
@@ -330,7 +328,7 @@ TEST_CASE("C face: rays from anywhere, with and without a limit of visits -> the
     REQUIRE(thimble_tree_trace(&tree, &c_ray, limit, &told) == THIMBLE_OK);
     check_hit(told, ray, hit);
     REQUIRE(closest_hit(world.octree, ray, &pool_hit, {limit, Width::kAuto}) == Status::kOk);
-    REQUIRE(thimble_octree_trace(&octree, &c_ray, limit, &told) == THIMBLE_OK);
+    REQUIRE(thimble_octree_trace(&filled.octree, &c_ray, limit, &told) == THIMBLE_OK);
     check_hit(told, ray, pool_hit);
   }
   CHECK(kinds[THIMBLE_MISS] > 50);
@@ -341,7 +339,7 @@ TEST_CASE("C face: rays from anywhere, with and without a limit of visits -> the
 
 TEST_CASE("C face: every effect alone and many together -> the lit bytes of C++") {
   const CWorld world;
-  const thimble_scene_t scene = open(world);
+  const thimble_scene_t scene = world.opened();
   thimble_light_t light = {};
   REQUIRE(thimble_scene_light(&scene, &light) == THIMBLE_OK);
   CHECK(thimble_light_effects(&light) == world.lighting.effects);
@@ -368,7 +366,7 @@ TEST_CASE("C face: every effect alone and many together -> the lit bytes of C++"
 
 TEST_CASE("C face: compiled for a set of effects -> the same bytes for that set, other sets are refused") {
   const CWorld world;
-  const thimble_scene_t scene = open(world);
+  const thimble_scene_t scene = world.opened();
   thimble_light_t light = {};
   REQUIRE(thimble_scene_light(&scene, &light) == THIMBLE_OK);
   const Look look = looks(world, scene)[2];
@@ -397,7 +395,7 @@ TEST_CASE("C face: compiled for a set of effects -> the same bytes for that set,
 
 TEST_CASE("C face: a frame that is refined -> the picture of C++ after every step, the exact one at last") {
   const CWorld world;
-  const thimble_scene_t scene = open(world);
+  const thimble_scene_t scene = world.opened();
   thimble_tree_t tree = {};
   REQUIRE(thimble_scene_tree(&scene, &tree) == THIMBLE_OK);
   const Look look = looks(world, scene)[2];
