@@ -15,7 +15,6 @@
 #include "scene/scene_source.h"
 #include "support/scene_under_test.h"
 #include "thimble/trace/ray.h"
-#include "thimble/tree/dense_grid.h"
 
 namespace {
 
@@ -24,50 +23,56 @@ using namespace thimble;
 constexpr int kLevel = 6;
 const VoxelBox kBox{{10, 20, 5}, {50, 44, 37}};
 
-// The box's eight corners, some voxels each.
-class Corners {
- public:
-  Corners() : bytes_(dense_grid_bytes({1 << kLevel, 1 << kLevel, 1 << kLevel})) {
-    REQUIRE(DenseGrid::make({1 << kLevel, 1 << kLevel, 1 << kLevel}, Bytes(bytes_.data(), bytes_.size()),
-                            &grid_) == Status::kOk);
-    constexpr int kSide = 4;  // voxels that pixels cannot miss
-    for (int i = 0; i < 8 * kSide * kSide * kSide; ++i) {
-      Vec3i at;
-      int rest = i;
-      for (int axis = 0; axis < 3; ++axis, rest /= 2 * kSide) {
-        const int step = rest % (2 * kSide);
-        at[axis] = step < kSide ? kBox.low[axis] + step : kBox.high[axis] - 1 - (step - kSide);
-      }
-      REQUIRE(grid_.set(at) == Status::kOk);
-    }
-  }
-
-  // How far out from the picture's middle hits go, of the way to its edge, on the axis where they go
-  // farthest.
-  double reach(const Camera& camera) const {
-    double farthest = 0;
-    for (std::int32_t y = 0; y < camera.height_px(); ++y) {
-      for (std::int32_t x = 0; x < camera.width_px(); ++x) {
-        Hit hit;
-        REQUIRE(closest_hit(grid_, camera.ray(x, y), &hit) == Status::kOk);
-        if (hit.kind == HitKind::kHit) {
-          farthest = std::max({farthest, std::abs(2 * x + 1 - camera.width_px()) / (1.0 * camera.width_px()),
-                               std::abs(2 * y + 1 - camera.height_px()) / (1.0 * camera.height_px())});
-        }
-      }
-    }
-    return farthest;
-  }
-
- private:
-  std::vector<std::uint8_t> bytes_;
-  DenseGrid grid_;
+// A tree in bytes of its own.
+struct Packed {
+  explicit Packed(const Octree& octree)
+      : bytes(tests::compact_of(octree)), tree(tests::open_or_throw(bytes)) {}
+  tests::HeapBytes bytes;
+  CompactTree tree;
 };
+
+// The box's eight corners, some voxels each.
+Packed corners() {
+  tests::OwnedPool pool(kLevel);
+  constexpr int kSide = 4;  // voxels that pixels cannot miss
+  for (int i = 0; i < 8 * kSide * kSide * kSide; ++i) {
+    Vec3i at;
+    int rest = i;
+    for (int axis = 0; axis < 3; ++axis, rest /= 2 * kSide) {
+      const int step = rest % (2 * kSide);
+      at[axis] = step < kSide ? kBox.low[axis] + step : kBox.high[axis] - 1 - (step - kSide);
+    }
+    REQUIRE(pool.octree.insert(at) == Status::kOk);
+  }
+  return Packed(pool.octree);
+}
+
+// Where hits lie on the picture, as parts of its half width and height from the middle.
+struct Reach {
+  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+  double farthest() const { return std::max({-left, right, -top, bottom}); }
+};
+Reach reach_of(const CompactTree& tree, const Camera& camera) {
+  Reach reach;
+  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
+    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
+      Hit hit;
+      REQUIRE(closest_hit(tree, camera.ray(x, y), &hit) == Status::kOk);
+      if (hit.kind == HitKind::kHit) {
+        const double across = (2.0 * x + 1) / camera.width_px() - 1;
+        const double down = (2.0 * y + 1) / camera.height_px() - 1;
+        reach = {std::min(reach.left, across), std::max(reach.right, across), std::min(reach.top, down),
+                 std::max(reach.bottom, down)};
+      }
+    }
+  }
+  return reach;
+}
 
 }  // namespace
 
 TEST_CASE("framing: any side, shape and projection -> the box fills as much of the picture as was wished") {
-  const Corners corners;
+  const Packed world = corners();
   for (const tools::Real3& forward :
        {tools::kDefaultForward, tools::Real3{1, 0, 0}, tools::Real3{-3, 2, 9}, tools::Real3{0, 0, -1}}) {
     for (const double fill : {0.5, tools::kDefaultFill}) {
@@ -87,7 +92,7 @@ TEST_CASE("framing: any side, shape and projection -> the box fills as much of t
           CAPTURE(tall);
           CHECK(framing.note.empty());
           CHECK(framing.kept.is_perspective == !orthographic);
-          const double reach = corners.reach(framing.camera);
+          const double reach = reach_of(world.tree, framing.camera).farthest();
           CHECK(reach <= fill + 0.001);
           CHECK(reach >= fill - 0.06);  // less than three pixels
         }
@@ -123,48 +128,18 @@ TEST_CASE("framing: too near to see all -> a note; a direction of nothing -> a s
 namespace {
 
 // A staircase of balls: nothing of it is near the corners of its box.
-class Balls {
- public:
-  Balls() {
-    tests::OwnedPool pool(kLevel);
-    for (const Vec3i& center : {Vec3i{16, 14, 12}, Vec3i{36, 30, 26}, Vec3i{48, 20, 44}}) {
-      for (int i = 0; i < 17 * 17 * 17; ++i) {
-        const Vec3i off{i % 17 - 8, i / 17 % 17 - 8, i / 289 - 8};
-        if (off.x * off.x + off.y * off.y + off.z * off.z <= 64) {
-          const Vec3i at{center.x + off.x, center.y + off.y, center.z + off.z};
-          REQUIRE(pool.octree.insert(at) == Status::kOk);
-        }
-      }
-    }
-    bytes_ = tests::compact_of(pool.octree);
-    tree_ = tests::open_or_throw(bytes_);
-  }
-  const CompactTree& tree() const { return tree_; }
-
- private:
-  tests::HeapBytes bytes_{0};
-  CompactTree tree_;
-};
-
-// Where hits lie on the picture, as parts of its half width and height from the middle.
-struct Reach {
-  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
-};
-Reach reach_of(const CompactTree& tree, const Camera& camera) {
-  Reach reach;
-  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
-    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
-      Hit hit;
-      REQUIRE(closest_hit(tree, camera.ray(x, y), &hit) == Status::kOk);
-      if (hit.kind == HitKind::kHit) {
-        const double across = (2.0 * x + 1) / camera.width_px() - 1;
-        const double down = (2.0 * y + 1) / camera.height_px() - 1;
-        reach = {std::min(reach.left, across), std::max(reach.right, across), std::min(reach.top, down),
-                 std::max(reach.bottom, down)};
+Packed balls() {
+  tests::OwnedPool pool(kLevel);
+  for (const Vec3i& center : {Vec3i{16, 14, 12}, Vec3i{36, 30, 26}, Vec3i{48, 20, 44}}) {
+    for (int i = 0; i < 17 * 17 * 17; ++i) {
+      const Vec3i off{i % 17 - 8, i / 17 % 17 - 8, i / 289 - 8};
+      if (off.x * off.x + off.y * off.y + off.z * off.z <= 64) {
+        const Vec3i at{center.x + off.x, center.y + off.y, center.z + off.z};
+        REQUIRE(pool.octree.insert(at) == Status::kOk);
       }
     }
   }
-  return reach;
+  return Packed(pool.octree);
 }
 
 constexpr tools::NamedView kSides[] = {
@@ -188,8 +163,8 @@ TEST_CASE(
                     {any_place(level) & inside, any_place(level) & inside, any_place(level) & inside}, block,
                     0) == Status::kOk);
       }
-      const tests::HeapBytes bytes = tests::compact_of(pool.octree);
-      const CompactTree tree = tests::open_or_throw(bytes);
+      const Packed packed(pool.octree);
+      const CompactTree& tree = packed.tree;
       std::uint32_t number = tree.node_count();
       tools::walk_blocks(tree, [&](const Vec3i& corner, int of, std::uint8_t) {
         CHECK((of != 0 || tools::corner_of(tree, number++) == corner));
@@ -219,8 +194,8 @@ TEST_CASE(
 }
 
 TEST_CASE("framing: every named view and shape -> what is occupied fills 90 % of the tighter side, centred") {
-  const Balls balls;
-  const tools::SceneShape shape = tools::shape_of(balls.tree());
+  const Packed world = balls();
+  const tools::SceneShape shape = tools::shape_of(world.tree);
   for (const tools::NamedView side : kSides) {
     for (const bool orthographic : {false, true}) {
       for (const bool tall : {false, true}) {
@@ -236,7 +211,7 @@ TEST_CASE("framing: every named view and shape -> what is occupied fills 90 % of
           CAPTURE(orthographic);
           CAPTURE(tall);
           CAPTURE(turn);
-          const Reach reach = reach_of(balls.tree(), tools::frame_shape(wishes, shape).camera);
+          const Reach reach = reach_of(world.tree, tools::frame_shape(wishes, shape).camera);
           const double across = (reach.right - reach.left) / 2;
           const double down = (reach.bottom - reach.top) / 2;
           CHECK(std::max(across, down) <= tools::kPictureFill + 0.001);
@@ -250,8 +225,8 @@ TEST_CASE("framing: every named view and shape -> what is occupied fills 90 % of
 }
 
 TEST_CASE("framing: front looks along +y, left along +x, top down with the front below; turns add up") {
-  const Balls balls;
-  const tools::SceneShape shape = tools::shape_of(balls.tree());
+  const Packed world = balls();
+  const tools::SceneShape shape = tools::shape_of(world.tree);
   const auto forward = [&](tools::NamedView side, double turn, double tilt) {
     tools::ViewWishes wishes;
     wishes.side = side;
@@ -283,8 +258,8 @@ TEST_CASE("framing: best, iso -> the side with the many colours, from the front 
       const bool on_side = axis >= 0 && at[axis] == (high ? 23 : 8);
       REQUIRE(octree.insert(at, static_cast<std::uint8_t>(on_side ? 1 + i % 200 : 0)) == Status::kOk);
     }
-    const tests::HeapBytes bytes = tests::compact_of(octree);
-    const CompactTree tree = tests::open_or_throw(bytes);
+    const Packed packed(octree);
+    const CompactTree& tree = packed.tree;
     return tools::best_angles(tools::shape_of(tree), view);
   };
   const auto plain = painted(-1, false);
@@ -312,8 +287,8 @@ TEST_CASE("framing: best of one material -> from the front, though the back has 
         REQUIRE(octree.insert({8 + i % 16, y, 8 + i / 16}, of_back) == Status::kOk);
       }
     }
-    const tests::HeapBytes bytes = tests::compact_of(octree);
-    const CompactTree tree = tests::open_or_throw(bytes);
+    const Packed packed(octree);
+    const CompactTree& tree = packed.tree;
     CHECK((std::abs(tools::best_angles(tools::shape_of(tree)).turn) > 90) == (of_back != 0));
   }
 }
@@ -328,8 +303,8 @@ TEST_CASE(
     REQUIRE(octree.insert({i, 20, 4}, 0) == Status::kOk);
     REQUIRE(octree.insert({2, 20, 2 + i / 2}, 0) == Status::kOk);
   }
-  const tests::HeapBytes bytes = tests::compact_of(octree);
-  const CompactTree tree = tests::open_or_throw(bytes);
+  const Packed packed(octree);
+  const CompactTree& tree = packed.tree;
   const tools::SceneShape shape = tools::shape_of(tree);
   tools::SceneArguments arguments;
   arguments.scene = "points:1,depth=5";
@@ -368,8 +343,8 @@ TEST_CASE(
 }
 
 TEST_CASE("framing: a turn of pictures -> one eye's distance, evenly round, everything in every picture") {
-  const Balls balls;
-  const tools::SceneShape shape = tools::shape_of(balls.tree());
+  const Packed world = balls();
+  const tools::SceneShape shape = tools::shape_of(world.tree);
   tools::ViewWishes wishes;
   wishes.side = tools::NamedView::kBest;
   wishes.width_px = 120;
@@ -379,8 +354,7 @@ TEST_CASE("framing: a turn of pictures -> one eye's distance, evenly round, ever
   REQUIRE(turns.size() == 8);
   double widest = 0;
   for (const tools::Framing& framing : turns) {
-    const Reach reach = reach_of(balls.tree(), framing.camera);
-    widest = std::max({widest, -reach.left, reach.right, -reach.top, reach.bottom});
+    widest = std::max(widest, reach_of(world.tree, framing.camera).farthest());
     CHECK(framing.kept.eye.z == turns[0].kept.eye.z);
   }
   CHECK(widest <= tools::kPictureFill + 0.001);
@@ -394,8 +368,8 @@ TEST_CASE("framing: nothing occupied, one voxel, a whole world -> a camera all t
     for (int i = 0; i < voxels; ++i) {
       REQUIRE(octree.insert({i % 4, i / 4 % 4, i / 16}) == Status::kOk);
     }
-    const tests::HeapBytes bytes = tests::compact_of(octree);
-    const CompactTree tree = tests::open_or_throw(bytes);
+    const Packed packed(octree);
+    const CompactTree& tree = packed.tree;
     for (const tools::NamedView side : kSides) {
       for (const bool orthographic : {false, true}) {
         tools::ViewWishes wishes;
