@@ -50,20 +50,6 @@ TEST_CASE(
   }
 }
 
-template <class Test>
-void with_panel(ColorModel::Kind kind, const Test& test) {
-  if (kind == ColorModel::Kind::kSt7735) {
-    St7735 panel;
-    test(panel);
-  } else if (kind == ColorModel::Kind::kSt7789) {
-    St7789 panel;
-    test(panel);
-  } else {
-    Ili9341 panel;
-    test(panel);
-  }
-}
-
 // A picture in a format, and what is seen of it before a glass that is turned back.
 struct Picture {
   int width;
@@ -131,7 +117,7 @@ TEST_CASE(
         const bool has =
             format == PixelFormat::kRgb565Be || (module.kind != ColorModel::Kind::kIli9341 && width % 2 == 0);
         ColorModel model(module.kind, glass_of(module.geometry));
-        with_panel(module.kind, [&](auto& panel) {
+        tests::with_panel<St7735, St7789, Ili9341>(module.kind, [&](auto& panel) {
           REQUIRE(panel.begin(model.spi(), module.geometry, format, rotation) == has);
           if (!has) {
             return;

@@ -60,21 +60,6 @@ const Module kModules[] = {
     {PageModel::Kind::kSt7567, {128, 64}, 0},
 };
 
-// Calls test(panel) with the driver of that module.
-template <class Test>
-void with_panel(PageModel::Kind kind, const Test& test) {
-  if (kind == PageModel::Kind::kSsd1306) {
-    Ssd1306 panel;
-    test(panel);
-  } else if (kind == PageModel::Kind::kSh1106) {
-    Sh1106 panel;
-    test(panel);
-  } else {
-    St7567 panel;
-    test(panel);
-  }
-}
-
 TEST_CASE("page panels: set-up, bands in any order, both rotations -> what is seen is the picture") {
   for (const Module& module : kModules) {
     for (const Rotation rotation : {Rotation::kNone, Rotation::k180}) {
@@ -84,7 +69,7 @@ TEST_CASE("page panels: set-up, bands in any order, both rotations -> what is se
       const int height = module.geometry.height_px;
       PageModel model(module.kind, width, height, module.first_column);
       Picture picture(width, height, 7);
-      with_panel(module.kind, [&](auto& panel) {
+      tests::with_panel<Ssd1306, Sh1106, St7567>(module.kind, [&](auto& panel) {
         REQUIRE(panel.begin(model.spi(), module.geometry, rotation));
         CHECK(model.is_on());
         CHECK(model.picture() == std::vector<bool>(static_cast<std::size_t>(width * height)));  // cleared

@@ -143,4 +143,16 @@ class ColorModel final : public PanelModel {
   std::uint64_t woke_at_ = 0;
 };
 
+/// Calls test(panel) with a new driver of that number among the panels.
+template <class... Panels, class Kind, class Test>
+void with_panel(Kind kind, const Test& test) {
+  int number = 0;
+  const auto with = [&](auto panel) {
+    if (number++ == static_cast<int>(kind)) {
+      test(panel);
+    }
+  };
+  (with(Panels()), ...);
+}
+
 }  // namespace thimble::tests
