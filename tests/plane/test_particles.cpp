@@ -95,12 +95,7 @@ TEST_CASE("particles: worlds of every kind -> field, discs and sleepers are righ
 TEST_CASE("particles: 5,000 cells a step -> nothing comes through a wall of one cell") {
   for (const bool upright : {true, false}) {
     for (const double speed : {50.0, 500.0, 5000.0}) {
-      ParticleConfig config;
-      config.width = 800;
-      config.height = 600;
-      config.capacity = 40;
-      config.least_diameter = 1;
-      config.gravity_q16 = {0, 0};
+      ParticleConfig config = weightless(800, 600, 40);
       config.restitution_q16 = 65536;
       ShadowedWorld shadow(config);
       shadow.draw_box(upright ? CellBox{{400, 0}, {401, 600}} : CellBox{{0, 300}, {800, 301}});
@@ -221,16 +216,11 @@ TEST_CASE(
   std::mt19937 random(5);
   int collisions = 0;
   for (int number = 0; number < 20000 / kShare; ++number) {
-    ParticleConfig config;
-    config.width = 60;
-    config.height = 60;
-    config.capacity = 2;
-    config.gravity_q16 = {0, 0};
+    ParticleConfig config = weightless(60, 60, 2);
     config.most_diameter = 16;
     config.restitution_q16 = number % 2 == 0 ? 65536 : static_cast<std::uint32_t>(random() % 65537);
-    std::vector<std::uint8_t> bytes(particles_bytes(config));
-    ParticleWorld world;
-    REQUIRE(ParticleWorld::make(config, {bytes.data(), bytes.size()}, &world) == Status::kOk);
+    OwnedParticles owned(config);
+    ParticleWorld& world = owned.world;
     const auto in = [&](std::int32_t low, std::int32_t high) {
       return low + static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(high - low + 1));
     };

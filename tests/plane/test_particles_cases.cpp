@@ -10,14 +10,6 @@
 namespace thimble::tools {
 namespace {
 
-ParticleConfig box(std::int32_t width, std::int32_t height, std::uint32_t capacity) {
-  ParticleConfig config;
-  config.width = width;
-  config.height = height;
-  config.capacity = capacity;
-  return config;
-}
-
 void run(ShadowedWorld& shadow, int steps) {
   for (int step = 0; step < steps; ++step) {
     shadow.world.step();
@@ -32,7 +24,7 @@ Particle ball_of(const ShadowedWorld& shadow, std::uint32_t id) {
 }
 
 TEST_CASE("particles: spawn into a full place -> a status, and nothing has changed") {
-  ShadowedWorld shadow(box(100, 60, 20));
+  ShadowedWorld shadow(weightless(100, 60, 20));
   REQUIRE(shadow.world.spawn(q16(30), q16(30), 0, 0, 9, nullptr) == Status::kOk);
   shadow.draw_box({{60, 20}, {70, 40}});
   const std::uint32_t crc = shadow.world.state_crc32();
@@ -47,8 +39,7 @@ TEST_CASE("particles: spawn into a full place -> a status, and nothing has chang
   CHECK(shadow.world.count() == 1);
   CHECK(shadow.fault() == "");
   // Random places: the last free cells are found, then there are none.
-  ParticleConfig config = box(20, 20, 500);
-  config.least_diameter = 1;
+  ParticleConfig config = weightless(20, 20, 500);
   config.most_diameter = 1;
   ShadowedWorld cells(config);
   CHECK(cells.fill(500, 0) == 400);
@@ -59,7 +50,7 @@ TEST_CASE("particles: spawn into a full place -> a status, and nothing has chang
 }
 
 TEST_CASE("particles: held for long under gravity, let go without -> moves for ever") {
-  ParticleConfig config = box(400, 60, 1);
+  ParticleConfig config = weightless(400, 60, 1);
   config.restitution_q16 = 65536;
   config.gravity_q16 = {0, 32768};
   ShadowedWorld shadow(config);
@@ -76,8 +67,7 @@ TEST_CASE("particles: held for long under gravity, let go without -> moves for e
 }
 
 TEST_CASE("particles: a level wall, an upright wall and a slope -> mirror the way exactly, and nearly") {
-  ParticleConfig config = box(200, 200, 1);
-  config.gravity_q16 = {0, 0};
+  ParticleConfig config = weightless(200, 200, 1);
   config.restitution_q16 = 65536;
   for (std::int32_t diameter = 2; diameter <= 12; ++diameter) {
     ShadowedWorld level(config);

@@ -88,10 +88,7 @@ TEST_CASE("particles edges: a ball that is taken away while it is dragged -> the
 // 200, and the other never does.
 TEST_CASE("particles edges: a ball on one that a pointer stirs -> asleep after 200 steps in its hollow") {
   for (const std::int32_t width : {8, 9, 10}) {
-    ParticleConfig config;
-    config.width = width;
-    config.height = 80;
-    config.capacity = 2;
+    ParticleConfig config = weightless(width, 80, 2);
     config.most_diameter = 8;
     config.restitution_q16 = 0;
     config.gravity_q16 = {0, 6554};

@@ -25,9 +25,7 @@ Vec2i speed_after(PointerMode mode, Vec2i place, Vec2i at, std::int32_t radius, 
   }
   exact.world.set_pointer(mode, at, radius, strength_q16);
   exact.world.step();
-  Particle ball;
-  REQUIRE(exact.world.particle(id, &ball));
-  return {ball.vx_q16, ball.vy_q16};
+  return {exact.ball(id).vx_q16, exact.ball(id).vy_q16};
 }
 
 // The rule of pull_balls in real numbers: 4 * strength * distance * (radius - distance) / radius^2 towards the pointer,
