@@ -96,36 +96,6 @@ void find_point(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FaceP
   find_place(course, d, point);
 }
 
-// Whether the ray from where a ray of the camera has landed, `point` on its face, towards a light meets something solid.
-// It starts from the counts of the camera's ray: on axes on which the two go opposite ways they count from the other side.
-template <bool kDeep>
-bool is_shadowed(const ShadowCourse<kDeep>& light, const SightCourse<kDeep>& course, const FacePoint& point) {
-  const Landing& landing = course.landing;
-  ShadowStart start{landing.left, landing.cell, landing.voxel & 63U, {}};
-  const unsigned differ = light.mirrored ^ course.mirrored;
-#pragma GCC unroll(kDivides ? 3 : 1)
-  for (int i = 0; i < 3; ++i) {
-    if ((differ >> i & 1U) != 0) {
-      const uint32_t both = 1023 - static_cast<uint32_t>(light.cells[i] >> 2);
-      start.left += (both - 2 * count_of(landing.left, i)) << 10 * i;
-    }
-    const auto in = static_cast<uint32_t>(point.within[i]);
-    start.within[i] = light.goes_down(i) && in != 0 ? 256 - in : in;
-    // Goes to the next voxel: across the face, or where a ray that goes down starts on a plane.
-    if (i == point.axis || (in == 0 && light.goes_down(i))) {
-      const uint32_t field = 3U << 2 * i;
-      if ((start.place & field) == (light.goes_down(i) ? 0 : field)) {
-        start.place ^= field;
-        start.cell += light.next_brick[i];
-        start.left += 1U << 10 * i;
-      } else {
-        start.place += light.goes_down(i) ? 0U - (1U << 2 * i) : 1U << 2 * i;
-      }
-    }
-  }
-  return (start.left & kLeft) == 0 && is_shadowed(light, start);
-}
-
 template <int kC, class OneCourse>
 [[gnu::noinline]] int32_t sight_along(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
   return BrickRay<kC, kAnySigns, OneCourse>(course, d_a, d_b, d_c).trace();
