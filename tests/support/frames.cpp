@@ -89,12 +89,7 @@ Status draw_anytime(const Engine& /*engine*/, Subject& subject, const FrameCase&
 Status draw_wide_band(const Engine& engine, Subject& subject, const FrameCase& frame, Random& random,
                       const Band& band, RenderCounts* counts) {
   wide::use_instruction_set(engine.number);
-  const wide::Options options = random_options(random);
-  const HeapBytes workspace(wide::workspace_bytes(frame.camera.width_px(), band.rows, thread_count(options)));
-  std::memset(workspace.span().data, 0xA5,
-              workspace.span().size);  // a frame reads nothing that it did not write
-  return wide::render(subject.scene().lists(), frame.camera, frame.shading, band, workspace.span(), counts,
-                      options);
+  return render_wide(subject.scene(), frame, band, random_options(random), counts);
 }
 Status draw_by_kernels(const Engine& engine, Subject& subject, const FrameCase& frame, Random& /*random*/,
                        const Band& band, RenderCounts* counts) {
@@ -279,20 +274,15 @@ Status draw_in_bands(const Engine& engine, Subject& subject, const FrameCase& fr
 }  // namespace
 
 const BrickMap& Subject::map() {
-  if (map_bytes_ == nullptr) {
-    map_bytes_ = std::make_unique<HeapBytes>(std::min(most_brick_map_bytes(tree()), std::size_t{1} << 23));
-    (void)BrickMap::make(tree(), map_bytes_->span(), &map_);
+  if (map_ == nullptr) {
+    map_ = std::make_unique<OwnedMap>(tree(), std::min(most_brick_map_bytes(tree()), std::size_t{1} << 23));
   }
-  return map_;
+  return map_->map;
 }
 const SharedTree* Subject::shared() {
   if (shared_bytes_ == nullptr && tree().node_count() < 50000) {
-    const CompactShape shape{tree().level(),      kDefaultRankShift,       tree().node_count(),
-                             tree().node_count(), 8 * tree().node_count(), tree().many_materials(),
-                             tree().merged()};
-    const HeapBytes work(shared_work_bytes(tree().node_count()));
-    shared_bytes_ = std::make_unique<HeapBytes>(shared_tree_bytes(shape));
-    REQUIRE(SharedTree::make(tree(), shared_bytes_->span(), work.span(), &shared_) == Status::kOk);
+    shared_bytes_ = std::make_unique<HeapBytes>(shared_of(tree()));
+    REQUIRE(SharedTree::open(shared_bytes_->view(), &shared_) == Status::kOk);
   }
   return shared_bytes_ == nullptr ? nullptr : &shared_;
 }

@@ -30,10 +30,9 @@ class Subject {
 
  private:
   WideScene scene_;
-  std::unique_ptr<HeapBytes> map_bytes_;
+  std::unique_ptr<OwnedMap> map_;
   std::unique_ptr<HeapBytes> shared_bytes_;
   std::unique_ptr<gpu::SceneWords> words_;
-  BrickMap map_;
   SharedTree shared_;
 };
 

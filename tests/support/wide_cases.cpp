@@ -263,30 +263,24 @@ int thread_count(const wide::Options& options) {
   return options.threads == nullptr ? 1 : options.threads->count();
 }
 
-std::optional<std::vector<std::uint8_t>> draw_wide(const WideScene& scene, const FrameCase& frame,
-                                                   const wide::Options& options, std::uint64_t* hits,
-                                                   wide::Stats* stats) {
-  const HeapBytes pixels(band_size(frame));
-  std::memset(pixels.span().data, 0xA5, pixels.span().size);
-  const HeapBytes workspace(
-      wide::workspace_bytes(frame.camera.width_px(), frame.band.rows, thread_count(options)));
+Status render_wide(const WideScene& scene, const FrameCase& frame, const Band& band,
+                   const wide::Options& options, RenderCounts* counts) {
+  const HeapBytes workspace(wide::workspace_bytes(frame.camera.width_px(), band.rows, thread_count(options)));
   std::memset(workspace.span().data, 0xA5,
               workspace.span().size);  // a frame reads nothing that it did not write
+  return wide::render(scene.lists(), frame.camera, frame.shading, band, workspace.span(), counts, options);
+}
+
+std::optional<std::vector<std::uint8_t>> draw_wide(const WideScene& scene, const FrameCase& frame,
+                                                   const wide::Options& options, std::uint64_t* hits) {
+  std::vector<std::uint8_t> pixels(band_size(frame), 0xA5);
   Band band = frame.band;
-  band.pixels = pixels.span();
+  band.pixels = Bytes(pixels.data(), pixels.size());
   RenderCounts counts;
-  const Status status = wide::render(scene.lists(), frame.camera, frame.shading, band, workspace.span(),
-                                     &counts, options, stats);
-  if (hits != nullptr) {
-    *hits = counts.hits;
-  }
-  const std::vector<std::uint8_t> drawn(band.pixels.data, band.pixels.data + band.pixels.size);
-  if (status == Status::kTooFine) {
-    CHECK(std::all_of(drawn.begin(), drawn.end(), [](std::uint8_t byte) { return byte == 0xA5; }));
-    return std::nullopt;
-  }
-  CHECK(status == Status::kOk);
-  return drawn;
+  const Status status = render_wide(scene, frame, band, options, &counts);
+  CHECK((status == Status::kOk || status == Status::kTooFine));
+  *hits = counts.hits;
+  return status == Status::kOk ? std::optional(pixels) : std::nullopt;
 }
 
 std::vector<std::uint8_t> draw_core(const WideScene& scene, const FrameCase& frame, std::uint64_t* hits) {

@@ -57,11 +57,12 @@ bool random_frame(std::mt19937_64& random, const WideScene& scene, FrameCase* fr
 void set_depth_range(const WideScene& scene, FrameCase* frame);
 std::size_t band_size(const FrameCase& frame);
 
+// As wide::render, with a workspace of just enough bytes, which were used before.
+Status render_wide(const WideScene& scene, const FrameCase& frame, const Band& band,
+                   const wide::Options& options, RenderCounts* counts);
 // The band by the wide renderer; nothing where it leaves the frame to the core.
 std::optional<std::vector<std::uint8_t>> draw_wide(const WideScene& scene, const FrameCase& frame,
-                                                   const wide::Options& options,
-                                                   std::uint64_t* hits = nullptr,
-                                                   wide::Stats* stats = nullptr);
+                                                   const wide::Options& options, std::uint64_t* hits);
 std::vector<std::uint8_t> draw_core(const WideScene& scene, const FrameCase& frame, std::uint64_t* hits);
 
 // Kept from frame to frame, as programs that draw films do.

@@ -113,7 +113,8 @@ TEST_CASE("wide: damaged trees -> refused, or some picture within the bytes") {
     }
     FrameCase frame;
     if (random_frame(random, scene, &frame)) {
-      (void)draw_wide(scene, frame, random_options(random));
+      std::uint64_t hits = 0;
+      (void)draw_wide(scene, frame, random_options(random), &hits);
       ++drawn;
     }
   }
