@@ -49,10 +49,7 @@ struct SunnyWorld {
   }
   /// By the map and what is proven; by the tree alone, its bytes made anew.
   void compare(const Camera& camera) const {
-    std::size_t size = 0;
-    REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
-    HeapBytes fresh(size);
-    REQUIRE(world.pack(fresh.span()) == Status::kOk);
+    const HeapBytes fresh = packed(world);
     REQUIRE(draw(world.tree(), &world.map(), camera) == draw(open_or_throw(fresh), nullptr, camera));
   }
 

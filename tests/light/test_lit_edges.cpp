@@ -192,8 +192,6 @@ TEST_CASE("lit edges: a floor under dark water -> each lamp is dimmed by its own
   CHECK(shade_of(0, true, true) == doctest::Approx(halved(sunlit, 0.25 + 2)).epsilon(0.05));
 }
 
-// ---- water that is touched
-
 // A ray that is stopped counts as one that met nothing more: light that is stopped in dark glass arrives as it entered.
 TEST_CASE(
     "lit edges: light through more cells of dark glass than a ray may visit -> told, and none is taken") {
@@ -227,8 +225,6 @@ TEST_CASE(
   CHECK(bright[1] < bright[0] / 3);
   CHECK(bright[2] == bright[0]);
 }
-
-// ---- what a scene calls for
 
 // ---- paper
 

@@ -16,6 +16,7 @@
 #include "scene/random.h"
 #include "support/baked_demo.h"
 #include "support/counts.h"
+#include "support/scene_under_test.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
@@ -234,10 +235,8 @@ TEST_CASE("demo view: each button -> turns, tilts or comes nearer, within limits
 TEST_CASE(
     "demo view: a scene without a camera, an empty one, a single voxel -> a round of different pictures") {
   for (const VoxelBox& box : {VoxelBox{{0, 0, 0}, {0, 0, 0}}, VoxelBox{{9, 9, 9}, {10, 10, 10}}}) {
-    std::vector<std::uint32_t> pool(200);
-    Octree tree;
-    REQUIRE(Octree::make(5, {reinterpret_cast<std::uint8_t*>(pool.data()), pool.size() * 4}, &tree) ==
-            Status::kOk);
+    tests::OwnedPool pool(5, 100);
+    Octree& tree = pool.octree;
     if (!box.empty()) {
       REQUIRE(tree.insert(box.low, 1) == Status::kOk);
     }

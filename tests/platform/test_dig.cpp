@@ -12,6 +12,7 @@
 #include "port.h"
 #include "scene/random.h"
 #include "support/baked_demo.h"
+#include "support/scene_under_test.h"
 #include "support/simulated_run.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/base/memory.h"
@@ -87,13 +88,9 @@ TEST_CASE(
     CHECK(static_cast<long>(world.tree().voxel_count()) == voxels[static_cast<std::size_t>(bite)]);
     ++bite;
   }
-  std::size_t size = 0;
-  REQUIRE(world.pack({}, &size) == Status::kOutOfMemory);
-  std::vector<std::uint8_t> bytes(size);
-  REQUIRE(world.pack({bytes.data(), size}) == Status::kOk);
-  CompactTree fresh;
-  REQUIRE(CompactTree::validate({bytes.data(), size}) == nullptr);
-  REQUIRE(CompactTree::open({bytes.data(), size}, &fresh) == Status::kOk);
+  const tests::HeapBytes bytes = tests::packed(world);
+  REQUIRE(CompactTree::validate(bytes.view()) == nullptr);
+  const CompactTree fresh = tests::open_or_throw(bytes);
   Camera camera;
   REQUIRE(apps::view_at(apps::orbit_of(scene), fresh, 0, {}, 128, 64, &camera) == Status::kOk);
   std::vector<std::uint8_t> picture(64 * 64);

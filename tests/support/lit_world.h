@@ -7,37 +7,29 @@
 #include <cstdint>
 #include <vector>
 
+#include "support/scene_under_test.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/camera.h"
-#include "thimble/tree/compact_tree.h"
-#include "thimble/tree/octree.h"
 
 namespace thimble::testing {
 
 /// Not to be moved: the tree points into it.
 class LitWorld {
  public:
-  explicit LitWorld(int level = 5, std::uint32_t nodes = 60000) {
-    pool_bytes_.resize(Octree::octree_bytes(nodes));
-    REQUIRE(Octree::make(level, {pool_bytes_.data(), pool_bytes_.size()}, &pool_) == Status::kOk);
-    surfaces.resize(16);
-  }
+  explicit LitWorld(int level = 5, std::uint32_t nodes = 60000) : surfaces(16), pool_(level, nodes) {}
   LitWorld(const LitWorld&) = delete;
   LitWorld& operator=(const LitWorld&) = delete;
 
   void box(const Vec3i& min, const Vec3i& max, int material) {
-    REQUIRE(pool_.insert_box({min, max}, static_cast<std::uint8_t>(material)) == Status::kOk);
+    REQUIRE(pool_.octree.insert_box({min, max}, static_cast<std::uint8_t>(material)) == Status::kOk);
   }
   void voxel(const Vec3i& at, int material) {
-    REQUIRE(pool_.insert(at, static_cast<std::uint8_t>(material)) == Status::kOk);
+    REQUIRE(pool_.octree.insert(at, static_cast<std::uint8_t>(material)) == Status::kOk);
   }
   /// The tree and the scene of what was put in.
   void finish() {
-    tree_bytes_.resize(compact_bytes(compact_shape(pool_)));
-    std::size_t written = 0;
-    REQUIRE(CompactTree::make(pool_, {tree_bytes_.data(), tree_bytes_.size()}, nullptr, &written) ==
-            Status::kOk);
-    REQUIRE(CompactTree::open({tree_bytes_.data(), written}, &tree) == Status::kOk);
+    tree_bytes_ = tests::compact_of(pool_.octree);
+    tree = tests::open_or_throw(tree_bytes_);
     scene.surfaces = {surfaces.data(), surfaces.size()};
     scene.lights = {lights.data(), lights.size()};
   }
@@ -99,9 +91,8 @@ class LitWorld {
   std::vector<Light> lights;
 
  private:
-  std::vector<std::uint8_t> pool_bytes_;
-  std::vector<std::uint8_t> tree_bytes_;
-  Octree pool_;
+  tests::OwnedPool pool_;
+  tests::HeapBytes tree_bytes_;
 };
 
 inline Surface surface(SurfaceKind kind, const Rgb8& albedo) {

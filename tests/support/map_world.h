@@ -22,13 +22,11 @@ struct MapWorld : LitWorld {
   }
   void map_it() {
     finish();
-    room.resize(most_brick_map_bytes(tree) / 8 + 1);
-    REQUIRE(BrickMap::make(tree,
-                           {static_cast<std::uint8_t*>(static_cast<void*>(room.data())), 8 * room.size()},
-                           &map) == Status::kOk);
+    map_bytes = tests::map_of(tree);
+    REQUIRE(BrickMap::open(map_bytes.view(), &map) == Status::kOk);
   }
 
-  std::vector<std::uint64_t> room;
+  tests::HeapBytes map_bytes;
   BrickMap map;
   LitOptions options;
 };
