@@ -32,8 +32,10 @@ class MissShader {
   /// Begins a row, of which only what can show something solid is left to be taken: what is beside that is stored. False:
   /// there is no row left.
   bool begin_row(PixelReader* pixels, LitCounts* counts);
-  /// Where the ray of a pixel of the row can first meet something.
-  const FirstPlane& first_plane(const PixelSlot& at) const { return planes_[(at.x - left_) / kBeam]; }
+  /// Where the ray of a pixel of the row can first meet something: anywhere, where no row of a picture was begun here.
+  const FirstPlane& first_plane(const PixelSlot& at) const {
+    return rows_ < 0 ? of_square_ : planes_[(at.x - left_) / kBeam];
+  }
   /// Calls give(i, color) for the first `count` directions of the columns: lit::sky_color, or the background.
   template <class Give>
   void each_color(uint32_t count, const Give& give) const;
