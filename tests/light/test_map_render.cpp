@@ -206,7 +206,7 @@ TEST_CASE("lit frames by the map: hard cameras, worlds and suns -> the bytes and
   // Few pictures may be all of one kind: it draws until each kind had its share.
   const auto is_enough = [&] {
     return pixels >= wanted_pixels && fast > wanted_pixels / 12 && by_lamps > wanted_pixels / 20 &&
-           occluded > wanted_pixels / 20 && mirrored > wanted_pixels / 40 && shadows > wanted_pixels / 20 &&
+           occluded > wanted_pixels / 20 && mirrored > wanted_pixels / 60 && shadows > wanted_pixels / 20 &&
            sunny > wanted_pixels / 40;
   };
   for (unsigned turn = 0; !is_enough() && pixels < 40 * wanted_pixels; ++turn) {
