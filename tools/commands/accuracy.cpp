@@ -140,7 +140,8 @@ Values mean_heights(const Values& reference, int columns) {
       double sum = 0;
       for (int j = y * across; j < (y + 1) * across; ++j) {
         for (int i = x * across; i < (x + 1) * across; ++i) {
-          sum += reference[static_cast<std::size_t>(j * kWaterReference + i)][0];
+          const int at = j * kWaterReference + i;
+          sum += reference[static_cast<std::size_t>(at)][0];
         }
       }
       means.push_back({sum / (across * across), 0});
