@@ -30,8 +30,8 @@ for board in "$@"; do
   : >"$work/measured"
   for scene in $(sed -n "s/^$board;\([^;]*\);.*/\1/p" $table); do
     "$thimble" image "$scene" --board "$board" --effects none --images "$work/programs" -o "$work/bench.emulated.elf" --quiet
-    timeout 300 sh platform/emulate.sh "$board" bench </dev/null >"$work/bench.log" 2>/dev/null || true
-    cost=$(awk -F, "$three_digits"'$1 == "brick_map.instructions_median" { print three_digits($2) }' "$work/bench.log")
+    timeout 300 sh platform/emulate.sh "$board" bench </dev/null >"$work/scene_frame.log" 2>/dev/null || true
+    cost=$(awk -F, "$three_digits"'$1 == "brick_map.instructions_median" { print three_digits($2) }' "$work/scene_frame.log")
     echo "$board;$scene;$cost" >>"$work/measured"
     most=$(grep -F "$board;$scene;" $table | cut -d ';' -f 3)
     if [ $write = 0 ] && { [ -z "$cost" ] || [ "$cost" -gt $((most + most / 100)) ]; }; then
