@@ -83,6 +83,13 @@ Array<Number> array_of(std::vector<Number> content, const Shape& shape) {
   return Array<Number>(shape, first, owner);
 }
 
+// What `run` gives, which other threads of Python need not wait for.
+template <class Run>
+auto without_lock(const Run& run) {
+  const py::gil_scoped_release unlocked;
+  return run();
+}
+
 // ---- Rays.
 
 // Where the answers of all rays go; a miss is -1, and infinitely far.
@@ -95,6 +102,23 @@ struct HitArrays {
         axis(rays),
         material(rays),
         color(Shape{rays, 3}) {}
+  // Any number of threads at a time, which hold no lock.
+  void put(std::size_t at, const Ray& ray, const Hit& from, Span<const Rgb8> palette) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    const bool is_hit = from.kind == HitKind::kHit;
+    hit.mutable_data()[at] = is_hit;
+    t.mutable_data()[at] = is_hit ? tools::hit_t(from) : kNever;
+    distance.mutable_data()[at] = is_hit ? tools::hit_distance(ray, from) : kNever;
+    axis.mutable_data()[at] = is_hit ? from.axis : std::int8_t{-1};
+    material.mutable_data()[at] = is_hit ? from.material : std::int16_t{-1};
+    const Rgb8 seen = is_hit ? palette[from.material] : Rgb8{};
+    for (int i = 0; i < 3; ++i) {
+      voxel.mutable_data()[3 * at + static_cast<std::size_t>(i)] = is_hit ? from.voxel[i] : -1;
+    }
+    std::memcpy(color.mutable_data() + 3 * at, &seen, 3);
+  }
+  py::tuple all() const { return py::make_tuple(hit, voxel, t, distance, axis, material, color); }
+
   Array<bool> hit;
   Array<std::int32_t> voxel;
   Array<double> t;
@@ -102,41 +126,6 @@ struct HitArrays {
   Array<std::int8_t> axis;
   Array<std::int16_t> material;
   Array<std::uint8_t> color;
-  py::tuple all() const { return py::make_tuple(hit, voxel, t, distance, axis, material, color); }
-};
-
-// The same as plain addresses, for threads that hold no lock.
-struct HitColumns {
-  explicit HitColumns(HitArrays& arrays)
-      : hit(arrays.hit.mutable_data()),
-        voxel(arrays.voxel.mutable_data()),
-        t(arrays.t.mutable_data()),
-        distance(arrays.distance.mutable_data()),
-        axis(arrays.axis.mutable_data()),
-        material(arrays.material.mutable_data()),
-        color(arrays.color.mutable_data()) {}
-  void put(std::size_t at, const Ray& ray, const Hit& from, Span<const Rgb8> palette) const {
-    const bool is_hit = from.kind == HitKind::kHit;
-    hit[at] = is_hit;
-    t[at] = is_hit ? tools::hit_t(from) : std::numeric_limits<double>::infinity();
-    distance[at] = is_hit ? tools::hit_distance(ray, from) : std::numeric_limits<double>::infinity();
-    axis[at] = is_hit ? from.axis : std::int8_t{-1};
-    material[at] = is_hit ? from.material : std::int16_t{-1};
-    const Rgb8 seen = is_hit ? palette[from.material] : Rgb8{};
-    for (int i = 0; i < 3; ++i) {
-      voxel[3 * at + static_cast<std::size_t>(i)] = is_hit ? from.voxel[i] : -1;
-    }
-    color[3 * at] = seen.r;
-    color[3 * at + 1] = seen.g;
-    color[3 * at + 2] = seen.b;
-  }
-  bool* hit;
-  std::int32_t* voxel;
-  double* t;
-  double* distance;
-  std::int8_t* axis;
-  std::int16_t* material;
-  std::uint8_t* color;
 };
 
 constexpr std::size_t kRaysAtOnce = 4096;
@@ -148,13 +137,11 @@ py::tuple trace(const Scene& scene, const Array<double>& origins, const Array<do
   check_rows(directions, rows);
   const auto count = static_cast<std::size_t>(rows);
   HitArrays arrays(rows);
-  const HitColumns columns(arrays);
   const double* const from = origins.data();
   const double* const along = directions.data();
   const std::size_t tasks = (count + kRaysAtOnce - 1) / kRaysAtOnce;
   std::vector<std::string> faults(tasks);
-  {
-    const py::gil_scoped_release unlocked;
+  without_lock([&] {
     const tools::RayRules rules{scene.tree().level()};
     tools::each_task(tasks, threads, [&](std::size_t task, std::size_t /*worker*/) {
       const std::size_t first = task * kRaysAtOnce;
@@ -172,10 +159,10 @@ py::tuple trace(const Scene& scene, const Array<double>& origins, const Array<do
       }
       (void)scene.trace({rays.data(), rays_here}, {hits.data(), rays_here});  // rays within the limits
       for (std::size_t i = 0; i < rays_here; ++i) {
-        columns.put(first + i, rays[i], hits[i], scene.palette());
+        arrays.put(first + i, rays[i], hits[i], scene.palette());
       }
     });
-  }
+  });
   for (const std::string& fault : faults) {
     if (!fault.empty()) {
       throw py::value_error(fault);
@@ -188,28 +175,18 @@ py::tuple trace(const Scene& scene, const Array<double>& origins, const Array<do
 
 Array<std::uint8_t> render(const Scene& scene, std::int32_t width, std::int32_t height,
                            const Options& options) {
-  files::Image image;
-  {
-    const py::gil_scoped_release unlocked;
-    image = scene.render(width, height, options);
-  }
+  files::Image image = without_lock([&] { return scene.render(width, height, options); });
   return array_of(std::move(image.pixels), {image.height_px, image.width_px, image.channels});
 }
 
 py::bytes render_png(const Scene& scene, std::int32_t width, std::int32_t height, const Options& options) {
-  std::vector<std::uint8_t> bytes;
-  {
-    const py::gil_scoped_release unlocked;
-    bytes = files::png(scene.render(width, height, options));
-  }
-  return bytes_of(bytes);
+  return bytes_of(without_lock([&] { return files::png(scene.render(width, height, options)); }));
 }
 
 Array<float> depth_image(const Scene& scene, std::int32_t width, std::int32_t height, const Options& options,
                          int threads) {
   std::vector<float> depths;
-  {
-    const py::gil_scoped_release unlocked;
+  without_lock([&] {
     const Camera camera = scene.camera(width, height, options);
     const auto row = static_cast<std::size_t>(width);
     depths.assign(row * static_cast<std::size_t>(height), std::numeric_limits<float>::infinity());
@@ -226,7 +203,7 @@ Array<float> depth_image(const Scene& scene, std::int32_t width, std::int32_t he
         }
       }
     });
-  }
+  });
   return array_of(std::move(depths), {height, width});
 }
 
@@ -238,16 +215,16 @@ py::tuple voxels(const Scene& scene) {
   Array<std::uint8_t> materials(count);
   std::int32_t* position = positions.mutable_data();
   std::uint8_t* material = materials.mutable_data();
-  const py::gil_scoped_release unlocked;
-  tools::walk_blocks(tree, [&](const Vec3i& corner, int level, std::uint8_t of_block) {
-    tools::for_voxels(corner, level, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-      *position++ = x;
-      *position++ = y;
-      *position++ = z;
-      *material++ = of_block;
+  without_lock([&] {
+    tools::walk_blocks(tree, [&](const Vec3i& corner, int level, std::uint8_t of_block) {
+      tools::for_voxels(corner, level, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+        *position++ = x;
+        *position++ = y;
+        *position++ = z;
+        *material++ = of_block;
+      });
     });
   });
-  const py::gil_scoped_acquire locked;
   return py::make_tuple(positions, materials);
 }
 
@@ -261,15 +238,13 @@ Array<std::uint8_t> palette_of(const Scene& scene) {
 
 void bind_scene(py::module_& module) {
   py::class_<Scene>(module, "Scene")
-      .def(py::init([](const std::string& scene, const Options& options) {
-        const py::gil_scoped_release unlocked;
-        return std::make_unique<Scene>(scene, options);
-      }))
+      .def(py::init<const std::string&, const Options&>(), py::call_guard<py::gil_scoped_release>())
       .def(py::init([](const py::bytes& content, const std::string& name, const Options& options) {
         const std::string_view bytes = content;
-        const py::gil_scoped_release unlocked;
-        return std::make_unique<Scene>(
-            ConstBytes{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, options);
+        return without_lock([&] {
+          return std::make_unique<Scene>(
+              ConstBytes{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, options);
+        });
       }))
       .def("trace", trace, py::arg("origins").noconvert(), py::arg("directions").noconvert(),
            py::arg("threads"))
@@ -280,12 +255,7 @@ void bind_scene(py::module_& module) {
       .def("palette", palette_of)
       .def("bake",
            [](const Scene& scene, const Options& options) {
-             std::vector<std::uint8_t> bytes;
-             {
-               const py::gil_scoped_release unlocked;
-               bytes = scene.bake(options);
-             }
-             return bytes_of(bytes);
+             return bytes_of(without_lock([&] { return scene.bake(options); }));
            })
       .def("memory", &Scene::memory, py::call_guard<py::gil_scoped_release>())
       .def("write", &Scene::write, py::call_guard<py::gil_scoped_release>())
@@ -412,6 +382,7 @@ class OwnField {
 
 void bind_field(py::module_& module) {
   using Box = std::array<std::int32_t, 4>;
+  using Cell = std::int32_t;
   const auto box_of = [](const Box& box) { return CellBox{{box[0], box[1]}, {box[2], box[3]}}; };
   py::class_<OwnField>(module, "BitField")
       .def(py::init<std::int32_t, std::int32_t>())
@@ -419,19 +390,19 @@ void bind_field(py::module_& module) {
       .def("clear_box", [box_of](OwnField& own, const Box& box) { own.field().clear(box_of(box)); })
       .def("count", [box_of](OwnField& own, const Box& box) { return own.field().count(box_of(box)); })
       .def("set_disc",
-           [](OwnField& own, std::int32_t diameter, std::int32_t x, std::int32_t y) {
+           [](OwnField& own, Cell diameter, Cell x, Cell y) {
              own.field().set(disc_stamp(diameter), {x, y});
            })
       .def("clear_disc",
-           [](OwnField& own, std::int32_t diameter, std::int32_t x, std::int32_t y) {
+           [](OwnField& own, Cell diameter, Cell x, Cell y) {
              own.field().clear(disc_stamp(diameter), {x, y});
            })
       .def("any_disc",
-           [](OwnField& own, std::int32_t diameter, std::int32_t x, std::int32_t y) {
+           [](OwnField& own, Cell diameter, Cell x, Cell y) {
              return own.field().any(disc_stamp(diameter), {x, y});
            })
       .def("test",
-           [](OwnField& own, std::int32_t x, std::int32_t y) {
+           [](OwnField& own, Cell x, Cell y) {
              return own.field().test({x, y});
            })
       .def("array", [](OwnField& own) { return cells_of(own.field()); })
