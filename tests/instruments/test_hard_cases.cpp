@@ -19,7 +19,7 @@ const std::uint64_t kRays = thimble::tests::many_or_few<std::uint64_t>(28000, 42
 
 std::size_t column(const std::string& key) {
   for (std::size_t i = 0; i < kTracers; ++i) {
-    if (key == tracer_names()[i].key) {
+    if (key == kTracerNames[i].key) {
       return i;
     }
   }
@@ -67,7 +67,7 @@ TEST_CASE(
     for (const HardCaseRow& row : rows()) {
       wrong += row.wrong[tracer];
     }
-    INFO(std::string(tracer_names()[tracer].key));
+    INFO(std::string(kTracerNames[tracer].key));
     CHECK(wrong > 0);
   }
 }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "output/held_signals.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "readers/mapped_file.h"
 #include "support/run_command.h"
 

@@ -112,10 +112,9 @@ Outcome run_water(int columns, int wave_speed_q6) {
   std::vector<std::uint8_t> bytes(water_bytes(columns, columns));
   Water water;
   const std::int32_t side_q8 = columns * 256;
-  if (Water::make(config, {bytes.data(), bytes.size()}, &water) != Status::kOk ||
-      water.touch(side_q8 * 3 / 8, side_q8 * 7 / 16, side_q8 / 8, kPressedQ8) != Status::kOk) {
-    throw InputError("internal error: the basin cannot be set up");
-  }
+  fail_if(Water::make(config, {bytes.data(), bytes.size()}, &water) != Status::kOk ||
+              water.touch(side_q8 * 3 / 8, side_q8 * 7 / 16, side_q8 / 8, kPressedQ8) != Status::kOk,
+          "internal error: the basin cannot be set up");
   Outcome basin;
   const FrameWatch watch;
   for (int step = 0; step < water_steps(columns, wave_speed_q6); ++step) {
@@ -164,11 +163,10 @@ std::vector<SimulationRow> particle_rows() {
   std::vector<SimulationRow> rows;
   for (const int bits : {kFinestBits, 10, 8, 6}) {
     for (int substeps = 1; substeps <= kMostSubsteps; substeps *= 2) {
-      SimulationRow row;
+      SimulationRow& row = rows.emplace_back();
       row.substeps = substeps;
       row.subpixel_bits = bits;
       row.steps = kParticleSteps;
-      rows.push_back(row);
     }
   }
   return rows;
@@ -178,11 +176,10 @@ std::vector<SimulationRow> water_rows() {
   std::vector<SimulationRow> rows;
   for (const int speed : {kMaxWaveSpeedQ6, kMaxWaveSpeedQ6 / 2, kMinWaveSpeedQ6}) {
     for (int columns = 16; columns < kWaterReference; columns *= 2) {
-      SimulationRow row;
+      SimulationRow& row = rows.emplace_back();
       row.columns = columns;
       row.wave_speed_q6 = speed;
       row.steps = water_steps(columns, speed);
-      rows.push_back(row);
     }
   }
   return rows;
@@ -242,38 +239,29 @@ std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds, c
 JsonRow simulation_objects(SimulationWorld world, const std::vector<SimulationRow>& rows) {
   const bool is_water = world == SimulationWorld::kWater;
   const auto only = [](bool is_there, int value) { return is_there ? JsonRow(value) : JsonRow(nullptr); };
-  JsonRow objects = JsonRow::array();
-  for (const SimulationRow& row : rows) {
+  return objects_of(rows, [&](const SimulationRow& row) {
     JsonRow object;
-    object["row"] = is_water ? "water" : "particles";
-    object["substeps"] = only(!is_water, row.substeps);
-    object["subpixel_bits"] = only(!is_water, row.subpixel_bits);
-    object["columns"] = only(is_water, row.columns);
-    object["wave_speed_q6"] = only(is_water, row.wave_speed_q6);
-    object["steps"] = row.steps;
-    object["work"] = row.work;
+    put_all(&object, "row", is_water ? "water" : "particles", "substeps", only(!is_water, row.substeps),
+            "subpixel_bits", only(!is_water, row.subpixel_bits), "columns", only(is_water, row.columns),
+            "wave_speed_q6", only(is_water, row.wave_speed_q6), "steps", row.steps, "work", row.work);
     row.add_to(&object);
-    object["unit"] = is_water ? "voxels" : "cells";
-    object["error_rms"] = row.error_rms;
-    object["error_median"] = row.error_median;
-    object["error_most"] = row.error_most;
-    object["front"] = row.front ? 1 : 0;
-    objects.push_back(object);
-  }
-  return objects;
+    put_all(&object, "unit", is_water ? "voxels" : "cells", "error_rms", row.error_rms, "error_median",
+            row.error_median, "error_most", row.error_most, "front", row.front ? 1 : 0);
+    return object;
+  });
 }
 
 std::string simulation_table(SimulationWorld world, const std::vector<SimulationRow>& rows) {
   const bool is_water = world == SimulationWorld::kWater;
-  std::vector<Cells> table{{"", is_water ? "columns" : "substeps", is_water ? "wave speed" : "bits", "steps",
-                            is_water ? "columns updated" : "moves", "ms", "+-%", "error RMS", "median",
-                            "most"}};
-  for (const SimulationRow& row : rows) {
-    table.push_back({row.front ? "*" : "", std::to_string(is_water ? row.columns : row.substeps),
-                     is_water ? fixed(row.wave_speed_q6 / 64.0, 3) : std::to_string(row.subpixel_bits),
-                     std::to_string(row.steps), grouped(row.work), fixed(row.ms_median, 3), row.spread(),
-                     fixed(row.error_rms, 4), fixed(row.error_median, 4), fixed(row.error_most, 3)});
-  }
+  const Cells names =
+      cells_of("", is_water ? "columns" : "substeps", is_water ? "wave speed" : "bits", "steps",
+               is_water ? "columns updated" : "moves", "ms", "+-%", "error RMS", "median", "most");
+  const auto cells = [&](const SimulationRow& row) {
+    return cells_of(row.front ? "*" : "", is_water ? row.columns : row.substeps,
+                    is_water ? fixed(row.wave_speed_q6 / 64.0, 3) : std::to_string(row.subpixel_bits),
+                    row.steps, grouped(row.work), fixed(row.ms_median, 3), row.spread(),
+                    fixed(row.error_rms, 4), fixed(row.error_median, 4), fixed(row.error_most, 3));
+  };
   const std::string head =
       is_water
           ? "a basin of water pressed down by a voxel, when a wave has crossed half of it: heights against\n"
@@ -282,7 +270,7 @@ std::string simulation_table(SimulationWorld world, const std::vector<Simulation
                 " steps: distance of the centres from those with 16 substeps and\n"
                 "positions of 2^-15 cells, cells; bits: positions are kept to 2^-bits cells\n";
   return head + "(*: no setting is both faster and nearer to the reference, by the " +
-         (is_water ? "RMS" : "median") + ")\n" + columns_of(table, 1);
+         (is_water ? "RMS" : "median") + ")\n" + table_of(names, 1, rows, cells);
 }
 
 std::string simulation_plot(SimulationWorld world, const std::vector<SimulationRow>& rows) {
@@ -336,11 +324,7 @@ void run_scene(const AccuracyCommand& command) {
   const std::string& scene = command.scene.arguments.scene;
   files.write(accuracy_objects(study),
               files.wants_plot() ? accuracy_plot(study, command.study.axis, scene) : "");
-  if (!command.scene.quiet) {
-    for (const std::string& note : study.notes) {
-      std::fprintf(stderr, "note: %s\n", note.c_str());
-    }
-  }
+  print_notes(study.notes, command.scene.quiet);
   files.print(concat(printable(scene), "\n", command.study.view.width_px, "x", command.study.view.height_px,
                      ", median of ", command.study.rounds, " frames each, by turns\n",
                      accuracy_tables(study, command.study.axis), answer));
@@ -373,9 +357,8 @@ void run_simulation(const AccuracyCommand& command) {
 // Options that say what is measured go with few of the others.
 void check_alone(const CLI::App& sub, const std::string& what, const std::vector<std::string>& allowed) {
   for (const std::string& name : options_given(sub)) {
-    if (name != what && std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
-      refuse_usage(what, "takes no " + (name == "scene" ? "SCENE" : name));
-    }
+    refuse_if(name != what && std::find(allowed.begin(), allowed.end(), name) == allowed.end(), what,
+              ": takes no ", (name == "scene" ? "SCENE" : name));
   }
 }
 
@@ -386,18 +369,14 @@ void run(const AccuracyCommand& command, const CLI::App& sub) {
     return;
   }
   for (const char* name : {"--rays", "--seed"}) {
-    if (is_given(sub, name)) {
-      refuse_usage(name, "goes with --hard-cases only");
-    }
+    refuse_if(is_given(sub, name), name, ": goes with --hard-cases only");
   }
   if (command.simulation) {
     check_alone(sub, "--simulation", {"--rounds", "--csv", "--json", "--plot", "--quiet"});
     run_simulation(command);
     return;
   }
-  if (command.scene.arguments.scene.empty()) {
-    refuse_usage("SCENE is required");
-  }
+  refuse_if(command.scene.arguments.scene.empty(), "SCENE is required");
   run_scene(command);
 }
 

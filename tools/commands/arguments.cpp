@@ -18,29 +18,7 @@ class Subcommand : public CLI::App {
 };
 
 constexpr std::size_t kHelpColumn = 30;
-constexpr std::size_t kHelpWidth = 100;
 constexpr char kOffered[] = "offered";  // the name of a check that keeps words
-
-// `text` broken at blanks so that no line is wider than the help, the first one beginning at `column`.
-std::string wrapped(const std::string& text, std::size_t column) {
-  std::string out;
-  std::size_t used = column;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::size_t length = end - at;
-    if (used > column && used + 1 + length > kHelpWidth) {
-      out += '\n' + std::string(column, ' ');
-      used = column;
-    } else if (used > column) {
-      out += ' ';
-      ++used;
-    }
-    out.append(text, at, length);
-    used += length;
-    at = end + 1;
-  }
-  return out;
-}
 
 std::string entry(const std::string& label, const std::string& text) {
   std::string out = "  " + label;
@@ -82,6 +60,26 @@ class HelpFormatter final : public CLI::Formatter {
 };
 
 }  // namespace
+
+std::string wrapped(const std::string& text, std::size_t column, std::size_t width) {
+  std::string out;
+  std::size_t used = column;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::size_t length = end - at;
+    if (used > column && used + 1 + length > width) {
+      out += '\n' + std::string(column, ' ');
+      used = column;
+    } else if (used > column) {
+      out += ' ';
+      ++used;
+    }
+    out.append(text, at, length);
+    used += length;
+    at = end + 1;
+  }
+  return out;
+}
 
 std::optional<std::int64_t> parse_whole(std::string_view text, std::int64_t low, std::int64_t high) {
   std::int64_t number = 0;
@@ -160,9 +158,7 @@ CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::
   const std::string shown = comma == std::string::npos ? name : name.substr(comma + 1);
   const auto check = [shown, take = std::move(take)](const std::string& text) {
     const std::string fault = take(text);
-    if (!fault.empty()) {
-      refuse_usage(shown, in_quotes(text) + " " + fault);
-    }
+    refuse_if(!fault.empty(), shown, ": ", in_quotes(text), " ", fault);
   };
   return app.add_option_function<std::string>(name, check, help)->type_name(type_name);
 }
@@ -268,14 +264,6 @@ std::vector<std::string> options_given(const CLI::App& app) {
     }
   }
   return names;
-}
-
-void refuse_usage(const std::string& name, const std::string& what) {
-  throw CLI::ValidationError(name, what);
-}
-
-void refuse_usage(const std::string& what) {
-  throw CLI::ValidationError(what);
 }
 
 CLI::Validator offering(const std::vector<std::string>& words) {

@@ -36,7 +36,7 @@ void add_paragraph_below(CLI::App& command, const std::string& text);
 /// What the subcommand does, once all options are read.
 void when_chosen(CLI::App& command, std::function<void()> action);
 /// What is looked at before that: options that are sound one by one and make no sense together. `check` calls
-/// refuse_usage.
+/// refuse_if.
 void also_check(CLI::App& command, std::function<void()> check);
 
 /// An option without a value: `flag` becomes true.
@@ -99,6 +99,15 @@ CLI::Option* add_choice_option(
   return add_choice_option(app, name, words, take, help)->default_str(usual);
 }
 
+/// The same; `to` gets the word.
+inline CLI::Option* add_choice_option(CLI::App& app, const std::string& name,
+                                      const std::vector<std::string>& words, std::string* to,
+                                      const std::string& help) {
+  return add_choice_option(
+             app, name, words, [words, to](std::size_t index) { *to = words[index]; }, help)
+      ->default_str(*to);
+}
+
 /// The path of a file.
 CLI::Option* add_path_option(CLI::App& app, const std::string& name, const std::string& type_name,
                              std::string* path, const std::string& help);
@@ -118,9 +127,18 @@ std::string text_given(const CLI::App& app, const std::string& name);
 /// The names of all that the user gave.
 std::vector<std::string> options_given(const CLI::App& app);
 
-/// Ends the command as wrong usage (status 2): "`name`: `what`", or `what` alone.
-[[noreturn]] void refuse_usage(const std::string& name, const std::string& what);
-[[noreturn]] void refuse_usage(const std::string& what);
+/// Ends the command as wrong usage (status 2) by a sentence of these pieces: "--name: ..." where it is about one option.
+template <class... Pieces>
+[[noreturn]] void refuse_usage(const Pieces&... pieces) {
+  throw CLI::ValidationError(concat(pieces...));
+}
+/// The same where `is_wrong`.
+template <class... Pieces>
+void refuse_if(bool is_wrong, const Pieces&... pieces) {
+  if (is_wrong) {
+    refuse_usage(pieces...);
+  }
+}
 
 /// What was wrong with the usage, as one sentence. `first`: the first argument.
 std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, const std::string& first);
@@ -136,6 +154,9 @@ std::string label_of(const CLI::Option& option, bool is_argument);
 /// Its description, with its default, and whether it must be given.
 std::string description_of(const CLI::Option& option, bool is_argument);
 
+/// `text` broken at blanks so that no line is wider than so many characters, the first one beginning at `column`, under
+/// which the others begin.
+std::string wrapped(const std::string& text, std::size_t column, std::size_t width = 100);
 /// Help in lines of at most 100 characters.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 

@@ -10,7 +10,7 @@
 #include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
@@ -57,6 +57,78 @@ std::string for_comment(ConstBytes name) {
     out += plain ? static_cast<char>(byte) : '_';
   }
   return out;
+}
+
+// What would fit instead, what loses least first: found by baking so.
+std::string advice(const BakeCommand& command, const SceneSource& source, EffectSet effects) {
+  std::string text = ";";
+  const auto fits = [&](const BakeCommand& other, const SceneSource& from, Baked* baked) {
+    BakingOptions options = baking_options(other, from, nullptr);
+    *baked = with_progress("trying what would fit", command.scene.quiet, [&](const Progress& progress) {
+      return bake_within(other.limit(), from, &options, progress);
+    });
+    return baked->fits;
+  };
+  Baked baked;
+  if (effects != Effect::kNone) {
+    BakeCommand plain = command;
+    plain.effects = {};
+    plain.effects.automatic = false;
+    plain.effects.is_given = true;
+    if (fits(plain, source, &baked)) {
+      text += " --effects none fits with all its voxels in " + grouped(baked.bytes.size()) + " bytes;";
+    }
+  }
+  text += source.is_scalable() ? " --coarsen makes the finest tree that fits"
+                               : " this scene has one depth only, --coarsen makes the finest tree that fits";
+  BakeCommand shallow = command;
+  for (int depth = source.level() - 1; source.is_scalable() && depth >= kMinLevel; --depth) {
+    shallow.scene.arguments.depth = depth;
+    try {
+      const auto smaller = open_scene(shallow.scene.arguments);
+      if (fits(shallow, *smaller, &baked)) {
+        text += "; --depth " + std::to_string(depth) + " fits with " + grouped(baked.bytes.size()) + " bytes";
+        break;
+      }
+    } catch (const InputError&) {
+      break;  // a pipe is read only once; and a camera may suit one world and not another
+    }
+  }
+  const bool is_for_make = command.scene.board != nullptr && !command.room;
+  return text + (is_for_make ? " (make firmware takes such options as BAKE=\"...\")" : "");
+}
+
+void report(const BakeCommand& command, const BakingOptions& options, const Baked& baked) {
+  std::string text = baked_text(command, options, baked);
+  if (const platform::BoardFacts* board = command.scene.board) {
+    const std::uint64_t ram = drawing_ram_bytes(*board, baked.effects);
+    text += concat(board->name, ": flash ", grouped(baked.bytes.size()), " of the ",
+                   grouped(scene_flash_bytes(*board, baked.effects)), " bytes beside the demonstration's ",
+                   grouped(code_flash_bytes(*board, baked.effects)), "; RAM ", grouped(ram), " of ",
+                   grouped(board->ram_bytes), " bytes (renderer ", grouped(lit_render_bytes(baked.effects)),
+                   ", band of ", kBoardBandRows, " rows ", grouped(board_band_bytes(*board)), ", stack ",
+                   grouped(board->stack_bytes), ")", ram > board->ram_bytes ? ": too much" : "", "\n");
+  }
+  std::fputs(text.c_str(), stderr);
+}
+
+void run(const BakeCommand& given) {
+  BakeCommand command = given;
+  use_display(command.scene.board, &command.view);
+  OutputSet outputs({command.output, command.scene.stats_path}, {command.scene.arguments.scene});
+  const auto source = command.scene.open();
+  BakingOptions options;
+  const Baked baked = bake(&command, *source, &options);
+  if (command.as_header) {
+    outputs[0]->write(c_header_text(baked.scene, command.identifier));
+  } else {
+    outputs[0]->write(baked.bytes);
+  }
+  outputs.write(1, stats_text(baked_stats(command, *source, baked, options.limit_bytes)));
+  outputs.commit();
+  if (!command.scene.quiet) {
+    report(command, options, baked);
+  }
 }
 
 }  // namespace
@@ -136,8 +208,6 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   return text;
 }
 
-namespace {
-
 BakingOptions baking_options(const BakeCommand& command, const SceneSource& source, std::string* note) {
   BakingOptions options;
   options.limit_bytes = command.limit().bytes();
@@ -166,47 +236,6 @@ BakingOptions baking_options(const BakeCommand& command, const SceneSource& sour
   };
   return options;
 }
-
-// What would fit instead, what loses least first: found by baking so.
-std::string advice(const BakeCommand& command, const SceneSource& source, EffectSet effects) {
-  std::string text = ";";
-  const auto fits = [&](const BakeCommand& other, const SceneSource& from, Baked* baked) {
-    BakingOptions options = baking_options(other, from, nullptr);
-    *baked = with_progress("trying what would fit", command.scene.quiet, [&](const Progress& progress) {
-      return bake_within(other.limit(), from, &options, progress);
-    });
-    return baked->fits;
-  };
-  Baked baked;
-  if (effects != Effect::kNone) {
-    BakeCommand plain = command;
-    plain.effects = {};
-    plain.effects.automatic = false;
-    plain.effects.is_given = true;
-    if (fits(plain, source, &baked)) {
-      text += " --effects none fits with all its voxels in " + grouped(baked.bytes.size()) + " bytes;";
-    }
-  }
-  text += source.is_scalable() ? " --coarsen makes the finest tree that fits"
-                               : " this scene has one depth only, --coarsen makes the finest tree that fits";
-  BakeCommand shallow = command;
-  for (int depth = source.level() - 1; source.is_scalable() && depth >= kMinLevel; --depth) {
-    shallow.scene.arguments.depth = depth;
-    try {
-      const auto smaller = open_scene(shallow.scene.arguments);
-      if (fits(shallow, *smaller, &baked)) {
-        text += "; --depth " + std::to_string(depth) + " fits with " + grouped(baked.bytes.size()) + " bytes";
-        break;
-      }
-    } catch (const InputError&) {
-      break;  // a pipe is read only once; and a camera may suit one world and not another
-    }
-  }
-  const bool is_for_make = command.scene.board != nullptr && !command.room;
-  return text + (is_for_make ? " (make firmware takes such options as BAKE=\"...\")" : "");
-}
-
-}  // namespace
 
 std::string baked_text(const BakeCommand& command, const BakingOptions& options, const Baked& baked) {
   const CompactTree& tree = baked.scene.tree();
@@ -267,8 +296,8 @@ Baked bake(BakeCommand* command, const SceneSource& source, BakingOptions* optio
     throw InputError(not_drawn_text(*command, baked.effects));
   }
   if (!baked.fits) {
-    throw InputError(too_large_text(command->limit(), baked, *options, source.level()) +
-                     (options->coarsen ? "" : advice(*command, source, baked.effects)));
+    throw InputError(too_large_text(command->limit(), baked, *options, source.level()),
+                     options->coarsen ? "" : advice(*command, source, baked.effects));
   }
   command->lost_light = lit && !options->default_look;
   return baked;
@@ -287,47 +316,6 @@ void add_fitting(CLI::App& app, BakeCommand* command) {
   add_flag(app, "--coarsen", &command->scene.coarsen,
            "when it does not fit, merge blocks of voxels until it just does; this only adds solid");
 }
-
-namespace {
-
-void report(const BakeCommand& command, const BakingOptions& options, const Baked& baked) {
-  std::string text = baked_text(command, options, baked);
-  if (const platform::BoardFacts* board = command.scene.board) {
-    const std::uint64_t bytes = baked.bytes.size();
-    const std::uint64_t flash = scene_flash_bytes(*board, baked.effects);
-    const std::uint64_t ram = drawing_ram_bytes(*board, baked.effects);
-    text += std::string(board->name) + ": flash " + grouped(bytes) + " of the " + grouped(flash) +
-            " bytes beside the demonstration's " + grouped(code_flash_bytes(*board, baked.effects)) +
-            "; RAM " + grouped(ram) + " of " + grouped(board->ram_bytes) + " bytes (renderer " +
-            grouped(lit_render_bytes(baked.effects)) + ", band of " + std::to_string(kBoardBandRows) +
-            " rows " + grouped(board_band_bytes(*board)) + ", stack " + grouped(board->stack_bytes) + ")" +
-            (ram > board->ram_bytes ? ": too much" : "") + "\n";
-  }
-  std::fputs(text.c_str(), stderr);
-}
-
-void run(const BakeCommand& given) {
-  BakeCommand command = given;
-  use_display(command.scene.board, &command.view);
-  OutputSet outputs({command.output, command.scene.stats_path}, {command.scene.arguments.scene});
-  const auto source = command.scene.open();
-  BakingOptions options;
-  const Baked baked = bake(&command, *source, &options);
-  if (command.as_header) {
-    outputs[0]->write(c_header_text(baked.scene, command.identifier));
-  } else {
-    outputs[0]->write(baked.bytes);
-  }
-  if (outputs[1] != nullptr) {
-    outputs[1]->write(stats_text(baked_stats(command, *source, baked, options.limit_bytes)));
-  }
-  outputs.commit();
-  if (!command.scene.quiet) {
-    report(command, options, baked);
-  }
-}
-
-}  // namespace
 
 void add_bake_options(CLI::App& app, const std::shared_ptr<BakeCommand>& command) {
   command->scene.add_scene(app);

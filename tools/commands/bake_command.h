@@ -35,6 +35,8 @@ struct BakeCommand {
   FlashLimit limit() const { return {scene.board, scene.memory_bytes, room}; }
 };
 
+/// How it is baked, but for whether it may be coarsened; `note` (may be null) gets that of the camera.
+BakingOptions baking_options(const BakeCommand& command, const SceneSource& source, std::string* note);
 /// Opens the scene, bakes it within the command's limit; `options` are then those that it was baked with. Throws
 /// InputError for what does not fit, with the options that make it fit.
 Baked bake(BakeCommand* command, const SceneSource& source, BakingOptions* options);

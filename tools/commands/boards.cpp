@@ -239,59 +239,43 @@ const BoardFacts* smallest(const SceneSizes& sizes, double frames) {
 
 JsonRow row_of(const BoardFacts& board, const SceneSizes* sizes) {
   JsonRow row;
-  row["board"] = board.name;
-  row["title"] = board.title;
-  row["core"] = board.cpu;
-  row["ram_bytes"] = board.ram_bytes;
-  row["flash_bytes"] = board.flash_bytes;
-  row["stack_bytes"] = board.stack_bytes;
-  row["screen"] = screen_name(board.screen);
-  row["width_px"] = board.width_px;
-  row["height_px"] = board.height_px;
-  row["pixel_format"] = format_name(board.format);
-  row["buttons"] = board.buttons;
-  row["core_mhz"] = board.core_mhz;
-  row["frame_instructions"] = board.frame_instructions;
-  row["frames_per_second_estimate"] = frames_per_second(board);
-  row["scene_flash_bytes"] = scene_flash_bytes(board, sizes == nullptr ? Effect::kNone : sizes->effects);
-  row["state_bytes"] = render_bytes();
-  row["band_bytes"] = board_band_bytes(board);
-  row["drawing_ram_bytes"] = drawing_ram_bytes(board);
+  put_all(
+      &row, "board", board.name, "title", board.title, "core", board.cpu, "ram_bytes", board.ram_bytes,
+      "flash_bytes", board.flash_bytes, "stack_bytes", board.stack_bytes, "screen", screen_name(board.screen),
+      "width_px", board.width_px, "height_px", board.height_px, "pixel_format", format_name(board.format),
+      "buttons", board.buttons, "core_mhz", board.core_mhz, "frame_instructions", board.frame_instructions,
+      "frames_per_second_estimate", frames_per_second(board), "scene_flash_bytes",
+      scene_flash_bytes(board, sizes == nullptr ? Effect::kNone : sizes->effects), "state_bytes",
+      render_bytes(), "band_bytes", board_band_bytes(board), "drawing_ram_bytes", drawing_ram_bytes(board));
   if (sizes != nullptr) {
-    row["depth"] = sizes->depth;
-    row["voxels"] = sizes->voxels;
-    row["baked_bytes"] = sizes->baked_bytes;
-    row["fits_flash"] = sizes->baked_bytes <= scene_flash_bytes(board, sizes->effects) ? 1 : 0;
-    row["pool_bytes"] = sizes->pool_bytes;
-    row["building_ram_bytes"] = building_ram_bytes(*sizes, board);
-    row["builds_in_ram"] = building_ram_bytes(*sizes, board) <= board.ram_bytes ? 1 : 0;
-    row["deepest_depth"] = deepest(*sizes, board);
-    row["deepest_tried_depth"] = sizes->bytes_of_depth.rbegin()->first;
-    row["scene_frame_instructions"] = sizes->frame_instructions.at(board.name);
-    row["scene_frames_per_second_estimate"] =
-        frames_per_second(board, sizes->frame_instructions.at(board.name));
+    const std::uint64_t instructions = sizes->frame_instructions.at(board.name);
+    const std::uint64_t building = building_ram_bytes(*sizes, board);
+    put_all(&row, "depth", sizes->depth, "voxels", sizes->voxels, "baked_bytes", sizes->baked_bytes,
+            "fits_flash", sizes->baked_bytes <= scene_flash_bytes(board, sizes->effects) ? 1 : 0,
+            "pool_bytes", sizes->pool_bytes, "building_ram_bytes", building, "builds_in_ram",
+            building <= board.ram_bytes ? 1 : 0, "deepest_depth", deepest(*sizes, board),
+            "deepest_tried_depth", sizes->bytes_of_depth.rbegin()->first, "scene_frame_instructions",
+            instructions, "scene_frames_per_second_estimate", frames_per_second(board, instructions));
   }
   return row;
 }
 
 std::string boards_text() {
-  std::vector<Cells> rows{{"board", "core", "picture", "display", "buttons", "RAM", "flash", "stack"}};
-  for (const BoardFacts& board : platform::boards()) {
-    rows.push_back({board.name, board.cpu,
+  const auto facts = [](const BoardFacts& board) {
+    return cells_of(board.name, board.cpu,
                     concat(board.width_px, "x", board.height_px, " ", format_name(board.format)),
-                    screen_name(board.screen), std::to_string(board.buttons), grouped(board.ram_bytes),
-                    grouped(board.flash_bytes), grouped(board.stack_bytes)});
-  }
-  std::string text = columns_of(rows, 4);
-  text +=
-      "\nExact frames of the demonstration: instructions counted; frames a second estimated, at one\n"
-      "instruction a cycle.\n\n";
-  rows = {{"board", "MHz", "instructions", "frames a second"}};
-  for (const BoardFacts& board : platform::boards()) {
-    rows.push_back({board.name, std::to_string(board.core_mhz), grouped(board.frame_instructions),
-                    fixed(frames_per_second(board), 1)});
-  }
-  return text + columns_of(rows, 1);
+                    screen_name(board.screen), board.buttons, grouped(board.ram_bytes),
+                    grouped(board.flash_bytes), grouped(board.stack_bytes));
+  };
+  const auto speed = [](const BoardFacts& board) {
+    return cells_of(board.name, board.core_mhz, grouped(board.frame_instructions),
+                    fixed(frames_per_second(board), 1));
+  };
+  return table_of({"board", "core", "picture", "display", "buttons", "RAM", "flash", "stack"}, 4,
+                  platform::boards(), facts) +
+         "\nExact frames of the demonstration: instructions counted; frames a second estimated, at one\n"
+         "instruction a cycle.\n\n" +
+         table_of({"board", "MHz", "instructions", "frames a second"}, 1, platform::boards(), speed);
 }
 
 std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
@@ -299,9 +283,9 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
       concat("\n", printable(command.scene.arguments.scene), "\n", counted(sizes.voxels, "voxel"),
              " at depth ", sizes.depth, ", ", grouped(sizes.baked_bytes), " bytes baked, ",
              grouped(sizes.pool_bytes), " bytes as a pool built on the chip\n\n");
-  std::vector<Cells> rows{{"board", "scene flash", "scene", "RAM to draw", "fits", "RAM to build", "fits",
-                           "deepest", "a second"}};
-  for (const BoardFacts& board : platform::boards()) {
+  const Cells head = cells_of("board", "scene flash", "scene", "RAM to draw", "fits", "RAM to build", "fits",
+                              "deepest", "a second");
+  text += table_of(head, 1, platform::boards(), [&](const BoardFacts& board) {
     const std::uint64_t flash = scene_flash_bytes(board, sizes.effects);
     const std::uint64_t building = building_ram_bytes(sizes, board);
     const auto yes = [](bool fits) { return fits ? "yes" : "no"; };
@@ -309,13 +293,12 @@ std::string scene_text(const BoardsCommand& command, const SceneSizes& sizes) {
     const int depth = deepest(sizes, board);
     const double frames = frames_per_second(board, sizes.frame_instructions.at(board.name));
     const bool open_end = sizes.is_scalable && depth == sizes.most_depth && depth < kMaxLevel;
-    rows.push_back({board.name, grouped(flash), sizes.baked_bytes <= flash ? fixed(share, 1) + " %" : "no",
+    return cells_of(board.name, grouped(flash), sizes.baked_bytes <= flash ? fixed(share, 1) + " %" : "no",
                     grouped(drawing_ram_bytes(board)), yes(drawing_ram_bytes(board) <= board.ram_bytes),
                     grouped(building), yes(building <= board.ram_bytes),
                     depth == 0 ? "-" : (open_end ? ">= " : "") + std::to_string(depth),
-                    frames == 0 ? "-" : fixed(frames, 1)});
-  }
-  text += columns_of(rows, 1);
+                    frames == 0 ? "-" : fixed(frames, 1));
+  });
   text +=
       "\nscene flash: what the demonstration leaves (make firmware), with the effects that the scene\n"
       "states; scene: the baked scene's part of it, without the brick map and the light that bake adds\n"
@@ -339,11 +322,9 @@ void run(const BoardsCommand& command) {
   if (!scene.empty()) {
     sizes = measure(command);
   }
-  JsonRow rows = JsonRow::array();
-  for (const BoardFacts& board : platform::boards()) {
-    rows.push_back(row_of(board, sizes ? &*sizes : nullptr));
-  }
-  files.write(rows, {});
+  files.write(objects_of(platform::boards(),
+                         [&](const BoardFacts& board) { return row_of(board, sizes ? &*sizes : nullptr); }),
+              {});
   files.print(boards_text() + (sizes ? scene_text(command, *sizes) : ""));
 }
 

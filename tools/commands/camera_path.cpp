@@ -18,11 +18,13 @@ constexpr std::uint64_t kMostPathBytes = std::uint64_t{64} << 20;
 constexpr std::array<const char*, 10> kNames{"ex", "ey", "ez", "tx", "ty", "tz", "ux", "uy", "uz", "fov"};
 
 template <class... Pieces>
-[[noreturn]] void fail_in_path(const std::string& path, std::uint64_t line, const Pieces&... pieces) {
-  throw OutputError(concat(printable(path), ": line ", line, ": ", pieces...));
+void fail_in_path_if(bool is_wrong, const std::string& path, std::uint64_t line, const Pieces&... pieces) {
+  if (is_wrong) {
+    throw OutputError(concat(printable(path), ": line ", line, ": ", pieces...));
+  }
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
+std::vector<std::string_view> columns_in(std::string_view line) {
   std::vector<std::string_view> cells;
   for (;;) {
     const std::size_t comma = line.find(',');
@@ -65,7 +67,7 @@ class PathReader {
     std::string_view line;
     while (lines.next(line)) {
       if (line.find_first_not_of(" \t") != std::string_view::npos) {
-        take(cells_of(line), lines.line_number());
+        take(columns_in(line), lines.line_number());
       }
     }
     if (result_.cameras.empty()) {
@@ -78,24 +80,20 @@ class PathReader {
   void take(const std::vector<std::string_view>& cells, std::uint64_t line) {
     if (columns_.empty()) {
       columns_ = columns_for(cells.size());
-      if (columns_.empty()) {
-        fail_in_path(path_, line, concat(cells.size(), " columns are none of a camera; ", kPathColumns));
-      }
+      fail_in_path_if(columns_.empty(), path_, line, cells.size(), " columns are none of a camera; ",
+                      kPathColumns);
       result_.has_fov = columns_.back() == 9;
       if (is_names(cells)) {
         return;
       }
     }
-    if (cells.size() != columns_.size()) {
-      fail_in_path(path_, line, concat(cells.size(), " columns; the first line has ", columns_.size()));
-    }
+    fail_in_path_if(cells.size() != columns_.size(), path_, line, cells.size(),
+                    " columns; the first line has ", columns_.size());
     std::array<double, 10> numbers{};
     for (std::size_t i = 0; i < cells.size(); ++i) {
       double& number = numbers[columns_[i]];
-      if (parse_number(cells[i], number) != NumberKind::kFinite) {
-        fail_in_path(path_, line,
-                     std::string(kNames[columns_[i]]) + " " + quoted(cells[i]) + " is no finite number");
-      }
+      fail_in_path_if(parse_number(cells[i], number) != NumberKind::kFinite, path_, line, kNames[columns_[i]],
+                      " ", quoted(cells[i]), " is no finite number");
     }
     add(numbers, line);
   }
@@ -110,13 +108,11 @@ class PathReader {
     }
     if (result_.has_fov) {
       camera.view.fov_degrees = numbers[9];
-      if (!(numbers[9] >= 1 && numbers[9] <= 120)) {
-        fail_in_path(path_, line, "fov ", shortest(numbers[9]), " is not from 1 to 120 degrees");
-      }
+      fail_in_path_if(!(numbers[9] >= 1 && numbers[9] <= 120), path_, line, "fov ", shortest(numbers[9]),
+                      " is not from 1 to 120 degrees");
     }
-    if (result_.cameras.size() == kMostFilmFrames) {
-      fail_in_path(path_, line, "a film has at most ", grouped(kMostFilmFrames), " frames");
-    }
+    fail_in_path_if(result_.cameras.size() == kMostFilmFrames, path_, line, "a film has at most ",
+                    grouped(kMostFilmFrames), " frames");
     result_.cameras.push_back(camera);
   }
 
@@ -193,8 +189,8 @@ std::vector<Framing> frame_path(const std::string& path, const CameraPath& camer
     try {
       framings.push_back(frame_shape(camera.view, shape));
     } catch (const InputError& error) {
-      fail_in_path(path, camera.line,
-                   std::string(camera.is_between ? "on the way from here to the next: " : "") + error.what());
+      fail_in_path_if(true, path, camera.line, camera.is_between ? "on the way from here to the next: " : "",
+                      error.what());
     }
   }
   return framings;

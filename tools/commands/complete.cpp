@@ -31,33 +31,27 @@ std::string brief(const std::string& text) {
   return out;
 }
 
-class Answer {
- public:
-  explicit Answer(const std::string& word) : word_(word) {}
-
-  void offer(const std::string& candidate, const std::string& meaning) {
-    if (candidate.starts_with(word_)) {
-      std::printf("%s\t%s\n", candidate.c_str(), brief(meaning).c_str());
-    }
+// Offers `candidate` where it begins with `word`.
+void offer(const std::string& word, const std::string& candidate, const std::string& meaning) {
+  if (candidate.starts_with(word)) {
+    std::printf("%s\t%s\n", candidate.c_str(), brief(meaning).c_str());
   }
-  static void offer_files() { std::puts("/files"); }
+}
 
- private:
-  const std::string& word_;
-};
+constexpr const char* kFiles = "/files";
 
-void offer_scenes(const std::string& before, Answer* answer) {
+void offer_scenes(const std::string& before, const std::string& word) {
   for (const std::string& name : scene_names()) {
-    answer->offer(before + name, "a scene that comes with Thimble");
+    offer(word, before + name, "a scene that comes with Thimble");
   }
   for (const std::string& example : generator_examples()) {
-    answer->offer(before + example, "a generator");
+    offer(word, before + example, "a generator");
   }
-  Answer::offer_files();
+  std::puts(kFiles);
 }
 
 // What may follow `before`, which is empty or "--option=".
-void offer_values(CLI::Option* option, const std::string& before, const std::string& word, Answer* answer) {
+void offer_values(CLI::Option* option, const std::string& before, const std::string& word) {
   const std::string type = option->get_type_name();
   const Words words = words_offered(option);
   // A list is completed behind its last comma.
@@ -67,13 +61,13 @@ void offer_values(CLI::Option* option, const std::string& before, const std::str
     start += comma == std::string::npos ? "" : word.substr(before.size(), comma + 1 - before.size());
   }
   for (const std::string& each : words) {
-    answer->offer(start + each, "");
+    offer(word, start + each, "");
   }
   if (type == "SCENE") {
-    offer_scenes(before, answer);
+    offer_scenes(before, word);
   } else if (words.empty() &&
              (type.find("FILE") != std::string::npos || type == "SCRIPT" || type == "REF" || type == "LOG")) {
-    Answer::offer_files();
+    std::puts(kFiles);
   }
 }
 
@@ -86,7 +80,7 @@ CLI::App* subcommand_named(CLI::App& app, const std::string& name) {
   return found.empty() ? nullptr : found.front();
 }
 
-void offer_options(CLI::App& command, const Words& given, Answer* answer) {
+void offer_options(CLI::App& command, const Words& given, const std::string& prefix) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_positional()) {
       continue;
@@ -95,7 +89,7 @@ void offer_options(CLI::App& command, const Words& given, Answer* answer) {
         given.begin(), given.end(), [option](const std::string& word) { return option->check_name(word); });
     for (const std::string& name : option->get_lnames()) {
       if (!was_given) {
-        answer->offer("--" + name, option->get_description());
+        offer(prefix, "--" + name, option->get_description());
       }
     }
   }
@@ -115,37 +109,36 @@ void complete(CLI::App& app, Words words) {
   } else if (words.size() > 1 && words.back() == "=") {
     words.pop_back();
   }
-  Answer answer(word);
   CLI::App* command = nullptr;
   for (std::size_t i = 1; i < words.size() && command == nullptr; ++i) {
     command = subcommand_named(app, words[i]);
   }
   if (command == nullptr) {
     if (word.starts_with("-")) {
-      offer_options(app, words, &answer);
+      offer_options(app, words, word);
       return;
     }
     for (const CLI::App* sub :
          app.get_subcommands([](CLI::App* each) { return !each->get_group().empty(); })) {
-      answer.offer(sub->get_name(), sub->get_description());
+      offer(word, sub->get_name(), sub->get_description());
     }
     if (subcommand_named(app, "view") != nullptr) {
-      offer_scenes("", &answer);  // `thimble SCENE` is short for it
+      offer_scenes("", word);  // `thimble SCENE` is short for it
     }
     return;
   }
   const std::size_t equals = word.find('=');
   if (CLI::Option* last = option_named(*command, words.back());
       last != nullptr && !last->get_type_name().empty() && words.size() > 2) {
-    offer_values(last, "", word, &answer);
+    offer_values(last, "", word);
   } else if (CLI::Option* named =
                  equals == std::string::npos ? nullptr : option_named(*command, word.substr(0, equals));
              named != nullptr) {
-    offer_values(named, word.substr(0, equals + 1), word, &answer);
+    offer_values(named, word.substr(0, equals + 1), word);
   } else if (word.starts_with("-")) {
-    offer_options(*command, words, &answer);
+    offer_options(*command, words, word);
   } else if (CLI::Option* argument = argument_of(*command); argument != nullptr) {
-    offer_values(argument, "", word, &answer);
+    offer_values(argument, "", word);
   }
 }
 
@@ -157,17 +150,8 @@ void add_complete(CLI::App& app) {
   sub->group("");
   auto line = std::make_shared<std::string>();
   sub->add_option("words", *line, "the words up to the cursor, a line each")->type_name("WORDS")->required();
-  when_chosen(*sub, [&app, line] {
-    Words words{""};
-    for (const char c : *line) {
-      if (c == '\n') {
-        words.emplace_back();
-      } else {
-        words.back() += c;
-      }
-    }
-    complete(app, words);
-  });
+  // A last line that is empty is a word, too.
+  when_chosen(*sub, [&app, line] { complete(app, CLI::detail::split(*line + '\n', '\n')); });
 }
 
 }  // namespace thimble::tools

@@ -52,9 +52,9 @@ struct EffectRow : MedianTime {  ///< times: of the differences, frame by frame
   std::int64_t node_visits = 0;                   ///< the same, of all kinds
   double with_ms = 0;                             ///< medians of the frames
   double without_ms = 0;
-  /// State and tables (lit_state_bytes), without `EffectsStudy::base_ram_bytes`.
+  /// State and tables (lit_state_bytes), without kBaseRamBytes, which the first effect brings along.
   std::uint64_t ram_bytes = 0;
-  /// On lm3s6965evb, without `base_flash_bytes` (platform/boards/effect_flash.h).
+  /// On lm3s6965evb, without kLitBaseFlashBytes (platform/boards/effect_flash.h).
   std::uint64_t flash_bytes = 0;
 
   std::int64_t all_rays() const { return std::accumulate(rays.begin(), rays.end(), std::int64_t{0}); }
@@ -67,9 +67,6 @@ struct EffectsStudy {
   LitCounts plain;                             ///< the frame without effects
   double lit_ms = 0;
   double plain_ms = 0;
-  /// What the first effect costs beside its own: nothing where there is none.
-  std::uint64_t base_ram_bytes = 0;
-  std::uint64_t base_flash_bytes = 0;
   std::uint64_t state_bytes = 0;  ///< all of it, as --memory counts it
   std::string note;
 };
@@ -79,22 +76,16 @@ std::string materials(const LitDescription& lit, const UsedMaterials& used, Surf
                       const std::string& what, const std::string& none) {
   constexpr std::size_t kMostNamed = 4;
   std::size_t count = 0;
-  std::string names;
+  std::vector<std::string> named;
   for (std::size_t i = 0; i < lit.surfaces.size(); ++i) {
-    if (!used.is[i] || lit.surfaces[i].kind != kind) {
-      continue;
-    }
-    if (++count <= kMostNamed) {
-      names += (names.empty() ? "" : ", ") + lit.name_of(static_cast<std::uint8_t>(i));
+    if (used.is[i] && lit.surfaces[i].kind == kind && ++count <= kMostNamed) {
+      named.push_back(lit.name_of(static_cast<std::uint8_t>(i)));
     }
   }
-  if (count == 0) {
-    return none;
-  }
-  if (count > kMostNamed) {
-    names += concat(" and ", count - kMostNamed, " more");
-  }
-  return (count == 1 ? "material " : "materials ") + names + (count == 1 ? " is " : " are ") + what;
+  return count == 0 ? none
+                    : concat(count == 1 ? "material " : "materials ", joined(named, ", "),
+                             count > kMostNamed ? concat(" and ", count - kMostNamed, " more") : "",
+                             count == 1 ? " is " : " are ", what);
 }
 
 std::string lights(const LitDescription& lit) {
@@ -209,9 +200,7 @@ class EffectsStudio {
     const Status status =
         render_lit_band(effects, built_.compact(), camera_, shading_, variant->scene, band, &variant->counts);
     variant->ms.push_back(watch.ms());
-    if (status != Status::kOk) {
-      throw InputError("its lights or surfaces are beyond the limits of a lit picture");
-    }
+    fail_if(status != Status::kOk, "its lights or surfaces are beyond the limits of a lit picture");
   }
 
   const BuiltScene& built_;
@@ -288,10 +277,6 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
   study.lit_ms = quantile(whole.ms, 0.5);
   study.plain_ms = quantile(plain.ms, 0.5);
   study.state_bytes = lit_state_bytes(whole.scene, study.effects);
-  if (study.effects != Effect::kNone) {
-    study.base_ram_bytes = kBaseRamBytes;
-    study.base_flash_bytes = kLitBaseFlashBytes;
-  }
   return study;
 }
 
@@ -308,48 +293,33 @@ std::string signed_count(std::int64_t number) {
 
 // --- rows for machines -------------------------------------------------------------------------------------
 
-JsonRow objects(const EffectsStudy& study) {
-  JsonRow rows = JsonRow::array();
-  for (const EffectRow& row : study.rows) {
-    JsonRow object;
-    object["effect"] = effect_name(row.effect);
-    object["called_for"] = row.called_for ? 1 : 0;
-    object["why"] = row.why;
-    for (int kind = 0; kind < kLitRayKinds; ++kind) {
-      object[std::string(ray_kind_name(static_cast<LitRayKind>(kind))) + "_rays"] =
-          row.rays[static_cast<std::size_t>(kind)];
-    }
-    object["rays"] = row.all_rays();
-    object["node_visits"] = row.node_visits;
-    object["ms"] = row.ms_median;
-    object["q25_ms"] = row.ms_quarter;
-    object["q75_ms"] = row.ms_three_quarters;
-    object["with_ms"] = json_of(row.called_for ? &row.with_ms : nullptr);
-    object["without_ms"] = json_of(row.called_for ? &row.without_ms : nullptr);
-    object["ram_bytes"] = row.ram_bytes;
-    object["flash_bytes"] = row.flash_bytes;
-    rows.push_back(object);
+JsonRow effect_object(const EffectRow& row) {
+  JsonRow object;
+  put_all(&object, "effect", effect_name(row.effect), "called_for", row.called_for ? 1 : 0, "why", row.why);
+  for (int kind = 0; kind < kLitRayKinds; ++kind) {
+    object[std::string(ray_kind_name(static_cast<LitRayKind>(kind))) + "_rays"] =
+        row.rays[static_cast<std::size_t>(kind)];
   }
-  return rows;
+  put_all(&object, "rays", row.all_rays(), "node_visits", row.node_visits, "ms", row.ms_median, "q25_ms",
+          row.ms_quarter, "q75_ms", row.ms_three_quarters, "with_ms",
+          json_of(row.called_for ? &row.with_ms : nullptr), "without_ms",
+          json_of(row.called_for ? &row.without_ms : nullptr), "ram_bytes", row.ram_bytes, "flash_bytes",
+          row.flash_bytes);
+  return object;
 }
 
 // --- tables for people -------------------------------------------------------------------------------------
 
 std::string cost_table(const EffectsStudy& study) {
-  std::vector<Cells> rows{{"effect", "rays", "nodes", "ms", "quartiles", "RAM", "flash"}};
-  for (const EffectRow& row : study.rows) {
-    if (!row.called_for) {
-      rows.push_back({effect_name(row.effect), "0", "0", "0", "", "0", "0"});
-      continue;
-    }
-    rows.push_back({effect_name(row.effect), signed_count(row.all_rays()), signed_count(row.node_visits),
-                    fixed(row.ms_median, 2),
-                    fixed(row.ms_quarter, 2) + " .. " + fixed(row.ms_three_quarters, 2),
-                    grouped(row.ram_bytes), grouped(row.flash_bytes)});
-  }
+  const auto cells = [](const EffectRow& row) {
+    return cells_of(effect_name(row.effect), signed_count(row.all_rays()), signed_count(row.node_visits),
+                    row.called_for ? fixed(row.ms_median, 2) : "0",
+                    row.called_for ? fixed(row.ms_quarter, 2) + " .. " + fixed(row.ms_three_quarters, 2) : "",
+                    grouped(row.ram_bytes), grouped(row.flash_bytes));
+  };
   return "more with the effect than without it: rays, nodes visited, milliseconds a frame, bytes of RAM\n"
          "and, on lm3s6965evb, of flash\n" +
-         columns_of(rows, 1);
+         table_of({"effect", "rays", "nodes", "ms", "quartiles", "RAM", "flash"}, 1, study.rows, cells);
 }
 
 std::string why_table(const EffectsStudy& study) {
@@ -391,8 +361,8 @@ std::string frame_lines(const EffectsStudy& study) {
   std::string text = "\na frame without effects takes " + fixed(study.plain_ms, 2) + " ms";
   if (study.effects != Effect::kNone) {
     text += ", with these " + fixed(study.lit_ms, 2) + " ms and " + grouped(study.state_bytes) +
-            " bytes beside\ntree and band; a lit picture takes " + grouped(study.base_ram_bytes) +
-            " bytes of RAM and " + grouped(study.base_flash_bytes) +
+            " bytes beside\ntree and band; a lit picture takes " + grouped(kBaseRamBytes) +
+            " bytes of RAM and " + grouped(kLitBaseFlashBytes) +
             " of flash before its first effect; what\neffects share is counted with each (flash) or with "
             "none (RAM)";
   }
@@ -405,14 +375,10 @@ std::string plot(const EffectsCommand& command, const EffectsStudy& study) {
   chart.x_label = concat("milliseconds a frame of ", command.study.view.width_px, " x ",
                          command.study.view.height_px, ", with quartiles");
   for (const EffectRow& row : study.rows) {
-    Bar bar;
-    bar.name = effect_name(row.effect);
-    bar.value = row.ms_median;
-    bar.low = row.ms_quarter;
-    bar.high = row.ms_three_quarters;
-    bar.text = row.called_for ? fixed(row.ms_median, 2) + " ms, " + signed_count(row.all_rays()) + " rays"
-                              : "not called for";
-    chart.bars.push_back(bar);
+    chart.bars.push_back({effect_name(row.effect), row.ms_median, row.ms_quarter, row.ms_three_quarters,
+                          row.called_for
+                              ? fixed(row.ms_median, 2) + " ms, " + signed_count(row.all_rays()) + " rays"
+                              : "not called for"});
   }
   return bar_chart_text(chart);
 }
@@ -423,10 +389,8 @@ void run(const EffectsCommand& command) {
   const EffectsStudy study = with_progress("measuring", command.scene.quiet, [&](const Progress& progress) {
     return study_effects(*source, command.study, progress);
   });
-  files.write(objects(study), files.wants_plot() ? plot(command, study) : "");
-  if (!command.scene.quiet && !study.note.empty()) {
-    std::fprintf(stderr, "note: %s\n", study.note.c_str());
-  }
+  files.write(objects_of(study.rows, effect_object), files.wants_plot() ? plot(command, study) : "");
+  print_notes({study.note}, command.scene.quiet);
   files.print(printable(command.scene.arguments.scene) + "\n\n" + cost_table(study) + frame_lines(study) +
               why_table(study) + rays_table(study));
 }

@@ -6,7 +6,7 @@
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "output/voxel_file.h"
@@ -26,9 +26,7 @@ void run(const ExportCommand& command) {
   OutputSet outputs({command.output}, {command.scene.arguments.scene});
   const auto source = command.scene.open();
   const BuiltScene built = command.scene.build(*source);
-  if (built.voxels() == 0) {
-    throw InputError("nothing in ", printable(command.scene.arguments.scene), " is solid");
-  }
+  fail_if(built.voxels() == 0, "nothing in ", printable(command.scene.arguments.scene), " is solid");
   with_progress("writing", command.scene.quiet, [&](const Progress& progress) {
     write_voxels(outputs[0], command.format, built.compact(), source->palette(), source->has_colors(),
                  progress);

@@ -7,7 +7,7 @@
 #include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/units.h"
 #include "readers/file_bytes.h"
 #include "scene/board_fit.h"
@@ -21,8 +21,6 @@ struct ImageCommand : BakeCommand {
   std::string app = "demo";
   std::string folder;
 };
-
-const std::vector<std::string> kApps{"demo", "dig", "water"};
 
 constexpr std::uint64_t kMostImageBytes = std::uint64_t{16} << 20;
 // Sets of effects that a board has programs for (platform/images.sh).
@@ -49,10 +47,9 @@ std::vector<BoardImage> load_images(std::string folder, const platform::BoardFac
       }
     }
   }
-  if (images.empty()) {
-    throw InputError("there is no image of ", app, " for ", board.name, folder.empty() ? "" : " in " + folder,
-                     "; make images builds them, --images or $THIMBLE_IMAGES says where they are");
-  }
+  fail_if(images.empty(), "there is no image of ", app, " for ", board.name,
+          folder.empty() ? "" : " in " + folder,
+          "; make images builds them, --images or $THIMBLE_IMAGES says where they are");
   sort_images(&images);
   return images;
 }
@@ -73,16 +70,11 @@ void run(const ImageCommand& given) {
   BakingOptions options;
   const Baked baked = bake(&command, *source, &options);
   const BoardImage* const image = is_dig ? &images.front() : image_for(images, baked);
-  if (image == nullptr) {
-    throw InputError(not_drawn_text(command, baked.effects));
-  }
-  if (command.app == "water" && (baked.effects & Effect::kWater) == 0) {
-    throw InputError("holds no water that water could move: it has no `water` statement");
-  }
+  fail_if(image == nullptr, not_drawn_text(command, baked.effects));
+  fail_if(command.app == "water" && (baked.effects & Effect::kWater) == 0,
+          "holds no water that water could move: it has no `water` statement");
   outputs[0]->write(image_file(*image, baked.bytes, board, command.output));
-  if (outputs[1] != nullptr) {
-    outputs[1]->write(stats_text(baked_stats(command, *source, baked, options.limit_bytes)));
-  }
+  outputs.write(1, stats_text(baked_stats(command, *source, baked, options.limit_bytes)));
   outputs.commit();
   if (!command.scene.quiet) {
     const std::uint64_t ram = drawing_ram_bytes(board, baked.effects);
@@ -109,10 +101,7 @@ void add_image(CLI::App& app) {
       "pico, .gba for gba)")
       ->required();
   add_board(*sub, &command->scene.board, "the board, which must be given")->required();
-  add_choice_option(
-      *sub, "--app", kApps, [command](std::size_t index) { command->app = kApps[index]; },
-      "the application that shows it")
-      ->default_str("demo");
+  add_choice_option(*sub, "--app", {"demo", "dig", "water"}, &command->app, "the application that shows it");
   add_fitting(*sub, command.get());
   add_effect_list(
       *sub, &command->effects,
@@ -123,10 +112,8 @@ void add_image(CLI::App& app) {
   add_picture_view(*sub, &command->view);
   command->scene.add_report(*sub);
   also_check(*sub, [command] {
-    if (command->output != "-" && !takes_ending(*command->scene.board, command->output)) {
-      refuse_usage("--output", "\"" + command->output + "\" ends in nothing that " +
-                                   command->scene.board->name + " takes");
-    }
+    refuse_if(command->output != "-" && !takes_ending(*command->scene.board, command->output), "--output: \"",
+              command->output, "\" ends in nothing that ", command->scene.board->name, " takes");
   });
   when_chosen(*sub, [command] { run(*command); });
 }

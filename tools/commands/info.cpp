@@ -7,7 +7,7 @@
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/units.h"
 #include "readers/oct.h"
 #include "scene/board_fit.h"
@@ -66,15 +66,13 @@ std::string describe(const LitDescription& lit, const UsedMaterials& used) {
       ++kinds[static_cast<std::size_t>(lit.surfaces[index].kind)];
     }
   }
-  std::string materials = std::to_string(used_count);
-  const char* separator = ": ";
+  std::vector<std::string> counts;
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     if (kinds[kind] != 0) {
-      materials += concat(separator, kinds[kind], " ", kKindNames[kind]);
-      separator = ", ";
+      counts.push_back(concat(kinds[kind], " ", kKindNames[kind]));
     }
   }
-  return materials;
+  return concat(used_count, counts.empty() ? "" : ": ", joined(counts, ", "));
 }
 
 // What only a baked scene has.
@@ -89,33 +87,32 @@ void describe(const BakedScene& baked, const Row& row) {
   row("baked bytes", grouped(baked.bytes().size));
   std::string sections;
   std::size_t content = 0;
-  const auto section = [&](const char* what, SectionKind kind) {
+  constexpr std::array<std::pair<const char*, SectionKind>, 7> kSections{
+      {{"tree", SectionKind::kTree},
+       {"palette", SectionKind::kPalette},
+       {"camera", SectionKind::kCamera},
+       {"brick map", SectionKind::kBrickMap},
+       {"name", SectionKind::kName},
+       {"lighting", SectionKind::kLighting},
+       {"look", SectionKind::kLook}}};
+  for (const auto& [what, kind] : kSections) {
     const std::size_t size = baked.section(kind).size;
     content += size;
-    if (size != 0) {
-      sections += what + std::string(" ") + grouped(size) + ", ";
-    }
-  };
-  section("tree", SectionKind::kTree);
-  section("palette", SectionKind::kPalette);
-  section("camera", SectionKind::kCamera);
-  section("brick map", SectionKind::kBrickMap);
-  section("name", SectionKind::kName);
-  section("lighting", SectionKind::kLighting);
-  section("look", SectionKind::kLook);
+    sections += size == 0 ? "" : concat(what, " ", grouped(size), ", ");
+  }
   row("sections", sections + "rest " + grouped(baked.bytes().size - content));
   row("palette entries", std::to_string(baked.palette().size));
   row("camera", baked.has_camera() ? describe(baked.camera()) : "none");
-  std::string fits;
+  std::vector<std::string> fits;
   BakedLighting lighting;
   const bool is_lit = BakedLighting::open(baked.section(SectionKind::kLighting), baked.tree().level(),
                                           &lighting) == Status::kOk;
   for (const platform::BoardFacts& board : platform::boards()) {
     if (baked.bytes().size <= scene_flash_bytes(board, is_lit ? lighting.effects : Effect::kNone)) {
-      fits += (fits.empty() ? "" : ", ") + std::string(board.name);
+      fits.emplace_back(board.name);
     }
   }
-  row("fits the flash of", fits.empty() ? "no board" : fits);
+  row("fits the flash of", fits.empty() ? "no board" : joined(fits, ", "));
 }
 
 void run(const SceneOptions& options) {
@@ -164,26 +161,20 @@ void run(const SceneOptions& options) {
     uint32_t place = 0;
     const char* fault =
         CompactTree::validate({built.compact().bytes(), built.compact().size_bytes()}, &place);
-    if (fault != nullptr) {
-      throw InputError("the compact tree is not sound at ", place, ": ", fault);
-    }
+    fail_if(fault != nullptr, "the compact tree is not sound at ", place, ": ", fault);
     row("compact tree", "sound");
   }
+  Stats stats(options.arguments.scene, *source, built);
   if (const BakedScene* baked = source->baked()) {
     describe(*baked, row);
+    stats.baked_bytes = baked->bytes().size;
+    stats.baked_crc32 = crc_text(baked->crc32());
   }
-  if (outputs[0] != nullptr) {
-    Stats stats(options.arguments.scene, *source, built);
-    if (const BakedScene* baked = source->baked()) {
-      stats.baked_bytes = baked->bytes().size;
-      stats.baked_crc32 = crc_text(baked->crc32());
-    }
-    if (options.board != nullptr) {
-      stats.board = options.board->name;
-    }
-    outputs[0]->write(stats_text(stats));
-    outputs.commit();
+  if (options.board != nullptr) {
+    stats.board = options.board->name;
   }
+  outputs.write(0, stats_text(stats));
+  outputs.commit();
   OutputFile output("-");
   output.write(text);
   output.commit();

@@ -7,7 +7,7 @@
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/image.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/part_file.h"
 #include "output/progress.h"
 #include "output/units.h"
@@ -47,38 +47,29 @@ class Whole {
   void check_belongs(const PartFile& part) const {
     const PartHeader& one = header();
     const PartHeader& other = part.header();
-    const auto fail = [&](const auto&... why) {
-      throw InputError(printable(part.path()), ": does not belong to ", printable(parts_.front().path()),
-                       ": ", why...);
+    const auto refuse = [&](bool is_other, const auto&... why) {
+      fail_if(is_other, printable(part.path()), ": does not belong to ", printable(parts_.front().path()),
+              ": ", why...);
     };
     const auto size_of = [](const PartHeader& header) {
       return concat(header.width_px, "x", header.height_px);
     };
-    if (other.kind != one.kind) {
-      const auto name = [](PartKind kind) {
-        return kind == PartKind::kRows        ? "a picture"
-               : kind == PartKind::kTurntable ? "a film by --turntable"
-               : kind == PartKind::kAnimation ? "a film by --frames"
-                                              : "a film by --camera-path";
-      };
-      fail("it is a part of ", name(other.kind), ", not of ", name(one.kind));
-    }
-    if (other.width_px != one.width_px || other.height_px != one.height_px) {
-      fail("its size is ", size_of(other), ", not ", size_of(one));
-    }
-    if (other.all != one.all) {
-      fail("its film has ", other.all, " frames, not ", one.all);
-    }
-    if (other.scene_crc32 != one.scene_crc32) {
-      fail("it shows another scene, or one built otherwise (--depth, --frame, --coarsen and the like)");
-    }
-    if (other.camera_crc32 != one.camera_crc32) {
-      fail("its camera is another");
-    }
-    if (other.options_crc32 != one.options_crc32 || other.pixels != one.pixels ||
-        other.has_finer_shades != one.has_finer_shades) {
-      fail("it was drawn with other options");
-    }
+    const auto name = [](PartKind kind) {
+      return kind == PartKind::kRows        ? "a picture"
+             : kind == PartKind::kTurntable ? "a film by --turntable"
+             : kind == PartKind::kAnimation ? "a film by --frames"
+                                            : "a film by --camera-path";
+    };
+    refuse(other.kind != one.kind, "it is a part of ", name(other.kind), ", not of ", name(one.kind));
+    refuse(other.width_px != one.width_px || other.height_px != one.height_px, "its size is ", size_of(other),
+           ", not ", size_of(one));
+    refuse(other.all != one.all, "its film has ", other.all, " frames, not ", one.all);
+    refuse(other.scene_crc32 != one.scene_crc32,
+           "it shows another scene, or one built otherwise (--depth, --frame, --coarsen and the like)");
+    refuse(other.camera_crc32 != one.camera_crc32, "its camera is another");
+    refuse(other.options_crc32 != one.options_crc32 || other.pixels != one.pixels ||
+               other.has_finer_shades != one.has_finer_shades,
+           "it was drawn with other options");
   }
 
   void place(std::size_t index) {
@@ -111,10 +102,8 @@ class Whole {
       missing += end - unit;
       unit = std::max(end, unit + 1);
     }
-    if (missing != 0) {
-      throw InputError("of ", all, " ", header().unit(), "s these are missing (FIRST:COUNT): ", text,
-                       gaps > kMostNamed ? concat(" and ", gaps - kMostNamed, " gaps more") : "");
-    }
+    fail_if(missing != 0, "of ", all, " ", header().unit(), "s these are missing (FIRST:COUNT): ", text,
+            gaps > kMostNamed ? concat(" and ", gaps - kMostNamed, " gaps more") : "");
   }
 
   std::vector<PartFile> parts_;
@@ -164,23 +153,17 @@ void join_picture(const JoinCommand& command, const Whole& whole, OutputFile* fi
 // What kind of file these parts can become.
 void check_kind(const JoinCommand& command, const PartHeader& header) {
   const bool is_picture = header.kind == PartKind::kRows;
-  if (is_picture ? is_film(command.output) : !is_film(command.output) && !is_sequence(command.output)) {
-    refuse_usage("--output",
-                 in_quotes(command.output) +
-                     (is_picture ? std::string(" is no picture, of which these parts are: ") + kImageEndings
-                                 : std::string(" is no film, of which these parts are: ") + kFilmEndings));
-  }
+  refuse_if(is_picture ? is_film(command.output) : !is_film(command.output) && !is_sequence(command.output),
+            "--output: ", in_quotes(command.output),
+            (is_picture ? std::string(" is no picture, of which these parts are: ") + kImageEndings
+                        : std::string(" is no film, of which these parts are: ") + kFilmEndings));
   const auto kind = image_kind(command.output);
-  if (header.pixels == PartPixels::kRgba && kind != ImageKind::kPng) {
-    refuse_usage("--output",
-                 "parts with --background none want a .png, the one that holds what is transparent");
-  }
-  if (header.pixels == PartPixels::kMono && kind != ImageKind::kPbm) {
-    refuse_usage("--output", "parts named .pbm.part are of one bit a pixel and make a .pbm only");
-  }
-  if (header.has_finer_shades && kind == ImageKind::kPbm) {
-    refuse_usage("--output", "a .pbm with light is dithered as it is drawn: name its parts F.pbm.part");
-  }
+  refuse_if(header.pixels == PartPixels::kRgba && kind != ImageKind::kPng,
+            "--output: parts with --background none want a .png, the one that holds what is transparent");
+  refuse_if(header.pixels == PartPixels::kMono && kind != ImageKind::kPbm,
+            "--output: parts named .pbm.part are of one bit a pixel and make a .pbm only");
+  refuse_if(header.has_finer_shades && kind == ImageKind::kPbm,
+            "--output: a .pbm with light is dithered as it is drawn: name its parts F.pbm.part");
 }
 
 void run(const JoinCommand& command) {

@@ -29,17 +29,11 @@ std::string plain(const std::string& text) {
 
 // In lines of at most 80 characters, about, as sources of manuals are.
 std::string paragraph(const std::string& text) {
-  constexpr std::size_t kWidth = 70;
   std::string out;
-  std::string line;
-  for (const std::string& word : CLI::detail::split(text, ' ')) {
-    if (!line.empty() && line.size() + word.size() > kWidth) {
-      out += plain(line) + "\n";
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
+  for (const std::string& line : CLI::detail::split(wrapped(text, 0, 71), '\n')) {
+    out += plain(line) + "\n";
   }
-  return out + plain(line) + "\n";
+  return out;
 }
 
 std::string option_entry(const CLI::Option& option, bool is_argument) {

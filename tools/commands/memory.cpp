@@ -77,10 +77,6 @@ std::string boards_that_fit(const MemoryStudy& study, const DepthRow& row, std::
   return names;
 }
 
-std::string grid_text(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
-  return concat(x, "x", y, "x", z);
-}
-
 // The error of the picture at a depth; null for none.
 const PictureError* error_at(const MemoryStudy& study, int depth) {
   return depth == 0 ? nullptr : &study.depths[static_cast<std::size_t>(depth) - 1].error;
@@ -105,17 +101,10 @@ JsonRow depth_object(const MemoryStudy& study, const DepthRow& row) {
       object[std::string(kColumnNames[i]) + name] = figure_of(row.structures[i]);
     }
   };
-  object["row"] = "depth";
-  object["depth"] = row.depth;
-  object["grid"] = grid_text(static_cast<std::uint64_t>(row.grid.x), static_cast<std::uint64_t>(row.grid.y),
-                             static_cast<std::uint64_t>(row.grid.z));
-  object["units"] = row.units;
-  object["stored"] = "scene";
-  object["voxels"] = row.voxels;
-  object["leaves"] = row.leaves;
-  object["pool_nodes"] = row.pool_nodes;
-  object["compact_nodes"] = row.compact_nodes;
-  object["dag_nodes"] = row.dag_nodes;
+  put_all(&object, "row", "depth", "depth", row.depth, "grid",
+          concat(row.grid.x, "x", row.grid.y, "x", row.grid.z), "units", row.units, "stored", "scene",
+          "voxels", row.voxels, "leaves", row.leaves, "pool_nodes", row.pool_nodes, "compact_nodes",
+          row.compact_nodes, "dag_nodes", row.dag_nodes);
   add_each("_bytes", [](const StructureFigures& figures) { return figures.bytes; });
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     for (std::size_t stored = 0; stored < kStoredKinds; ++stored) {
@@ -143,19 +132,13 @@ JsonRow paper_object(const JsonRow& like, std::uint64_t layers, std::size_t stor
     object[name] = nullptr;
   }
   const std::uint64_t units = kPaperLayer * layers;
-  object["row"] = row;
-  object["grid"] = grid_text(800, 600, layers);
-  object["units"] = units;
-  object["stored"] = kStoredNames[stored];
-  object["dense_bytes"] = dense_bytes(units, stored);
+  put_all(&object, "row", row, "grid", concat("800x600x", layers), "units", units, "stored",
+          kStoredNames[stored], "dense_bytes", dense_bytes(units, stored));
   return object;
 }
 
 JsonRow depth_objects(const MemoryStudy& study) {
-  JsonRow rows = JsonRow::array();
-  for (const DepthRow& row : study.depths) {
-    rows.push_back(depth_object(study, row));
-  }
+  JsonRow rows = objects_of(study.depths, [&](const DepthRow& row) { return depth_object(study, row); });
   const JsonRow like = rows.front();
   for (std::size_t stored = 0; stored < kStoredKinds; ++stored) {
     rows.push_back(paper_object(like, 1, stored, "paper"));
@@ -166,8 +149,7 @@ JsonRow depth_objects(const MemoryStudy& study) {
 }
 
 JsonRow budget_objects(const MemoryStudy& study) {
-  JsonRow rows = JsonRow::array();
-  for (const BudgetRow& row : study.budgets) {
+  return objects_of(study.budgets, [&](const BudgetRow& row) {
     JsonRow object;
     object["budget_bytes"] = row.budget_bytes;
     for (std::size_t i = 0; i < kMemoryStructures; ++i) {
@@ -179,9 +161,8 @@ JsonRow budget_objects(const MemoryStudy& study) {
     object["coarsened_solid_added_voxels"] =
         row.coarsened_bytes ? JsonRow(row.solid_added) : JsonRow(nullptr);
     add_error("coarsened_", row.coarsened_bytes ? &row.coarsened_error : nullptr, &object);
-    rows.push_back(object);
-  }
-  return rows;
+    return object;
+  });
 }
 
 // --- tables for people -------------------------------------------------------------------------------------
@@ -190,21 +171,20 @@ std::string dash_or(const std::optional<double>& value, int digits) {
   return value ? fixed(*value, digits) : "-";
 }
 
+// How many bytes a voxel those are.
+std::string share_of(std::uint64_t bytes, const DepthRow& row) {
+  return row.voxels == 0 ? "-" : fixed(static_cast<double>(bytes) / static_cast<double>(row.voxels), 2);
+}
+
 std::string bytes_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{{"depth", "voxels", "dense", "pool", "compact", "/voxel", "DAG", "/voxel"}};
-  for (const DepthRow& row : study.depths) {
-    Cells cells{std::to_string(row.depth), grouped(row.voxels)};
-    for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-      const std::uint64_t bytes = row.structures[i].bytes;
-      cells.push_back(grouped(bytes));
-      if (i == kCompact || i == kShared) {
-        cells.push_back(
-            row.voxels == 0 ? "-" : fixed(static_cast<double>(bytes) / static_cast<double>(row.voxels), 2));
-      }
-    }
-    rows.push_back(cells);
-  }
-  return "bytes\n" + columns_of(rows, 0);
+  const auto cells = [](const DepthRow& row) {
+    const auto bytes = [&](std::size_t structure) { return row.structures[structure].bytes; };
+    return cells_of(row.depth, grouped(row.voxels), grouped(bytes(kDense)), grouped(bytes(kPool)),
+                    grouped(bytes(kCompact)), share_of(bytes(kCompact), row), grouped(bytes(kShared)),
+                    share_of(bytes(kShared), row));
+  };
+  return "bytes\n" + table_of({"depth", "voxels", "dense", "pool", "compact", "/voxel", "DAG", "/voxel"}, 0,
+                              study.depths, cells);
 }
 
 std::string stored_table(const MemoryStudy& study) {
@@ -216,7 +196,7 @@ std::string stored_table(const MemoryStudy& study) {
   for (std::size_t i = 0; i < kMemoryStructures; ++i) {
     Cells cells{kTitles[i]};
     for (const std::uint64_t bytes : own.structures[i].stored_bytes) {
-      cells.push_back(fixed(static_cast<double>(bytes) / static_cast<double>(own.voxels), 2));
+      cells.push_back(share_of(bytes, own));
     }
     rows.push_back(cells);
   }
@@ -227,53 +207,50 @@ std::string stored_table(const MemoryStudy& study) {
       columns_of(rows, 1));
 }
 
+// A row a depth, and for each structure what `text_of` says of it.
+template <class... TextOf>
+std::string depth_table(const Cells& head, const MemoryStudy& study, const TextOf&... text_of) {
+  return table_of(head, 0, study.depths, [&](const DepthRow& row) {
+    Cells cells = cells_of(row.depth);
+    const auto add_each = [&](const auto& text) {
+      std::transform(row.structures.begin(), row.structures.end(), std::back_inserter(cells), text);
+    };
+    (add_each(text_of), ...);
+    return cells;
+  });
+}
+
 std::string building_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{{"depth", "dense", "pool", "compact", "DAG"}};
-  for (const DepthRow& row : study.depths) {
-    Cells cells{std::to_string(row.depth)};
-    for (const StructureFigures& figures : row.structures) {
-      cells.push_back(grouped(figures.build_bytes));
-    }
-    rows.push_back(cells);
-  }
-  return "\nmost bytes in use while building\n" + columns_of(rows, 0);
+  return "\nmost bytes in use while building\n" +
+         depth_table({"depth", "dense", "pool", "compact", "DAG"}, study,
+                     [](const StructureFigures& figures) { return grouped(figures.build_bytes); });
 }
 
 std::string picture_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{{"depth", "wrong px", "%", "silhouette px", "%", "depth mean", "depth max"}};
-  for (const DepthRow& row : study.depths) {
+  const auto cells = [&](const DepthRow& row) {
     const PictureError& error = row.error;
-    rows.push_back({std::to_string(row.depth), grouped(error.wrong_px), percent(error.wrong_px, study.pixels),
+    return cells_of(row.depth, grouped(error.wrong_px), percent(error.wrong_px, study.pixels),
                     grouped(error.silhouette_px), percent(error.silhouette_px, study.pixels),
-                    fixed(error.depth_mean_voxels, 2), fixed(error.depth_max_voxels, 1)});
-  }
+                    fixed(error.depth_mean_voxels, 2), fixed(error.depth_max_voxels, 1));
+  };
   return "\nthe picture against the deepest: pixels of another colour, pixels hit in one only, error of the\n"
          "distance where both hit, in voxels of the deepest\n" +
-         columns_of(rows, 0);
+         table_of({"depth", "wrong px", "%", "silhouette px", "%", "depth mean", "depth max"}, 0,
+                  study.depths, cells);
 }
 
 std::string frame_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{{"depth", "dense ms", "pool ms", "compact ms", "DAG ms", "dense visits",
-                           "pool visits", "compact visits", "DAG visits"}};
-  for (const DepthRow& row : study.depths) {
-    Cells cells{std::to_string(row.depth)};
-    for (const StructureFigures& figures : row.structures) {
-      cells.push_back(dash_or(figures.frame_ms, 2));
-    }
-    for (const StructureFigures& figures : row.structures) {
-      cells.push_back(dash_or(figures.visits_per_ray, 2));
-    }
-    rows.push_back(cells);
-  }
   return "\nprocessor time of a frame (median, structures by turns) and nodes visited a ray (dense: "
          "cells)\n" +
-         columns_of(rows, 0);
+         depth_table(
+             {"depth", "dense ms", "pool ms", "compact ms", "DAG ms", "dense visits", "pool visits",
+              "compact visits", "DAG visits"},
+             study, [](const StructureFigures& figures) { return dash_or(figures.frame_ms, 2); },
+             [](const StructureFigures& figures) { return dash_or(figures.visits_per_ray, 2); });
 }
 
 std::string boards_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{
-      {"board", "flash for a scene", "compact", "DAG", "RAM beside drawing", "pool", "dense"}};
-  for (const platform::BoardFacts& board : platform::boards()) {
+  const auto cells = [&](const platform::BoardFacts& board) {
     const auto deepest = [&](std::size_t structure) {
       int depth = 0;
       for (const DepthRow& row : study.depths) {
@@ -282,12 +259,15 @@ std::string boards_table(const MemoryStudy& study) {
       return depth == 0 ? std::string("-") : std::to_string(depth);
     };
     const std::uint64_t drawing = drawing_ram_bytes(board);
-    rows.push_back({board.name, grouped(scene_flash_bytes(board)), deepest(kCompact), deepest(kShared),
+    return cells_of(board.name, grouped(scene_flash_bytes(board)), deepest(kCompact), deepest(kShared),
                     grouped(board.ram_bytes > drawing ? board.ram_bytes - drawing : 0), deepest(kPool),
-                    deepest(kDense)});
-  }
-  return concat("\nthe deepest depth that each board holds, of ", study.depths.back().depth,
-                ": baked in flash, or built in RAM\n", columns_of(rows, 1));
+                    deepest(kDense));
+  };
+  return concat(
+      "\nthe deepest depth that each board holds, of ", study.depths.back().depth,
+      ": baked in flash, or built in RAM\n",
+      table_of({"board", "flash for a scene", "compact", "DAG", "RAM beside drawing", "pool", "dense"}, 1,
+               platform::boards(), cells));
 }
 
 std::string paper_table() {
@@ -314,27 +294,29 @@ std::string paper_table() {
 }
 
 std::string budget_table(const MemoryStudy& study) {
-  std::vector<Cells> rows{{"budget", "dense", "pool", "compact", "DAG", "wrong %", "depth", "coarsened",
-                           "added", "wrong %", "depth"}};
-  for (const BudgetRow& row : study.budgets) {
+  const auto make = [&](const BudgetRow& row) {
     Cells cells{grouped(row.budget_bytes)};
+    const auto add = [&](const Cells& more) { cells.insert(cells.end(), more.begin(), more.end()); };
+    const auto add_picture = [&](const PictureError* error) {
+      add(error == nullptr
+              ? Cells{"-", "-"}
+              : cells_of(percent(error->wrong_px, study.pixels), fixed(error->depth_mean_voxels, 2)));
+    };
     for (const int depth : row.depth) {
-      cells.push_back(depth == 0 ? "-" : std::to_string(depth));
+      add({depth == 0 ? "-" : std::to_string(depth)});
     }
-    const PictureError* error = error_at(study, row.depth[kCompact]);
-    cells.push_back(error == nullptr ? "-" : percent(error->wrong_px, study.pixels));
-    cells.push_back(error == nullptr ? "-" : fixed(error->depth_mean_voxels, 2));
-    const bool coarsened = row.coarsened_bytes.has_value();
-    cells.push_back(coarsened ? grouped(*row.coarsened_bytes) : "-");
-    cells.push_back(coarsened ? grouped(row.solid_added) : "-");
-    cells.push_back(coarsened ? percent(row.coarsened_error.wrong_px, study.pixels) : "-");
-    cells.push_back(coarsened ? fixed(row.coarsened_error.depth_mean_voxels, 2) : "-");
-    rows.push_back(cells);
-  }
+    add_picture(error_at(study, row.depth[kCompact]));
+    add(row.coarsened_bytes ? cells_of(grouped(*row.coarsened_bytes), grouped(row.solid_added))
+                            : Cells{"-", "-"});
+    add_picture(row.coarsened_bytes ? &row.coarsened_error : nullptr);
+    return cells;
+  };
   return "\nthe deepest depth whose bytes fit a budget and the compact one's picture; the whole depth "
          "coarsened\n"
          "to fit, the voxels added and its picture (depth: mean error of distance)\n" +
-         columns_of(rows, 0);
+         table_of({"budget", "dense", "pool", "compact", "DAG", "wrong %", "depth", "coarsened", "added",
+                   "wrong %", "depth"},
+                  0, study.budgets, make);
 }
 
 // --- plots -------------------------------------------------------------------------------------------------
@@ -414,9 +396,7 @@ void run(const MemoryCommand& command) {
                            : sweep             ? budget_plot(command, study)
                                                : depth_plot(command, study);
   files.write(sweep ? budget_objects(study) : depth_objects(study), plot);
-  if (!command.scene.quiet && !study.note.empty()) {
-    std::fprintf(stderr, "note: %s\n", study.note.c_str());
-  }
+  print_notes({study.note}, command.scene.quiet);
   files.print(printable(command.scene.arguments.scene) + "\n\n" + bytes_table(study) + stored_table(study) +
               building_table(study) + picture_table(study) +
               (command.study.frames > 0 ? frame_table(study) : "") + boards_table(study) + paper_table() +

@@ -10,7 +10,7 @@
 #include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/units.h"
 #include "output/version.h"
 #include "readers/file_bytes.h"
@@ -58,8 +58,6 @@ constexpr SketchBoard kSketchBoards[] = {
      "STMicroelectronics:stm32:GenF4:pnum=GENERIC_F405RGTX"},
     {"stm32vldiscovery", "ststm32", "disco_f100rb", "STMicroelectronics:stm32:Disco:pnum=DISCO_F100RB"}};
 
-const std::vector<std::string> kBuilds{"cmake", "platformio", "arduino"};
-
 struct NewCommand : BakeCommand {
   std::string folder;
   const PanelKind* panel = nullptr;
@@ -85,9 +83,7 @@ using Meanings = std::map<std::string, std::string>;
 // A template with the lines that one of `kinds` wants (`%KIND LINE`), and words (`@WORD@`) said.
 std::string filled(const std::string& name, const std::set<std::string>& kinds, const Meanings& words) {
   const std::string folder = folder_beside_program("new");
-  if (folder.empty()) {
-    throw InputError("the templates of projects (new) are not beside this command");
-  }
+  fail_if(folder.empty(), "the templates of projects (new) are not beside this command");
   std::istringstream lines(std::string(load_file(folder + "/" + name + ".in").text()));
   std::string text;
   for (std::string line; std::getline(lines, line);) {
@@ -109,56 +105,40 @@ std::string filled(const std::string& name, const std::set<std::string>& kinds, 
   return text;
 }
 
-// What the templates say of the board and the panel.
-void say_board(const NewCommand& command, Meanings* words) {
-  (*words)["BOARD"] = command.scene.board->name;
-  (*words)["NAME"] = command.name();
-  (*words)["VERSION"] = version_number();
-  if (const SketchBoard* const sketch = command.sketch()) {
-    (*words)["PIO_PLATFORM"] = sketch->pio_platform;
-    (*words)["PIO_BOARD"] = sketch->pio_board;
-    (*words)["FQBN"] = sketch->fqbn;
-  }
-}
-void say_panel(const PanelKind& panel, Meanings* words) {
+// What the templates say of the panel.
+Meanings words_of(const PanelKind& panel) {
   const bool is_mono = panel.format == PixelFormat::kMono1Pages;
-  Meanings& to = *words;
-  to["PANEL"] = panel.name.substr(0, panel.name.find('-'));
-  to["WHERE"] = "an " + std::string(panel.name) + " at a " + to["BOARD"];
-  to["CLASS"] = panel.driver;
-  to["BUS"] = panel.is_i2c ? "wire.bus()" : "{nullptr, bus_command, bus_data, bus_wait}";
-  to["KIND"] = is_mono ? "page" : "color";
-  to["FORMAT"] = is_mono ? "kMono1Pages" : "kRgb565Be";
-  to["C_FORMAT"] = is_mono ? "MONO1_PAGES" : "RGB565_BE";
-  to["WIDTH"] = std::to_string(panel.width_px);
-  to["HEIGHT"] = std::to_string(panel.height_px);
-  to["BAND_BYTES"] = std::to_string(band_bytes(panel.format, panel.width_px, 8));
   const std::string driver = panel.driver;
-  to["GEOMETRY"] = is_mono ? panel.geometry : "drivers::" + driver + "::" + panel.geometry + kTurned;
-  to["C_GEOMETRY"] = panel.c_geometry + std::string(is_mono ? "" : "THIMBLE_FORMAT_RGB565_BE, 1");
+  return {{"PANEL", panel.name.substr(0, panel.name.find('-'))},
+          {"CLASS", driver},
+          {"BUS", panel.is_i2c ? "wire.bus()" : "{nullptr, bus_command, bus_data, bus_wait}"},
+          {"KIND", is_mono ? "page" : "color"},
+          {"FORMAT", is_mono ? "kMono1Pages" : "kRgb565Be"},
+          {"C_FORMAT", is_mono ? "MONO1_PAGES" : "RGB565_BE"},
+          {"WIDTH", std::to_string(panel.width_px)},
+          {"HEIGHT", std::to_string(panel.height_px)},
+          {"BAND_BYTES", std::to_string(band_bytes(panel.format, panel.width_px, 8))},
+          {"GEOMETRY", is_mono ? panel.geometry : "drivers::" + driver + "::" + panel.geometry + kTurned},
+          {"C_GEOMETRY", panel.c_geometry + std::string(is_mono ? "" : "THIMBLE_FORMAT_RGB565_BE, 1")}};
 }
 
 void check(const NewCommand& command) {
   std::string name = command.name();
   std::replace(name.begin(), name.end(), '-', command.panel == nullptr ? '-' : '_');
-  if (!is_identifier(name)) {
-    refuse_usage("DIR",
-                 "\"" + command.name() +
-                     "\" is no name of a project: letters, digits and _ (- with --panel), a letter first");
-  }
+  refuse_if(!is_identifier(name), "DIR: \"", command.name(),
+            "\" is no name of a project: letters, digits and _ (- with --panel), a letter first");
   const std::string board = command.scene.board->name;
+  const bool is_cmake = command.build == "cmake";
+  const bool has_sketch = command.sketch() != nullptr;
   if (command.panel == nullptr) {
-    if (command.build != "cmake" || command.in_c) {
-      refuse_usage(command.in_c ? "--language" : "--build",
-                   "what draws on a board's own display is C++ and built by CMake; --panel names another");
-    }
-  } else if (command.build == "cmake" ? board.rfind("pico", 0) != 0 : command.sketch() == nullptr) {
-    refuse_usage("--board", command.build == "cmake" && command.sketch() != nullptr
-                                ? "with a panel " + board + " wants --build platformio or arduino"
-                                : "there is no project with a panel for " + board);
-  } else if (command.in_c && command.build != "cmake") {
-    refuse_usage("--language", "a sketch is C++; --build cmake takes C");
+    refuse_if(!is_cmake || command.in_c, command.in_c ? "--language" : "--build",
+              ": what draws on a board's own display is C++ and built by CMake; --panel names another");
+    return;
   }
+  refuse_if(is_cmake ? !board.starts_with("pico") : !has_sketch, "--board: ",
+            is_cmake && has_sketch ? "with a panel " + board + " wants --build platformio or arduino"
+                                   : "there is no project with a panel for " + board);
+  refuse_if(command.in_c && !is_cmake, "--language: a sketch is C++; --build cmake takes C");
 }
 
 // The files of the project by name.
@@ -168,19 +148,27 @@ std::map<std::string, std::string> project(const NewCommand& command, const Bake
   const bool has_map = !baked.scene.section(SectionKind::kBrickMap).empty();
   const std::string main = kit == "arduino" ? command.name() + ".ino" : command.in_c ? "main.c" : "main.cpp";
   const std::string folder = kit == "platformio" ? "src/" : "";
-  Meanings words{{"SCENE", std::filesystem::path(command.scene.arguments.scene).filename().string()},
-                 {"MAIN", folder + main},
-                 {"MAP", has_map ? "bricks, " : ""},
-                 {"WHERE", "the display of " + std::string(board.title)},
-                 {"C_RENDER", has_map ? "thimble_scene_render_fast(&scene, &bricks, &camera, &shading, &band)"
-                                      : "thimble_scene_render(&scene, &camera, &shading, &band)"}};
-  say_board(command, &words);
+  Meanings words{
+      {"SCENE", std::filesystem::path(command.scene.arguments.scene).filename().string()},
+      {"MAIN", folder + main},
+      {"MAP", has_map ? "bricks, " : ""},
+      {"WHERE", command.panel == nullptr ? concat("the display of ", board.title)
+                                         : concat("an ", command.panel->name, " at a ", board.name)},
+      {"BOARD", board.name},
+      {"NAME", command.name()},
+      {"VERSION", version_number()},
+      {"C_RENDER", has_map ? "thimble_scene_render_fast(&scene, &bricks, &camera, &shading, &band)"
+                           : "thimble_scene_render(&scene, &camera, &shading, &band)"}};
+  if (const SketchBoard* const sketch = command.sketch()) {
+    words.insert(
+        {{"PIO_PLATFORM", sketch->pio_platform}, {"PIO_BOARD", sketch->pio_board}, {"FQBN", sketch->fqbn}});
+  }
   // Ink where the RAM holds its two pictures beside what a sketch has.
   const bool is_ink = bits_per_pixel(board.format) == 1 && board.ram_bytes > 65536;
   std::set<std::string> kinds{kit, command.build, has_map ? "map" : "no-map", is_ink ? "ink" : "bands"};
   std::map<std::string, std::string> files;
   if (const PanelKind* const panel = command.panel) {
-    say_panel(*panel, &words);
+    words.merge(words_of(*panel));
     const std::string chip = kit == "pico-sdk" ? "pico" : "ino";
     const std::string bus = panel->is_i2c ? "i2c" : "spi";
     kinds.insert({"panel", chip, bus, chip + "-" + bus});
@@ -223,12 +211,12 @@ void run(const NewCommand& given) {
   const Baked baked = bake(&command, *source, &options);
   const std::map<std::string, std::string> files = project(command, baked);
   std::vector<std::string> paths;
-  std::string names;
+  std::vector<std::string> names;
   const bool was_there = fs::exists(command.folder, error);
   for (const auto& [name, text] : files) {
     paths.push_back(command.folder + "/" + name);
     fs::create_directories(fs::path(paths.back()).parent_path(), error);
-    names += (names.empty() ? "" : ", ") + name;
+    names.push_back(name);
   }
   try {
     OutputSet outputs(paths, {command.scene.arguments.scene});
@@ -244,7 +232,9 @@ void run(const NewCommand& given) {
     throw;
   }
   if (!command.scene.quiet) {
-    std::fputs((baked_text(command, options, baked) + command.folder + ": " + names + "\n").c_str(), stderr);
+    std::fputs(
+        (baked_text(command, options, baked) + command.folder + ": " + joined(names, ", ") + "\n").c_str(),
+        stderr);
   }
 }
 
@@ -270,10 +260,8 @@ void add_new(CLI::App& app) {
       *sub, "--panel", panels, [command](std::size_t index) { command->panel = &kPanels[index]; },
       "the panel that is connected to the board, drawn on by Thimble's driver (default: the board's own "
       "display, by Thimble's port)");
-  add_choice_option(
-      *sub, "--build", kBuilds, [command](std::size_t index) { command->build = kBuilds[index]; },
-      "what builds it: CMake (with a panel by the Pico's SDK), PlatformIO, or Arduino")
-      ->default_str("cmake");
+  add_choice_option(*sub, "--build", {"cmake", "platformio", "arduino"}, &command->build,
+                    "what builds it: CMake (with a panel by the Pico's SDK), PlatformIO, or Arduino");
   add_choice_option<bool>(*sub, "--language", {{"c++", false}, {"c", true}}, &command->in_c,
                           "what the program is written in");
   add_fitting(*sub, command.get());

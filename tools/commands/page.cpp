@@ -1,3 +1,5 @@
+// Pages to hand on, and thimble render SCENE -o F.html: one file that shows the scene and lets it be turned, without a
+// network.
 #include "commands/page.h"
 
 #include <zlib.h>
@@ -7,9 +9,11 @@
 #include <filesystem>
 #include <new>
 
-#include "output/output_file.h"
+#include "commands/arguments.h"
+#include "output/plot.h"
 #include "output/png.h"
 #include "output/units.h"
+#include "output/version.h"
 #include "readers/file_bytes.h"
 #include "scene/baking.h"
 #include "scene/named_scenes.h"
@@ -34,6 +38,35 @@ std::string base64(std::span<const std::uint8_t> bytes) {
     }
   }
   return text;
+}
+
+constexpr std::size_t kMostPreviewBytes = 8000;
+constexpr std::int32_t kPreviewPx = 320;  // the longer side of what stands for the file in a list
+constexpr int kFramesASecond = 10;
+
+// Each of the scene's frames that are to be shown, or the scene.
+std::string scene_scripts(const RenderCommand& command, const SceneSource& first,
+                          const LookPicture& picture) {
+  std::string text;
+  const auto add = [&](const SceneSource& source) {
+    text += scene_element(page_scene(command, source, picture.camera));
+  };
+  add(first);
+  for (std::int32_t i = 1; i < command.output.played.value_or(RowRange{}).count; ++i) {
+    SceneArguments arguments = command.scene.arguments;
+    arguments.frame = static_cast<std::uint32_t>(command.output.played->first + i);
+    add(*open_scene(arguments));
+  }
+  return text;
+}
+
+// As share.cpp of tools/web reads it.
+std::uint32_t background_number(const Background& background) {
+  const Rgb8 color = background.color;
+  return background.kind == BackgroundKind::kColor      ? 2U + (static_cast<std::uint32_t>(color.r) << 16 |
+                                                           static_cast<std::uint32_t>(color.g) << 8 | color.b)
+         : background.kind == BackgroundKind::kGradient ? 1U
+                                                        : 0U;
 }
 
 }  // namespace
@@ -87,16 +120,7 @@ std::string poster_url(const Image& image, std::size_t most_bytes) {
 std::string edge_colors(const Image& image) {
   const std::uint8_t* const top = image.pixels.data();
   const std::uint8_t* const bottom = top + image.pixels.size() - 3 * static_cast<std::size_t>(image.width_px);
-  std::string text;
-  for (const std::uint8_t* const pixel : {top, bottom}) {
-    text += text.empty() ? "#" : ", #";
-    for (int channel = 0; channel < 3; ++channel) {
-      constexpr std::string_view kDigits = "0123456789abcdef";
-      text += kDigits[pixel[channel] >> 4];
-      text += kDigits[pixel[channel] & 15U];
-    }
-  }
-  return text;
+  return color_text(top) + ", " + color_text(bottom);
 }
 
 std::vector<std::uint8_t> page_scene(const RenderCommand& command, const SceneSource& source,
@@ -122,6 +146,48 @@ std::vector<std::uint8_t> page_scene(const RenderCommand& command, const SceneSo
 
 std::string scene_element(std::span<const std::uint8_t> packed) {
   return "<script type=\"application/octet-stream\" data-scene>" + base64(packed) + "</script>\n";
+}
+
+bool names_page(std::string_view path) {
+  return ends_in(path, ".html");
+}
+
+void check_page(const RenderCommand& command) {
+  const RenderOutput& output = command.output;
+  refuse_if(!takes_look(command) || command.quality.is_sampled || command.effects.choice.smooth ||
+                command.effects.bounces || !output.hits_path.empty() || !output.depth_path.empty() ||
+                !output.camera_path.empty(),
+            "an .html shows the scene's own look to turn it, without --shade, --effects, --normals, "
+            "--bounces, --samples, --structure, --engine, --cutoff, --max-depth, --board, --hits, "
+            "--depth-image and --camera-path");
+}
+
+void render_page(const RenderCommand& command, const SceneSource& source, OutputSet& outputs) {
+  const std::string page = load_page();
+  const LookPicture picture = draw_look(command, source);
+  RenderCommand small = command;
+  const std::int32_t side = std::max(command.view.width_px, command.view.height_px);
+  small.view.width_px = std::max(1, command.view.width_px * std::min(kPreviewPx, side) / side);
+  small.view.height_px = std::max(1, command.view.height_px * std::min(kPreviewPx, side) / side);
+  const std::string name = scene_name(command.scene.arguments.scene);
+  const std::string title = xml_text(name.substr(0, name.find('.')));
+  const auto [before, behind] = around_scenes(
+      page, {{"description", counted(picture.stats.voxels, "voxel") +
+                                 ", ray traced by Thimble. Drag to turn, wheel or pinch to come nearer."},
+             {"version", version_number()},
+             {"colors", edge_colors(picture.image)},
+             {"turn", shortest(static_cast<double>(command.output.turntable) / kFramesASecond)},
+             {"background", std::to_string(background_number(command.look.wishes.background))},
+             {"ground", std::to_string(command.look.wishes.ground ? *command.look.wishes.ground : -1)},
+             {"preview", poster_url(draw_look(small, source).image, kMostPreviewBytes)},
+             {"title", title}});
+  OutputFile& file = *outputs[kPicture];
+  file.write(before);
+  file.write("<img id=\"poster\" alt=\"" + title + "\" src=\"" + poster_url(picture.image, kMostPosterBytes) +
+             "\">\n");
+  file.write(scene_scripts(command, source, picture));
+  file.write(behind);
+  finish(command, picture.stats, picture.note, outputs);
 }
 
 }  // namespace thimble::tools

@@ -17,7 +17,6 @@
 #include "host/y4m.h"
 #include "output/image.h"
 #include "output/output_file.h"
-#include "output/output_set.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "particles/player.h"
@@ -187,7 +186,7 @@ class ParticleSession {
     if (is_window) {
       status += "\n. one step   r reset   n m b c e g less, capitals more";
     } else if (player_.shows_figures()) {
-      status = player_.figures_line(eps_) + "\n" + status;
+      status = player_.figures(eps_, "  ", true) + "\n" + status;
     }
     const std::string text = overlay + "\f" + status;
     if (!needs_showing_ && text == shown_text_) {
@@ -330,9 +329,7 @@ enum Output : std::size_t { kInputRecording, kState, kField, kFrame, kRecording,
 void write_files(const ParticlesCommand& command, const PopulatedWorld& populated, const PlayResult& result,
                  const OutputSet& outputs) {
   const ParticleWorld& world = populated.world();
-  if (outputs[kState] != nullptr) {
-    outputs[kState]->write(state_csv(world));
-  }
+  outputs.write(kState, state_csv(world));
   if (outputs[kField] != nullptr) {
     write_image(outputs[kField], ImageKind::kPbm, field_image(world.field()));
   }
@@ -344,18 +341,15 @@ void write_files(const ParticlesCommand& command, const PopulatedWorld& populate
     }
     write_picture(outputs[kFrame], command.frame_path, image);
   }
-  if (outputs[kCounts] != nullptr) {
-    outputs[kCounts]->write(particle_stats(populated, result.counts, result.step_seconds));
-  }
+  outputs.write(kCounts, particle_stats(populated, result.counts, result.step_seconds));
 }
 
 void run(const ParticlesCommand& given) {
   ParticlesCommand command = given;
   WorldOptions& world_options = command.world;
-  if (world_options.least_diameter > world_options.most_diameter) {
-    refuse_usage("--min-size", concat(world_options.least_diameter, " is more than --max-size, ",
-                                      world_options.most_diameter));
-  }
+  refuse_if(world_options.least_diameter > world_options.most_diameter,
+            "--min-size: ", world_options.least_diameter, " is more than --max-size, ",
+            world_options.most_diameter);
   if (command.play.view == host::ScreenKind::kAuto) {
     const bool for_files = command.play.steps || !command.state_path.empty() || !command.field_path.empty() ||
                            !command.frame_path.empty() || !command.recording_path.empty() ||
@@ -363,14 +357,12 @@ void run(const ParticlesCommand& given) {
     command.play.view = for_files ? host::ScreenKind::kNone : host::ScreenKind::kAuto;
   }
   const bool watched = command.play.view != host::ScreenKind::kNone || !command.recording_path.empty();
-  if (command.play.figures_in_files && command.frame_path.empty() && command.recording_path.empty()) {
-    refuse_usage("--figures", "needs --output or --record, whose pictures they are written on");
-  }
+  refuse_if(command.play.figures_in_files && command.frame_path.empty() && command.recording_path.empty(),
+            "--figures: needs --output or --record, whose pictures they are written on");
   // The figures tell the rate of steps.
-  if (!command.paced_by.empty() && !watched &&
-      !(command.paced_by == "--eps" && command.play.figures_in_files)) {
-    refuse_usage(command.paced_by, "needs --display or --record, since nothing else keeps to a rate");
-  }
+  refuse_if(!command.paced_by.empty() && !watched &&
+                !(command.paced_by == "--eps" && command.play.figures_in_files),
+            command.paced_by, ": needs --display or --record, since nothing else keeps to a rate");
   OutputSet outputs({command.input_recording_path, command.state_path, command.field_path, command.frame_path,
                      command.recording_path, command.stats_path},
                     {command.bodies_path, command.input_path});

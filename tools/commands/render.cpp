@@ -14,7 +14,7 @@
 #include "commands/view_options.h"
 #include "output/hit_rows.h"
 #include "output/image.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "scene/animation.h"
@@ -37,35 +37,31 @@ std::int32_t plain_band_rows(const RenderCommand& command, PixelFormat format) {
   return band_rows(command, row_bytes(format, command.view.width_px), kMostBandRows);
 }
 
-[[noreturn]] void fail_camera(const RenderCommand& command) {
-  throw InputError("--engine ", command.engine.name, " does not take the rays of this camera");
+// What drawing or tracing answered.
+void check_camera(const RenderCommand& command, Status status) {
+  fail_if(status != Status::kOk, "--engine ", command.engine.name, " does not take the rays of this camera");
 }
 
 // What belongs to the scene's own look and films only.
 void check_look(const RenderCommand& command) {
   const bool look = takes_look(command);
-  if (command.look.given && !look) {
-    refuse_usage(
-        "--background and --ground are for pictures in the scene's own look, without --shade, --effects, "
-        "--structure, --cutoff, --max-depth and --board, by --engine auto and gpu");
-  }
+  refuse_if(command.look.given && !look,
+            "--background and --ground are for pictures in the scene's own look, without --shade, --effects, "
+            "--structure, --cutoff, --max-depth and --board, by --engine auto and gpu");
   command.output.check(command.look.wishes.background.kind == BackgroundKind::kNone);
-  if (command.output.is_film() &&
-      (!look || !command.output.hits_path.empty() || !command.output.depth_path.empty() ||
-       (command.output.turntable != 0 && command.view.eye))) {
-    refuse_usage(
-        std::string(command.output.film_option()) +
-        " shows the scene's own look, without --shade, --effects, --structure, --cutoff, --max-depth, "
-        "--board, --hits and --depth-image, by --engine auto and gpu" +
-        (command.output.turntable != 0 ? ", and from all sides, without --eye" : ""));
-  }
+  refuse_if(command.output.is_film() &&
+                (!look || !command.output.hits_path.empty() || !command.output.depth_path.empty() ||
+                 (command.output.turntable != 0 && command.view.eye)),
+            command.output.film_option(),
+            " shows the scene's own look, without --shade, --effects, --structure, --cutoff, --max-depth, "
+            "--board, --hits and --depth-image, by --engine auto and gpu",
+            (command.output.turntable != 0 ? ", and from all sides, without --eye" : ""));
   if (names_page(command.output.path)) {
     check_page(command);
   }
-  if (command.look.wishes.background.kind == BackgroundKind::kNone && !command.output.rows &&
-      image_kind(command.output.path) != ImageKind::kPng) {
-    refuse_usage("--background none wants a .png, the one that holds what is transparent");
-  }
+  refuse_if(command.look.wishes.background.kind == BackgroundKind::kNone && !command.output.rows &&
+                image_kind(command.output.path) != ImageKind::kPng,
+            "--background none wants a .png, the one that holds what is transparent");
 }
 
 // What contradicts itself whatever the scene is.
@@ -74,17 +70,13 @@ void check_usage(const RenderCommand& command) {
   command.engine.check(command.quality.plain(),
                        takes_look(command) || command.effects.named() || command.effects.bounces,
                        command.quality.at_edges);
-  if (command.quality.cuts() && command.scene.structure != StructureKind::kCompact) {
-    refuse_usage("--cutoff and --max-depth want --structure compact");
-  }
-  if (command.look.is_ink() && (command.output.rows || command.output.is_film())) {
-    refuse_usage("--shade ink looks at whole pictures, without --rows, --part and what makes a film");
-  }
-  if (command.effects.named() && !command.look.shade_name.empty() &&
-      command.look.shade != ShadeMode::kColor) {
-    refuse_usage("--shade " + command.look.shade_name +
-                 " shows no light, and so no --effects and no --normals");
-  }
+  refuse_if(command.quality.cuts() && command.scene.structure != StructureKind::kCompact,
+            "--cutoff and --max-depth want --structure compact");
+  refuse_if(command.look.is_ink() && (command.output.rows || command.output.is_film()),
+            "--shade ink looks at whole pictures, without --rows, --part and what makes a film");
+  refuse_if(
+      command.effects.named() && !command.look.shade_name.empty() && command.look.shade != ShadeMode::kColor,
+      "--shade ", command.look.shade_name, " shows no light, and so no --effects and no --normals");
 }
 
 // An explicit --shade is drawn as such, unless --effects stands beside it.
@@ -209,9 +201,7 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
   const TraceOptions options = engine.trace_options();
   Painting painting;
   const auto paint_or_fail = [&](const BandPainter& painter) {
-    if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
-      fail_camera(command);
-    }
+    check_camera(command, paint_with(painter, subject, progress, &painting));
   };
   if (!command.quality.plain()) {
     paint_or_fail(command.quality.at_edges ? ray_edge_painter(subject.built, frame, subject.camera(),
@@ -233,9 +223,7 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
   if (wide != nullptr) {
     status =
         paint_with(wide_painter(wide.get(), subject.camera(), subject.shading), subject, progress, &painting);
-    if (status != Status::kOk && (status != Status::kTooFine || engine.name != "auto")) {
-      fail_camera(command);
-    }
+    check_camera(command, status == Status::kTooFine && engine.name == "auto" ? Status::kOk : status);
   }
   if (status != Status::kOk) {
     paint_or_fail(ray_painter(subject.built, subject.camera(), subject.shading, subject.format, options));
@@ -262,9 +250,8 @@ Painting paint_lit(const Subject& subject, const Light& light, GpuEngine* gpu, c
       at_edges ? lit_edge_painter(subject.built, subject.camera(), subject.fine, subject.shading,
                                   subject.format, picture)
                : lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture);
-  if (paint_with(painter, subject, progress, &painting) != Status::kOk) {
-    throw InputError("its lights or surfaces are beyond the limits of a lit picture");
-  }
+  fail_if(paint_with(painter, subject, progress, &painting) != Status::kOk,
+          "its lights or surfaces are beyond the limits of a lit picture");
   painting.preparation_seconds = picture.streams != nullptr ? picture.streams->seconds() : 0;
   return painting;
 }
@@ -276,10 +263,9 @@ Image inked(const Subject& subject, const Image& tones, PixelFormat format, cons
   const Shading shading = scene_shading(ShadeMode::kDepth, {}, subject.camera(), subject.built.bounds());
   Painting depths;
   const TraceOptions options = subject.command.engine.trace_options();
-  if (paint(ray_painter(subject.built, subject.camera(), shading, PixelFormat::kGray8, options), width,
-            {0, height}, PixelFormat::kGray8, progress, &depths) != Status::kOk) {
-    fail_camera(subject.command);
-  }
+  check_camera(subject.command,
+               paint(ray_painter(subject.built, subject.camera(), shading, PixelFormat::kGray8, options),
+                     width, {0, height}, PixelFormat::kGray8, progress, &depths));
   std::vector<std::uint8_t> memory(ink_bytes(width, height));
   InkPicture ink;
   (void)InkPicture::make(width, height, {memory.data(), memory.size()}, &ink);  // of its size
@@ -342,11 +328,9 @@ void prepare(RenderCommand* given) {
   RenderCommand& command = *given;
   check_usage(command);
   use_display(command.scene.board, &command.view);
-  if (command.quality.at_edges &&
-      std::max(command.view.width_px, command.view.height_px) > kMaxPicturePx / kEdgeGrid) {
-    throw InputError("--samples auto wants a picture of at most ", kMaxPicturePx / kEdgeGrid,
-                     " pixels a side");
-  }
+  fail_if(command.quality.at_edges &&
+              std::max(command.view.width_px, command.view.height_px) > kMaxPicturePx / kEdgeGrid,
+          "--samples auto wants a picture of at most ", kMaxPicturePx / kEdgeGrid, " pixels a side");
   command.output.read_sizes(command.view, command.fov_given);
   command.engine.check_budget(command.scene.budget_bytes().has_value());
   command.engine.keep_to_budget(command.scene.budget_bytes().has_value());
@@ -395,17 +379,10 @@ void draw(RenderCommand& command, const SceneSource& source, OutputSet& outputs)
   }
   bar.clear();
 
-  const Image shown = converted(painting.image, pixel_format(kind));
-  if (command.output.rows) {
-    write_rows(outputs[kPicture], part_of(subject, source, light), shown, subject.camera().height_px());
-  } else {
-    write_picture(command, kind, shown, outputs);
-  }
-  if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
-    write_hits(command, frame, gpu.get(), subject.camera(), outputs[kHits], outputs[kDepths]);
-  }
   Stats stats = stats_of(subject, source, light, painting);
-  stats.frame_crc32 = crc_of(file_pixels(shown, kind));
+  write_frame(
+      command, kind, painting.image, [&] { return part_of(subject, source, light); }, frame, gpu.get(),
+      subject.camera(), &stats, outputs);
   finish(command, stats, subject.framing.note, outputs);
 }
 
@@ -423,11 +400,46 @@ void run(const RenderCommand& given) {
   draw(command, *source, outputs);
 }
 
-// For a person: what the scene takes, and what came of it.
-void print_summary(const Stats& stats, const std::string& note) {
-  if (!note.empty()) {
-    std::fprintf(stderr, "note: %s\n", note.c_str());
+// Pixel by pixel once more, for the files that hold hits and distances; by `gpu` if it is not null.
+void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngine* gpu, const Camera& camera,
+                OutputSet& outputs) {
+  const HitRows rows(command.output.hits_path, true, command.scene.structure != StructureKind::kDense);
+  const auto width = static_cast<std::size_t>(camera.width_px());
+  outputs.write(kHits, rows.beginning(width * static_cast<std::uint64_t>(camera.height_px())));
+  std::vector<float> distances;
+  std::vector<Ray> rays(width);
+  std::vector<Hit> hits(width);
+  ProgressBar bar("writing hits", command.scene.quiet);
+  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      rays[x] = camera.ray(static_cast<std::int32_t>(x), y);
+      if (gpu == nullptr) {
+        check_camera(command, frame.closest_hit(rays[x], &hits[x], command.engine.trace_options()));
+      }
+    }
+    if (gpu != nullptr) {
+      check_camera(command, gpu->trace({rays.data(), width}, {hits.data(), width}));
+    }
+    std::string text;
+    for (std::size_t x = 0; x < width; ++x) {
+      if (outputs[kHits] != nullptr) {
+        rows.append(&text, rays[x], hits[x], static_cast<std::int32_t>(x), y);
+      }
+      if (outputs[kDepths] != nullptr) {
+        distances.push_back(hits[x].kind == HitKind::kHit ? static_cast<float>(hit_distance(rays[x], hits[x]))
+                                                          : std::numeric_limits<float>::infinity());
+      }
+    }
+    outputs.write(kHits, text);
+    bar.update(static_cast<double>(y) / camera.height_px());
   }
+  if (outputs[kDepths] != nullptr) {
+    write_pfm(outputs[kDepths], camera.width_px(), camera.height_px(), distances);
+  }
+}
+
+// For a person: what the scene takes, and what came of it.
+void print_summary(const Stats& stats) {
   std::fprintf(stderr,
                "%s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
                counted(stats.voxels, "voxel").c_str(), grouped(stats.tree_bytes).c_str(), stats.depth,
@@ -469,31 +481,38 @@ void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
 }  // namespace
 
 void finish(const RenderCommand& command, const Stats& stats, const std::string& note, OutputSet& outputs) {
-  if (outputs[kStats] != nullptr) {
-    outputs[kStats]->write(stats_text(stats));
-  }
+  outputs.write(kStats, stats_text(stats));
   outputs.commit();
+  print_notes({note}, command.scene.quiet);
   if (!command.scene.quiet) {
-    print_summary(stats, note);
+    print_summary(stats);
   }
 }
 
 void render(RenderCommand command, const SceneSource& source) {
-  if (command.output.is_film() || command.output.rows || !command.output.hits_path.empty() ||
-      !command.output.depth_path.empty() || !command.scene.stats_path.empty()) {
-    refuse_usage("films, --rows, --hits, --depth-image and --stats are files, which only the command writes");
-  }
+  refuse_if(command.output.is_film() || command.output.rows || !command.output.hits_path.empty() ||
+                !command.output.depth_path.empty() || !command.scene.stats_path.empty(),
+            "films, --rows, --hits, --depth-image and --stats are files, which only the command writes");
   prepare(&command);
   OutputSet outputs({"", "", "", ""}, {});
   draw(command, source, outputs);
 }
 
-void write_picture(const RenderCommand& command, ImageKind kind, const Image& image, OutputSet& outputs) {
-  if (command.output.take) {
-    command.output.take(image);
+void write_frame(const RenderCommand& command, ImageKind kind, const Image& image,
+                 const std::function<PartHeader()>& part, const QualityFrame& frame, GpuEngine* gpu,
+                 const Camera& camera, Stats* stats, OutputSet& outputs) {
+  const Image shown = converted(image, pixel_format(kind));
+  if (command.output.rows) {
+    write_rows(outputs[kPicture], part(), shown, camera.height_px());
+  } else if (command.output.take) {
+    command.output.take(shown);
   } else {
-    write_image(outputs[kPicture], kind, image);
+    write_image(outputs[kPicture], kind, shown);
   }
+  if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
+    write_hits(command, frame, gpu, camera, outputs);
+  }
+  stats->frame_crc32 = crc_of(file_pixels(shown, kind));
 }
 
 bool takes_look(const RenderCommand& command) {
@@ -509,51 +528,6 @@ std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std:
     rows = std::min<std::uint64_t>(rows, *budget / 16 / row_bytes);
   }
   return std::clamp(static_cast<std::int32_t>(rows), 1, command.view.height_px);
-}
-
-void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngine* gpu, const Camera& camera,
-                OutputFile* csv, OutputFile* pfm) {
-  const HitRows rows(command.output.hits_path, true, command.scene.structure != StructureKind::kDense);
-  if (csv != nullptr) {
-    csv->write(rows.beginning(static_cast<std::uint64_t>(camera.width_px()) *
-                              static_cast<std::uint64_t>(camera.height_px())));
-  }
-  std::vector<float> distances;
-  std::vector<Ray> rays(static_cast<std::size_t>(camera.width_px()));
-  std::vector<Hit> hits(rays.size());
-  ProgressBar bar("writing hits", command.scene.quiet);
-  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
-    std::string text;
-    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
-      const auto place = static_cast<std::size_t>(x);
-      rays[place] = camera.ray(x, y);
-      if (gpu == nullptr &&
-          frame.closest_hit(rays[place], &hits[place], command.engine.trace_options()) != Status::kOk) {
-        fail_camera(command);
-      }
-    }
-    if (gpu != nullptr && gpu->trace({rays.data(), rays.size()}, {hits.data(), hits.size()}) != Status::kOk) {
-      fail_camera(command);
-    }
-    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
-      const Ray& ray = rays[static_cast<std::size_t>(x)];
-      const Hit& hit = hits[static_cast<std::size_t>(x)];
-      if (csv != nullptr) {
-        rows.append(&text, ray, hit, x, y);
-      }
-      if (pfm != nullptr) {
-        distances.push_back(hit.kind == HitKind::kHit ? static_cast<float>(hit_distance(ray, hit))
-                                                      : std::numeric_limits<float>::infinity());
-      }
-    }
-    if (csv != nullptr) {
-      csv->write(text);
-    }
-    bar.update(static_cast<double>(y) / camera.height_px());
-  }
-  if (pfm != nullptr) {
-    write_pfm(pfm, camera.width_px(), camera.height_px(), distances);
-  }
 }
 
 void add_render_options(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {

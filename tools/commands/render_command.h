@@ -8,7 +8,7 @@
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "scene/default_look.h"
 #include "scene/framing.h"
 #include "scene/sampling.h"
@@ -52,12 +52,11 @@ void render(RenderCommand command, const SceneSource& source);
 /// the room; at most `most`.
 std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std::int32_t most);
 
-/// Where the picture goes: to the command's file, or whoever takes it.
-void write_picture(const RenderCommand& command, ImageKind kind, const Image& image, OutputSet& outputs);
-
-/// Pixel by pixel once more, for the files that hold hits and distances; by `gpu` if it is not null.
-void write_hits(const RenderCommand& command, const QualityFrame& frame, GpuEngine* gpu, const Camera& camera,
-                OutputFile* csv, OutputFile* pfm);
+/// Writes the picture, or the `part` of one that it is, to the command's file or whoever takes it, and for the files of
+/// hits and distances traces once more, pixel by pixel: by `gpu` if it is not null.
+void write_frame(const RenderCommand& command, ImageKind kind, const Image& image,
+                 const std::function<PartHeader()>& part, const QualityFrame& frame, GpuEngine* gpu,
+                 const Camera& camera, Stats* stats, OutputSet& outputs);
 
 /// Writes --stats, gives the files their names and tells a person what the scene takes and what came of it.
 void finish(const RenderCommand& command, const Stats& stats, const std::string& note, OutputSet& outputs);
@@ -75,7 +74,7 @@ LookPicture draw_look(const RenderCommand& command, const SceneSource& source);
 /// Draws that: a picture, or a film; or a part of one.
 void render_look(const RenderCommand& command, const SceneSource& source, OutputSet& outputs);
 
-/// Whether a picture of that name is a page that turns (render_page.cpp); ends the command as wrong usage where other
+/// Whether a picture of that name is a page that turns (page.cpp); ends the command as wrong usage where other
 /// options forbid it; draws the poster and writes it.
 bool names_page(std::string_view path);
 void check_page(const RenderCommand& command);

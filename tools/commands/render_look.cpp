@@ -47,9 +47,8 @@ class LookStudio {
     framing_ = framing;
     look_ = default_look(facts_, wishes_, framing_);
     const bool is_lit = look_.kind == LookKind::kLit;
-    if (!is_lit && command_.engine.name == "gpu") {
-      refuse_usage("--engine gpu does not draw points as stars; with --shade it draws their voxels");
-    }
+    refuse_if(!is_lit && command_.engine.name == "gpu",
+              "--engine gpu does not draw points as stars; with --shade it draws their voxels");
     if (is_lit && streams_ == nullptr) {
       streams_ = command_.engine.lit_streams(&built_, look_.effects, look_.lit_scene());
     }
@@ -71,9 +70,8 @@ class LookStudio {
   }
   Painting paint(const Progress& progress) const {
     Painting painting;
-    if (paint_look(canvas_, measured_->exposure_q8, progress, &painting) != Status::kOk) {
-      throw InputError("its lights or surfaces are beyond the limits of a lit picture");
-    }
+    fail_if(paint_look(canvas_, measured_->exposure_q8, progress, &painting) != Status::kOk,
+            "its lights or surfaces are beyond the limits of a lit picture");
     return painting;
   }
   const LookMeasure& measured() const { return *measured_; }
@@ -228,19 +226,12 @@ void render_picture(const RenderCommand& command, const SceneSource& source, Loo
   const Painting painting = studio.paint([&](double done) { bar.update(done); });
   bar.clear();
   const ImageKind kind = command.output.kind(ImageKind::kPng);
-  const Image shown = converted(painting.image, pixel_format(kind));
-  if (command.output.rows) {
-    write_rows(outputs[kPicture], part_of(source, studio, {studio.framing()}), shown, command.view.height_px);
-  } else {
-    write_picture(command, kind, shown, outputs);
-  }
-  if (outputs[kHits] != nullptr || outputs[kDepths] != nullptr) {
-    const Camera& camera = studio.framing().camera;
-    const QualityFrame frame(studio.built(), {}, camera, camera, {}, {});
-    write_hits(command, frame, nullptr, camera, outputs[kHits], outputs[kDepths]);
-  }
+  const Camera& camera = studio.framing().camera;
+  const QualityFrame frame(studio.built(), {}, camera, camera, {}, {});
   Stats stats = stats_of(command, source, studio, painting);
-  stats.frame_crc32 = crc_of(file_pixels(shown, kind));
+  write_frame(
+      command, kind, painting.image, [&] { return part_of(source, studio, {studio.framing()}); }, frame,
+      nullptr, camera, &stats, outputs);
   print_look(command, source, studio);
   finish(command, stats, studio.framing().note, outputs);
 }
@@ -333,11 +324,9 @@ std::vector<Framing> film_framings(const RenderCommand& command, const SceneSour
                                  : frame_path(output.camera_path, output.cameras, shape);
   }
   const std::int64_t last = output.played->first + output.played->count - 1;
-  if (source.frames() == 1 || last >= std::int64_t{source.frames()}) {
-    throw InputError(
-        "there is no frame ", last, " for --frames; ",
-        source.frames() == 1 ? "it holds still" : "the last is " + std::to_string(source.frames() - 1));
-  }
+  fail_if(source.frames() == 1 || last >= std::int64_t{source.frames()}, "there is no frame ", last,
+          " for --frames; ",
+          source.frames() == 1 ? "it holds still" : "the last is " + std::to_string(source.frames() - 1));
   // What is wrong with a later frame is said before the first is drawn.
   const RowRange drawn = output.frames.value_or(RowRange{0, output.played->count});
   for (std::int64_t i = std::max(drawn.first, 1); i < std::int64_t{drawn.first} + drawn.count; ++i) {

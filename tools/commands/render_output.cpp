@@ -27,10 +27,8 @@ bool is_mono_part(const std::string& output) {
 
 void check_range(const std::string& name, const RowRange& range, std::int64_t all,
                  const std::string& of_what) {
-  if (std::int64_t{range.first} + range.count > all) {
-    refuse_usage(
-        name, concat(range.first, ":", range.count, " goes beyond ", of_what, ", whose last is ", all - 1));
-  }
+  refuse_if(std::int64_t{range.first} + range.count > all, name, ": ", range.first, ":", range.count,
+            " goes beyond ", of_what, ", whose last is ", all - 1);
 }
 
 void add_range(CLI::App& app, const std::string& name, std::optional<RowRange>* range,
@@ -46,28 +44,52 @@ void add_range(CLI::App& app, const std::string& name, std::optional<RowRange>* 
 }
 
 void check_part(const RenderOutput& output, bool is_transparent) {
-  if (output.rows && output.is_film()) {
-    refuse_usage(std::string("--rows is a part of a picture; of a film with ") + output.film_option() +
-                 " take --part");
-  }
-  if (output.frames && !output.is_film()) {
-    refuse_usage(std::string("--part is a part of a film, which wants ") + kFilmOptions +
-                 "; of a picture take --rows");
-  }
-  if (!output.hits_path.empty() || !output.depth_path.empty()) {
-    refuse_usage("--hits and --depth-image are of whole pictures, without --rows and --part");
-  }
+  refuse_if(output.rows && output.is_film(), "--rows is a part of a picture; of a film with ",
+            output.film_option(), " take --part");
+  refuse_if(output.frames && !output.is_film(), "--part is a part of a film, which wants ", kFilmOptions,
+            "; of a picture take --rows");
+  refuse_if(!output.hits_path.empty() || !output.depth_path.empty(),
+            "--hits and --depth-image are of whole pictures, without --rows and --part");
   const std::string& name = output.path;
-  if (name != "-" && (image_kind(name) || is_film(name) || names_page(name))) {
-    refuse_usage("--output", in_quotes(name) +
-                                 " is named as a picture or a film, and --rows and --part write a "
-                                 "part of one for thimble join: call it F.part");
+  refuse_if(name != "-" && (image_kind(name) || is_film(name) || names_page(name)),
+            "--output: ", in_quotes(name),
+            " is named as a picture or a film, and --rows and --part write a part of one for thimble join: "
+            "call it F.part");
+  refuse_if(is_mono_part(name) && (output.is_film() || is_transparent), "--output: ", in_quotes(name),
+            " is named as rows of a .pbm, which holds neither films nor what is transparent");
+}
+
+// A grid knows neither materials nor light.
+void add_grid(const DenseGrid& grid, CrcSum* sum) {
+  const Vec3i size = grid.size();
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(size.x + 7) / 8);
+  for (Vec3i at; at.z < size.z; ++at.z) {
+    for (at.y = 0; at.y < size.y; ++at.y) {
+      row.assign(row.size(), 0);
+      for (at.x = 0; at.x < size.x; ++at.x) {
+        const auto byte = static_cast<std::size_t>(at.x) / 8;
+        row[byte] = static_cast<std::uint8_t>(row[byte] | (grid.solid_at(at) ? 1U << (at.x & 7) : 0U));
+      }
+      sum->add(row);
+    }
   }
-  if (is_mono_part(name) && (output.is_film() || is_transparent)) {
-    refuse_usage("--output", in_quotes(name) +
-                                 " is named as rows of a .pbm, which holds neither films nor what is "
-                                 "transparent");
-  }
+}
+
+void add_tree(const CompactTree& tree, const SceneSource& source, CrcSum* sum) {
+  sum->add(std::span(tree.bytes(), tree.size_bytes()));
+  LitDescription lit = source.lighting();
+  const UsedMaterials used = used_materials(tree);
+  lit.find_glow(tree);
+  add_lighting(lit, used, called_for(lit, used), tree.level(), sum);
+}
+
+// By the bytes that it has as a compact tree.
+void add_pool(const Octree& pool, const SceneSource& source, CrcSum* sum) {
+  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(pool)));
+  CompactTree tree;
+  fail_if(CompactTree::make(pool, {bytes.data(), bytes.size()}, &tree) != Status::kOk,
+          "is too large for parts of a picture with --structure pool");
+  add_tree(tree, source, sum);
 }
 
 }  // namespace
@@ -139,14 +161,11 @@ void RenderOutput::check(bool is_transparent) const {
     return;
   }
   const bool named_film = tools::is_film(path);
-  if (!named_film && !image_kind(path)) {
-    refuse_usage("--output", in_quotes(path) + " does not end in " + kImageEndings +
-                                 ", as pictures do, nor in .gif or .y4m, as films, nor in .html, as pages");
-  }
-  if (named_film ? !is_film() : is_film() && !is_sequence(path)) {
-    refuse_usage(named_film ? std::string("a .gif and a .y4m are films, which want ") + kFilmOptions
-                            : std::string(film_option()) + " makes a film: -o wants a " + kFilmEndings);
-  }
+  refuse_if(!named_film && !image_kind(path), "--output: ", in_quotes(path), " does not end in ",
+            kImageEndings, ", as pictures do, nor in .gif or .y4m, as films, nor in .html, as pages");
+  refuse_if(named_film ? !is_film() : is_film() && !is_sequence(path),
+            named_film ? std::string("a .gif and a .y4m are films, which want ") + kFilmOptions
+                       : std::string(film_option()) + " makes a film: -o wants a " + kFilmEndings);
 }
 
 void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
@@ -155,10 +174,9 @@ void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
   }
   if (!camera_path.empty()) {
     cameras = read_camera_path(camera_path, view);
-    if (cameras.has_fov && (fov_given || view.orthographic)) {
-      refuse_usage("--camera-path", fov_given ? "its fov is the angle, without --fov"
-                                              : "its fov is the angle of --projection perspective");
-    }
+    refuse_if(cameras.has_fov && (fov_given || view.orthographic), "--camera-path: ",
+              fov_given ? "its fov is the angle, without --fov"
+                        : "its fov is the angle of --projection perspective");
   }
   if (seconds) {
     const int rate = FilmTimes(PartKind::kCameraPath, 1).rate;
@@ -184,44 +202,6 @@ void write_rows(OutputFile* file, PartHeader header, const Image& image, std::in
   part.add(header.pixels == PartPixels::kMono ? image.pixels : file_pixels(image, ImageKind::kPng));
   part.end();
 }
-
-namespace {
-
-// A grid knows neither materials nor light.
-void add_grid(const DenseGrid& grid, CrcSum* sum) {
-  const Vec3i size = grid.size();
-  std::vector<std::uint8_t> row(static_cast<std::size_t>(size.x + 7) / 8);
-  for (Vec3i at; at.z < size.z; ++at.z) {
-    for (at.y = 0; at.y < size.y; ++at.y) {
-      row.assign(row.size(), 0);
-      for (at.x = 0; at.x < size.x; ++at.x) {
-        const auto byte = static_cast<std::size_t>(at.x) / 8;
-        row[byte] = static_cast<std::uint8_t>(row[byte] | (grid.solid_at(at) ? 1U << (at.x & 7) : 0U));
-      }
-      sum->add(row);
-    }
-  }
-}
-
-void add_tree(const CompactTree& tree, const SceneSource& source, CrcSum* sum) {
-  sum->add(std::span(tree.bytes(), tree.size_bytes()));
-  LitDescription lit = source.lighting();
-  const UsedMaterials used = used_materials(tree);
-  lit.find_glow(tree);
-  add_lighting(lit, used, called_for(lit, used), tree.level(), sum);
-}
-
-// By the bytes that it has as a compact tree.
-void add_pool(const Octree& pool, const SceneSource& source, CrcSum* sum) {
-  std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(pool)));
-  CompactTree tree;
-  if (CompactTree::make(pool, {bytes.data(), bytes.size()}, &tree) != Status::kOk) {
-    throw InputError("is too large for parts of a picture with --structure pool");
-  }
-  add_tree(tree, source, sum);
-}
-
-}  // namespace
 
 void CrcSum::add(std::span<const std::uint8_t> bytes) {
   if (!bytes.empty()) {  // of no bytes at no address zlib says 0, whatever came before

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "commands/arguments.h"
+#include "commands/stats.h"
 #include "output/progress.h"
-#include "output/suggestion.h"
 #include "output/units.h"
 #include "scene/board_fit.h"
 #include "scene/gpu_engine.h"
@@ -131,9 +131,7 @@ CLI::Option* add_board(CLI::App& app, const platform::BoardFacts** board, const 
 std::unique_ptr<SceneSource> SceneOptions::open() const {
   auto scene = with_progress("reading", quiet,
                              [&](const Progress& progress) { return open_scene(arguments, progress); });
-  for (const std::string& note : quiet ? Notes() : scene->notes()) {
-    std::fprintf(stderr, "note: %s\n", note.c_str());
-  }
+  print_notes(scene->notes(), quiet);
   return scene;
 }
 
@@ -199,6 +197,28 @@ void add_normals(CLI::App& app, EffectChoice* choice) {
       ->default_str("auto");
 }
 
+// Refuses what this build was made without.
+void choose(const std::string& name, std::string* chosen) {
+  refuse_if(name == "wide" && WideRenderer::instruction_sets().empty(),
+            "--engine: \"wide\" is not in this build (-DTHIMBLE_WIDE=OFF); auto and ray64 are");
+  refuse_if(name == "gpu" && !GpuEngine::is_in_build(),
+            "--engine: \"gpu\" is not in this build (-DTHIMBLE_GPU=OFF); auto and ray64 are");
+  *chosen = name;
+}
+
+// Draws, or traces: what the engine `does`.
+void add_engine(CLI::App& app, std::string* name, const std::vector<std::string>& names, const char* does,
+                const std::string& help) {
+  add_choice_option(
+      app, "--engine", names, [name, names](std::size_t index) { choose(names[index], name); }, help)
+      ->default_str("auto");
+  also_check(app, [&app, name, does] {
+    const std::string structure = text_given(app, "--structure");
+    refuse_if((*name == "wide" || *name == "gpu") && !structure.empty() && structure != "compact",
+              "--engine ", *name, " ", does, " --structure compact only");
+  });
+}
+
 }  // namespace
 
 void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, bool names_default) {
@@ -228,35 +248,6 @@ void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& 
                    concat("rays that follow one another from a pixel by mirrors, glass and water, 0 to ",
                           kMaxBounces, " (default: the scene's own, else ", kDefaultBounces, ")"));
 }
-
-namespace {
-
-// Refuses what this build was made without.
-void choose(const std::string& name, std::string* chosen) {
-  if (name == "wide" && WideRenderer::instruction_sets().empty()) {
-    refuse_usage("--engine", "\"wide\" is not in this build (-DTHIMBLE_WIDE=OFF); auto and ray64 are");
-  }
-  if (name == "gpu" && !GpuEngine::is_in_build()) {
-    refuse_usage("--engine", "\"gpu\" is not in this build (-DTHIMBLE_GPU=OFF); auto and ray64 are");
-  }
-  *chosen = name;
-}
-
-// Draws, or traces: what the engine `does`.
-void add_engine(CLI::App& app, std::string* name, const std::vector<std::string>& names, const char* does,
-                const std::string& help) {
-  add_choice_option(
-      app, "--engine", names, [name, names](std::size_t index) { choose(names[index], name); }, help)
-      ->default_str("auto");
-  also_check(app, [&app, name, does] {
-    const std::string structure = text_given(app, "--structure");
-    if ((*name == "wide" || *name == "gpu") && !structure.empty() && structure != "compact") {
-      refuse_usage("--engine " + *name + " " + does + " --structure compact only");
-    }
-  });
-}
-
-}  // namespace
 
 int all_cores() {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, wide::kMaxThreads);
@@ -293,31 +284,24 @@ void EngineOptions::add_ray_engines_to(CLI::App& app) {
 
 std::unique_ptr<GpuEngine> EngineOptions::gpu(const BuiltScene& built, EffectSet effects) const {
   const EffectSet missing = effects & ~GpuEngine::effects();
-  if (name == "gpu" && missing != Effect::kNone) {
-    refuse_usage("--engine gpu does not draw the effects " + effects_text(missing) + "; --engine auto does");
-  }
+  refuse_if(name == "gpu" && missing != Effect::kNone, "--engine gpu does not draw the effects ",
+            effects_text(missing), "; --engine auto does");
   const Span<const Rgb8> palette(built.palette().data(), built.palette().size());
   return name == "gpu" ? GpuEngine::make(built.compact(), palette, threads) : nullptr;
 }
 
 void EngineOptions::check(bool is_plain, bool is_lit, bool at_edges) const {
   const bool draws_plain = name == "wide" || (name == "gpu" && !is_lit);
-  if (draws_plain && !is_plain) {
-    refuse_usage("--engine " + name +
-                 " draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
-  }
-  if (name == "wide" && is_lit) {
-    refuse_usage("--engine wide draws without --effects and --bounces");
-  }
-  if (name == "gpu" && at_edges) {
-    refuse_usage("--engine gpu draws the same samples for all pixels, without --samples auto");
-  }
+  refuse_if(draws_plain && !is_plain, "--engine ", name,
+            " draws one sample a pixel at full depth, without --samples, --cutoff and --max-depth");
+  refuse_if(name == "wide" && is_lit, "--engine wide draws without --effects and --bounces");
+  refuse_if(name == "gpu" && at_edges,
+            "--engine gpu draws the same samples for all pixels, without --samples auto");
 }
 
 void EngineOptions::check_budget(bool has_budget) const {
-  if (name == "gpu" && has_budget) {
-    refuse_usage("--engine gpu keeps the scene in the GPU's memory, without --memory and --board");
-  }
+  refuse_if(name == "gpu" && has_budget,
+            "--engine gpu keeps the scene in the GPU's memory, without --memory and --board");
 }
 
 std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, std::int32_t width_px,
@@ -326,11 +310,9 @@ std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, st
     return nullptr;
   }
   auto renderer = WideRenderer::make(built, width_px, height_px, threads);
-  if (renderer == nullptr && name == "wide") {
-    throw InputError(built->structure() == StructureKind::kCompact
-                         ? "no room for --engine wide within --memory"
-                         : "--engine wide draws --structure compact only");
-  }
+  fail_if(renderer == nullptr && name == "wide", built->structure() == StructureKind::kCompact
+                                                     ? "no room for --engine wide within --memory"
+                                                     : "--engine wide draws --structure compact only");
   return renderer;
 }
 

@@ -20,7 +20,7 @@
 #include "commands/page.h"
 #include "commands/scene_options.h"
 #include "host/canvas.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/plot.h"
 #include "output/progress.h"
 #include "output/units.h"
@@ -79,16 +79,10 @@ std::vector<std::string> find_scenes(const std::string& folder) {
       names.push_back(at->path().lexically_relative(folder).string());
     }
   }
-  if (error) {
-    throw InputError("cannot be listed: ", error.message());
-  }
-  if (names.empty()) {
-    throw InputError("no file in it is a scene");
-  }
-  if (names.size() > kMostTiles) {
-    throw InputError("holds ", grouped(names.size()), " scenes, and a sheet has room for ",
-                     grouped(kMostTiles), "; name a folder in it");
-  }
+  fail_if(static_cast<bool>(error), "cannot be listed: ", error.message());
+  fail_if(names.empty(), "no file in it is a scene");
+  fail_if(names.size() > kMostTiles, "holds ", grouped(names.size()), " scenes, and a sheet has room for ",
+          grouped(kMostTiles), "; name a folder in it");
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -5,28 +5,25 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <utility>
-
-#include <nlohmann/json.hpp>
 
 #include "apps/app_table.h"
 #include "commands/arguments.h"
+#include "commands/bake_command.h"
 #include "commands/commands.h"
 #include "commands/render_output.h"
 #include "commands/scene_options.h"
 #include "commands/sim_session.h"
-#include "commands/stats.h"
 #include "commands/view_options.h"
 #include "output/image.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/progress.h"
+#include "output/tables.h"
 #include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/picture.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
 #include "scene/framing.h"
-#include "scene/generators.h"
 #include "scene/named_scenes.h"
 #include "scene/wide_frames.h"
 #include "thimble/bake/baked_scene.h"
@@ -94,36 +91,27 @@ std::vector<std::uint8_t> flash_bytes(const SimCommand& command) {
   if (const BakedScene* baked = source->baked()) {
     bytes.assign(baked->bytes().begin(), baked->bytes().end());
   } else {
-    ViewWishes view;
-    use_display(&board, &view);
-    BakingOptions options;
-    options.limit_bytes = limit;
+    BakeCommand baking;
+    baking.scene = command.scene;
+    baking.scene.board = &board;
+    baking.effects = command.effects;
+    // Framed as `thimble render` does.
+    use_display(&board, &baking.view);
+    baking.view.side = NamedView::kBest;
+    baking.view.fov_degrees = kPictureFov;
+    BakingOptions options = baking_options(baking, *source, nullptr);
     options.coarsen = command.scene.coarsen;
-    options.brick_map = true;
-    options.most_map_level = board.most_map_level;
-    options.effects = command.effects;
-    options.name = scene_name(command.scene.arguments.scene);
-    // Framed as `thimble render` does, and a person's scene is lit so; a generator's figures stay what they are.
-    options.default_look = !parse_generator(command.scene.arguments.scene);  // a baked one was let out above
-    options.display = DisplayFacts{board.format, board.width_px, board.height_px};
-    view.side = NamedView::kBest;
-    view.fov_degrees = kPictureFov;
-    options.camera = [&](const CompactTree& tree) {
-      return frame_round(view, *source, shape_of(*source, tree)).kept;
-    };
     const Baked made = with_progress("baking", command.scene.quiet, [&](const Progress& progress) {
       return bake_within({&board, std::nullopt}, *source, &options, progress);
     });
     limit = *options.limit_bytes;
     bytes.assign(made.bytes.begin(), made.bytes.end());
   }
-  if (bytes.size() > limit) {
-    throw InputError("takes ", grouped(bytes.size()), " bytes baked; ", board.name, " has ", grouped(limit),
-                     " bytes of flash for a scene",
-                     source->baked() == nullptr && !command.scene.coarsen
-                         ? "; a smaller --depth may fit, --coarsen merges blocks until it does"
-                         : "");
-  }
+  fail_if(bytes.size() > limit, "takes ", grouped(bytes.size()), " bytes baked; ", board.name, " has ",
+          grouped(limit), " bytes of flash for a scene",
+          source->baked() == nullptr && !command.scene.coarsen
+              ? "; a smaller --depth may fit, --coarsen merges blocks until it does"
+              : "");
   return bytes;
 }
 
@@ -143,16 +131,11 @@ std::string difference(const Image& picture, const Image& wanted) {
   if (count == 0) {
     return {};
   }
-  const auto color = [first](const Image& image) {
-    std::array<char, 16> text{};
-    const std::uint8_t* rgb = image.pixels.data() + 3 * first;
-    std::snprintf(text.data(), text.size(), "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-    return std::string(text.data());
-  };
+  const auto color = [first](const Image& image) { return color_text(image.pixels.data() + 3 * first); };
   const auto width = static_cast<std::size_t>(picture.width_px);
-  return grouped(count) + " of " + grouped(pixels) + (count == 1 ? " pixels differs" : " pixels differ") +
-         "; the first is at " + std::to_string(first % width) + "," + std::to_string(first / width) + ": " +
-         color(picture) + " where " + color(wanted) + " should be";
+  return concat(grouped(count), " of ", grouped(pixels), count == 1 ? " pixels differs" : " pixels differ",
+                "; the first is at ", first % width, ",", first / width, ": ", color(picture), " where ",
+                color(wanted), " should be");
 }
 
 // What drew the frames that the port may draw; with both words where it could not draw all of them.
@@ -163,32 +146,25 @@ std::string engine_text(const WideFrames& wide) {
 // As the other subcommands name things; without what is not counted here.
 std::string stats_text(const SimCommand& command, const SessionResult& result, const std::string& engine) {
   const SessionOptions& session = command.session;
-  nlohmann::ordered_json json;
-  json["scene"] = session.application->wants_scene ? command.scene.arguments.scene : "";
-  json["board"] = session.board->name;
-  json["application"] = session.application->name;
+  JsonRow json;
+  put_all(&json, "scene", session.application->wants_scene ? command.scene.arguments.scene : "", "board",
+          session.board->name, "application", session.application->name);
   BakedScene scene;
   if (session.application->wants_scene && BakedScene::open(session.scene, &scene) == Status::kOk) {
-    json["depth"] = scene.tree().level();
-    json["voxels"] = scene.tree().voxel_count();
-    json["tree_bytes"] = scene.tree().size_bytes();
-    json["baked_bytes"] = session.scene.size;
-    json["baked_crc32"] = crc_text(scene.crc32());
+    put_all(&json, "depth", scene.tree().level(), "voxels", scene.tree().voxel_count(), "tree_bytes",
+            scene.tree().size_bytes(), "baked_bytes", session.scene.size, "baked_crc32",
+            crc_text(scene.crc32()));
   }
-  json["budget_bytes"] = result.use.ram_limit_bytes;
-  json["high_water_bytes"] = result.use.ram_bytes;
-  json["stack_bytes"] = result.use.stack_bytes;
-  json["frames"] = result.pictures;
-  json["frame_seconds"] = result.mean_frame_seconds;
-  json["rows_sent"] = result.rows_sent;
-  json["rows_kept"] = result.rows_kept;
+  put_all(&json, "budget_bytes", result.use.ram_limit_bytes, "high_water_bytes", result.use.ram_bytes,
+          "stack_bytes", result.use.stack_bytes, "frames", result.pictures, "frame_seconds",
+          result.mean_frame_seconds, "rows_sent", result.rows_sent, "rows_kept", result.rows_kept);
   if (!engine.empty()) {
-    json["threads"] = command.engine.threads;
-    json["engine"] = engine;
+    put_all(&json, "threads", command.engine.threads, "engine", engine);
   }
-  json["frame_crc32"] = result.pictures == 0 ? "" : crc_of(host::expand_rgb(result.picture));
-  json["display_crc32"] = result.pictures == 0 ? "" : crc_of(result.picture.bytes);
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  const bool is_drawn = result.pictures != 0;
+  put_all(&json, "frame_crc32", is_drawn ? crc_of(host::expand_rgb(result.picture)) : "", "display_crc32",
+          is_drawn ? crc_of(result.picture.bytes) : "");
+  return json_text(json);
 }
 
 void report(const SimCommand& command, const SessionResult& result, const std::string& engine) {
@@ -270,9 +246,7 @@ int run_and_write(SimCommand* command, std::string* sentence) {
   if (outputs[kShot] != nullptr) {
     write_picture(outputs[kShot], command->shot_path, picture);
   }
-  if (outputs[kStats] != nullptr) {
-    outputs[kStats]->write(stats_text(*command, result, engine));
-  }
+  outputs.write(kStats, stats_text(*command, result, engine));
   outputs.commit();
   if (wanted) {
     const std::string differs = difference(picture, *wanted);
@@ -291,19 +265,14 @@ int run_and_write(SimCommand* command, std::string* sentence) {
 void run(const SimCommand& given) {
   SimCommand command = given;
   SessionOptions& session = command.session;
-  if (!session.application->wants_scene && !command.scene.arguments.scene.empty()) {
-    refuse_usage("SCENE", in_quotes(command.scene.arguments.scene) + " is not for the application " +
-                              session.application->name + ", which draws no scene");
-  }
-  if (session.hold_fps != 0 &&
-      (std::strcmp(session.application->name, "demo") != 0 || session.board->visits_a_second == 0)) {
-    refuse_usage("--hold", std::string(session.application->name) + " on " + session.board->name +
-                               " holds no rate of frames");
-  }
-  if (command.engine.name == "wide" && !session.application->asks_port) {
-    refuse_usage("--engine", std::string("wide draws for the application demo only, not for ") +
-                                 session.application->name);
-  }
+  refuse_if(!session.application->wants_scene && !command.scene.arguments.scene.empty(),
+            "SCENE: ", in_quotes(command.scene.arguments.scene), " is not for the application ",
+            session.application->name, ", which draws no scene");
+  refuse_if(session.hold_fps != 0 &&
+                (std::strcmp(session.application->name, "demo") != 0 || session.board->visits_a_second == 0),
+            "--hold: ", session.application->name, " on ", session.board->name, " holds no rate of frames");
+  refuse_if(command.engine.name == "wide" && !session.application->asks_port,
+            "--engine: wide draws for the application demo only, not for ", session.application->name);
   if (command.scene.arguments.scene.empty()) {
     command.scene.arguments.scene = default_scene(session);
   }

@@ -1,7 +1,5 @@
 #include "commands/stats.h"
 
-#include <nlohmann/json.hpp>
-
 #include "commands/arguments.h"
 #include "output/tables.h"
 #include "scene/lit_description.h"
@@ -34,26 +32,13 @@ void Stats::take(const Painting& painting) {
 }
 
 std::string stats_text(const Stats& stats) {
-  nlohmann::ordered_json json;
-  json["scene"] = stats.scene;
-  json["depth"] = stats.depth;
-  json["points"] = stats.points;
-  json["voxels"] = stats.voxels;
-  json["nodes"] = stats.nodes;
-  json["tree_bytes"] = stats.tree_bytes;
-  json["budget_bytes"] = stats.budget_bytes;
-  json["high_water_bytes"] = stats.high_water_bytes;
-  json["solid_added"] = stats.solid_added;
-  json["build_seconds"] = stats.build_seconds;
-  json["frame_seconds"] = stats.frame_seconds;
-  json["rays"] = stats.rays;
-  json["hits"] = stats.hits;
-  json["node_visits"] = stats.node_visits;
-  json["box_tests"] = stats.box_tests;
-  json["exact_tests"] = stats.exact_tests;
-  json["threads"] = stats.threads;
-  json["engine"] = stats.engine;
-  json["frame_crc32"] = stats.frame_crc32;
+  JsonRow json;
+  put_all(&json, "scene", stats.scene, "depth", stats.depth, "points", stats.points, "voxels", stats.voxels,
+          "nodes", stats.nodes, "tree_bytes", stats.tree_bytes, "budget_bytes", stats.budget_bytes,
+          "high_water_bytes", stats.high_water_bytes, "solid_added", stats.solid_added, "build_seconds",
+          stats.build_seconds, "frame_seconds", stats.frame_seconds, "rays", stats.rays, "hits", stats.hits,
+          "node_visits", stats.node_visits, "box_tests", stats.box_tests, "exact_tests", stats.exact_tests,
+          "threads", stats.threads, "engine", stats.engine, "frame_crc32", stats.frame_crc32);
   const auto add = [&](const char* name, const auto& value) {
     if (value) {
       json[name] = *value;
@@ -80,8 +65,15 @@ std::string stats_text(const Stats& stats) {
     json["rays_by_kind"][name] = stats.lit_counts->rays[kind];
     json["node_visits_by_kind"][name] = stats.lit_counts->node_visits[kind];
   }
-  // A file's name may hold bytes that are no UTF-8; they are replaced, not an error.
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
+}
+
+void print_notes(const std::vector<std::string>& notes, bool quiet) {
+  for (const std::string& note : notes) {
+    if (!quiet && !note.empty()) {
+      std::fprintf(stderr, "note: %s\n", note.c_str());
+    }
+  }
 }
 
 void add_report(CLI::App& app, ReportPaths* paths, bool* quiet, const std::string& columns,
@@ -94,15 +86,11 @@ void add_report(CLI::App& app, ReportPaths* paths, bool* quiet, const std::strin
 }
 
 void ReportFiles::write(const nlohmann::ordered_json& rows, const std::string& plot) {
-  if (outputs_[0] != nullptr) {
-    outputs_[0]->write(csv_of(rows));
-  }
+  outputs_.write(0, csv_of(rows));
   if (outputs_[1] != nullptr) {
     outputs_[1]->write(rows.dump(2) + "\n");
   }
-  if (outputs_[2] != nullptr) {
-    outputs_[2]->write(plot);
-  }
+  outputs_.write(2, plot);
   outputs_.commit();
 }
 

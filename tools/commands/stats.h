@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"
 #include "thimble/light/render.h"
@@ -63,6 +64,9 @@ struct Stats {
 
 /// All of them as one JSON object with the members' names.
 std::string stats_text(const Stats& stats);
+
+/// "note: ..." on standard error for each that says something, unless `quiet`.
+void print_notes(const std::vector<std::string>& notes, bool quiet);
 
 // --csv, --json and --plot: what a study found, as data and as a picture.
 

@@ -88,9 +88,8 @@ class PixelJudge {
       const std::int32_t y = static_cast<std::int32_t>((*random)() % kTimedHeightPx);
       const Ray ray = camera.ray(x, y);
       Hit hit;
-      if (built.closest_hit(ray, &hit, options) != Status::kOk) {
-        throw InputError("--engine does not take the rays of this view");
-      }
+      fail_if(built.closest_hit(ray, &hit, options) != Status::kOk,
+              "--engine does not take the rays of this view");
       Judged& judged = judged_.emplace_back();
       for (std::size_t axis = 0; axis < 3; ++axis) {
         judged.ray.origin_q8[axis] = ray.origin[static_cast<int>(axis)].raw;
@@ -168,9 +167,7 @@ Row measure(const TableCommand& command, const BuiltScene& built, PixelJudge* ju
     if (status == Status::kTooFine && command.engine.name != "wide") {
       status = built.render_band(camera, shading, band, &counts, options);
     }
-    if (status != Status::kOk) {
-      throw InputError("--engine does not take the rays of this view");
-    }
+    fail_if(status != Status::kOk, "--engine does not take the rays of this view");
     const double taken = watch.seconds();
     if (frame < 0) {
       continue;  // its memory was never touched before
@@ -199,20 +196,12 @@ std::string row_text(const Row& row) {
   return line.data();
 }
 
-JsonRow objects_of(const std::vector<Row>& rows) {
-  JsonRow objects = JsonRow::array();
-  for (const Row& row : rows) {
-    JsonRow object;
-    object["points"] = row.points;
-    object["projection"] = row.orthographic ? "orthographic" : "perspective";
-    object["seconds"] = row.seconds;
-    object["paper_seconds"] = json_of(paper_seconds(row.points, row.orthographic));
-    object["hits"] = row.hits;
-    object["exact_mismatches"] = row.mismatches;
-    object["engine"] = row.engine;
-    objects.push_back(object);
-  }
-  return objects;
+JsonRow object_of(const Row& row) {
+  JsonRow object;
+  put_all(&object, "points", row.points, "projection", row.orthographic ? "orthographic" : "perspective",
+          "seconds", row.seconds, "paper_seconds", json_of(paper_seconds(row.points, row.orthographic)),
+          "hits", row.hits, "exact_mismatches", row.mismatches, "engine", row.engine);
+  return object;
 }
 
 std::string plot_text(const TableCommand& command, const std::vector<Row>& rows) {
@@ -271,7 +260,7 @@ void run(const TableCommand& command) {
       rows.push_back(row);
     }
   }
-  files.write(objects_of(rows), files.wants_plot() ? plot_text(command, rows) : "");
+  files.write(objects_of(rows, object_of), files.wants_plot() ? plot_text(command, rows) : "");
 }
 
 }  // namespace
@@ -301,11 +290,8 @@ void add_table(CLI::App& app) {
         return {};
       },
       "numbers of points (default: the paper's, 1 to 20,000,000)");
-  add_choice_option(
-      *sub, "--scene", {"points", "cluster"},
-      [command](std::size_t index) { command->scene = index == 0 ? "points" : "cluster"; },
-      "uniformly random points, or points that crowd")
-      ->default_str("points");
+  add_choice_option(*sub, "--scene", {"points", "cluster"}, &command->scene,
+                    "uniformly random points, or points that crowd");
   add_whole_option(*sub, "--depth", "L", kLeastTimedLevel, kMaxLevel, &command->depth,
                    "the world is 2^L voxels a side, L from 5 to 12; the paper's was probably smaller")
       ->default_str("10");

@@ -22,9 +22,7 @@ void run(const ThumbnailCommand& command) {
   const OutputClaim claim({command.output}, {command.scene});
   SmallPicture picture;
   LimitedPicture(command.scene, command.side_px, kLimits).take(&picture, true);
-  if (!picture.error.empty()) {
-    throw InputError(picture.error);
-  }
+  fail_if(!picture.error.empty(), picture.error);
   OutputFile file(command.output, OutputFile::Empty::kIsFilled);
   write_image(&file, ImageKind::kPng, picture.image);
   file.commit();

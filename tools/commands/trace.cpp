@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -12,14 +10,14 @@
 #include <string_view>
 #include <vector>
 
-#include "boards/board_table.h"
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "commands/view_options.h"
+#include "instruments/timed_frames.h"
 #include "output/hit_rows.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "output/progress.h"
 #include "output/units.h"
 #include "readers/file_bytes.h"
@@ -91,10 +89,8 @@ class RayFile {
       return;
     }
     table_ = read_npy_table(file);
-    if (table_->columns != 6) {
-      throw InputError("rays are rows of six numbers, ox, oy, oz, dx, dy, dz; this array has ",
-                       table_->columns, " columns");
-    }
+    fail_if(table_->columns != 6, "rays are rows of six numbers, ox, oy, oz, dx, dy, dz; this array has ",
+            table_->columns, " columns");
     first_line_ = 0;
     for (std::size_t row = 0; row < table_->rows;) {
       row = std::min<std::size_t>(row + kChunkRows, table_->rows);
@@ -192,11 +188,7 @@ struct TraceCommand {
   int threads = 1;
 };
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+constexpr int kOnTheWall = 2;  // what FrameWatch takes for more threads than one
 
 // Files with so many rays are worth the map.
 constexpr std::size_t kRaysForMap = 100000;
@@ -246,7 +238,7 @@ void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built
   const std::vector<Ray>& rays = tracing->rays;
   std::vector<Hit>& hits = tracing->hits;
   hits.resize(rays.size());
-  const auto start = Clock::now();
+  const FrameWatch watch(kOnTheWall);
   if (gpu != nullptr) {
     (void)gpu->trace({rays.data(), rays.size()}, {hits.data(), hits.size()});
   } else if (wide) {
@@ -256,7 +248,7 @@ void trace_chunk(const RayFile& file, std::size_t chunk, const BuiltScene& built
       (void)built.closest_hit(rays[i], &hits[i], options);
     }
   }
-  tracing->seconds += seconds_since(start);
+  tracing->seconds += watch.seconds();
   lines->clear();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     rows.append(lines, rays[i], hits[i]);
@@ -293,7 +285,7 @@ void run(const TraceCommand& command) {
   const HitRows rows(command.output, false, built.structure() != StructureKind::kDense);
   output.write(rows.beginning(stats.rays));
   ProgressBar bar("tracing", command.scene.quiet);
-  const auto start = Clock::now();
+  const FrameWatch watch(kOnTheWall);
   const auto threads = static_cast<std::size_t>(command.threads);
   std::vector<Tracing> workers(threads);
   std::vector<std::string> lines(8 * threads);
@@ -308,16 +300,14 @@ void run(const TraceCommand& command) {
     }
     bar.update(file.part(first + count - 1));
   }
-  stats.frame_seconds = seconds_since(start);
+  stats.frame_seconds = watch.seconds();
   stats.trace_seconds = 0;
   for (const Tracing& worker : workers) {
     stats.hits += worker.hit_count;
     stats.node_visits += worker.visits;
     *stats.trace_seconds += worker.seconds;
   }
-  if (outputs[1] != nullptr) {
-    outputs[1]->write(stats_text(stats));
-  }
+  outputs.write(1, stats_text(stats));
   outputs.commit();
 }
 

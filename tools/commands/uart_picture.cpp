@@ -9,7 +9,7 @@
 #include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/image.h"
-#include "output/output_set.h"
+#include "output/output_file.h"
 #include "readers/file_bytes.h"
 #include "readers/input_error.h"
 #include "thimble/picture/camera.h"

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "commands/arguments.h"
-#include "output/suggestion.h"
 #include "output/units.h"
 #include "scene/named_scenes.h"
 

@@ -40,13 +40,11 @@ void run(const ViewCommand& command) {
   }
   look.bounces = command.effects.bounces;
   look.engine = command.engine.name;
-  if (look.engine == "gpu" && (look.shade || look.effects)) {
-    refuse_usage("--engine gpu draws the scene's own look, without --shade and --effects");
-  }
+  refuse_if(look.engine == "gpu" && (look.shade || look.effects),
+            "--engine gpu draws the scene's own look, without --shade and --effects");
   look.smooth = command.effects.choice.smooth;
-  if (command.effects.named() && look.shade && command.shade != ShadeMode::kColor) {
-    refuse_usage("--shade " + look.shade_word + " shows no light, and so no --effects");
-  }
+  refuse_if(command.effects.named() && look.shade && command.shade != ShadeMode::kColor, "--shade ",
+            look.shade_word, " shows no light, and so no --effects");
   if (command.bench_frames != 0) {
     std::printf("%s\n%s\n", viewer::kBenchColumns,
                 viewer::bench_viewer(options, command.bench_frames).c_str());

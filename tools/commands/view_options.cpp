@@ -68,12 +68,10 @@ void add_view(CLI::App& app, ViewWishes* view, bool with_direction_bits) {
          {"--projection", "--eye", "--target", "--up", "--fov", "--span", "--view", "--turn", "--tilt"}) {
       view->placed = view->placed || is_given(app, name);
     }
-    if (!view->orthographic && is_given(app, "--span")) {
-      refuse_usage("--span", "is the width of --projection orthographic; in perspective --fov is the angle");
-    }
-    if (view->orthographic && is_given(app, "--fov")) {
-      refuse_usage("--fov", "is the angle of --projection perspective; orthographic pictures have a --span");
-    }
+    refuse_if(!view->orthographic && is_given(app, "--span"),
+              "--span: is the width of --projection orthographic; in perspective --fov is the angle");
+    refuse_if(view->orthographic && is_given(app, "--fov"),
+              "--fov: is the angle of --projection perspective; orthographic pictures have a --span");
   });
 }
 
@@ -116,10 +114,8 @@ void use_display(const platform::BoardFacts* board, ViewWishes* view) {
 }
 
 void add_direction_bits(CLI::App& app, int* bits) {
-  add_whole_option(
-      app, "--direction-bits", "N", kMinDirectionBits, kMaxDirectionBits,
-      [bits](std::int64_t number) { *bits = static_cast<int>(number); },
-      "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
+  add_whole_option(app, "--direction-bits", "N", kMinDirectionBits, kMaxDirectionBits, bits,
+                   "bits of a ray's direction, 8 to 20 (default: as many as are needed)");
 }
 
 void add_samples(CLI::App& app, int* across, bool* at_edges, const std::string& of_what,

@@ -36,96 +36,86 @@ JsonRow known(int value) {
 JsonRow object_of(const char* kind, const AccuracyRow& row) {
   const Setting& setting = row.setting;
   JsonRow object;
-  object["row"] = kind;
-  object["group"] = row.group;
-  object["options"] = nullptr;
-  object["front"] = row.front ? 1 : 0;
-  object["max_depth"] = setting.quality.max_depth;
-  object["cutoff_px"] = static_cast<double>(setting.quality.cutoff.raw) / Q16::kOne;
-  object["direction_bits"] = setting.direction_bits;
-  object["samples"] = setting.quality.samples();
-  object["wrong_px"] = row.wrong_px;
-  object["visible_px"] = row.visible_px;
-  object["rms_error"] = rms_of(row.psnr_db);
-  object["psnr_db"] = std::isfinite(row.psnr_db) ? JsonRow(row.psnr_db) : JsonRow(nullptr);
+  put_all(&object, "row", kind, "group", row.group, "options", nullptr, "front", row.front ? 1 : 0,
+          "max_depth", setting.quality.max_depth, "cutoff_px",
+          static_cast<double>(setting.quality.cutoff.raw) / Q16::kOne, "direction_bits",
+          setting.direction_bits, "samples", setting.quality.samples(), "wrong_px", row.wrong_px,
+          "visible_px", row.visible_px, "rms_error", rms_of(row.psnr_db), "psnr_db",
+          std::isfinite(row.psnr_db) ? JsonRow(row.psnr_db) : JsonRow(nullptr));
   row.add_to(&object);
-  object["rays"] = row.counts.rays;
-  object["hits"] = row.counts.hits;
-  object["node_visits"] = row.counts.node_visits;
-  for (const char* name : {"silhouette_px", "depth_error_mean_voxels", "depth_error_max_voxels",
-                           "lm3s6965evb_instructions", "visits_given", "inexact_px", "error_bound_grays",
-                           "mean_error_grays", "occlusion_rays", "roughness_rays", "bounces"}) {
-    object[name] = nullptr;
-  }
+  put_all(&object, "rays", row.counts.rays, "hits", row.counts.hits, "node_visits", row.counts.node_visits);
+  put_nulls(&object, {"silhouette_px", "depth_error_mean_voxels", "depth_error_max_voxels",
+                      "lm3s6965evb_instructions", "visits_given", "inexact_px", "error_bound_grays",
+                      "mean_error_grays", "occlusion_rays", "roughness_rays", "bounces"});
   return object;
 }
 
+// What tables leave out: combinations off the front.
+bool is_left_out(const AccuracyRow& row) {
+  return row.group == "together" && !row.front;
+}
+
 std::string settings_table(const AccuracyStudy& study) {
-  std::vector<Cells> rows{{"", "depth", "cut px", "bits", "samples", "ms", "+-%", "PSNR", "RMS", "wrong %",
-                           "depth off", "visits", "M instr"}};
   std::size_t together = 0;
-  for (const AccuracyRow& row : study.rows) {
+  const auto make = [&](const AccuracyRow& row) {
     together += row.group == "together" ? 1U : 0U;
-    if (row.group == "together" && !row.front) {
-      continue;
+    if (is_left_out(row)) {
+      return Cells();
     }
     Cells cells{row.front ? "*" : ""};
     for (const double value : row.setting.values()) {
       cells.push_back(value == 0 ? "-" : shortest(value));
     }
-    const std::array measured{
-        brief_ms(row.ms_median),
-        row.spread(),
-        decibels(row.psnr_db),
-        fixed(rms_of(row.psnr_db), 2),
-        percent(row.wrong_px, study.pixels),
-        fixed(row.depth_mean_voxels, 3),
-        fixed(static_cast<double>(row.counts.node_visits) / static_cast<double>(study.pixels), 2),
-        fixed(row.lm3s_instructions / 1e6, 1)};
+    const double pixels = static_cast<double>(study.pixels);
+    const Cells measured =
+        cells_of(brief_ms(row.ms_median), row.spread(), decibels(row.psnr_db), fixed(rms_of(row.psnr_db), 2),
+                 percent(row.wrong_px, study.pixels), fixed(row.depth_mean_voxels, 3),
+                 fixed(static_cast<double>(row.counts.node_visits) / pixels, 2),
+                 fixed(row.lm3s_instructions / 1e6, 1));
     cells.insert(cells.end(), measured.begin(), measured.end());
-    rows.push_back(cells);
-  }
+    return cells;
+  };
+  const std::string table = table_of({"", "depth", "cut px", "bits", "samples", "ms", "+-%", "PSNR", "RMS",
+                                      "wrong %", "depth off", "visits", "M instr"},
+                                     1, study.rows, make);
   return "each knob alone, then those of " + grouped(together) +
          " combinations that are on the front, last the reference\n"
          "(*: nothing nearer to the reference is as cheap, give or take 3 per cent of time; -: default)\n" +
-         columns_of(rows, 1);
+         table;
 }
 
 std::string work_table(const AccuracyStudy& study) {
-  std::vector<Cells> rows{
-      {"visits given", "ms", "+-%", "exact %", "bound", "error", "PSNR", "RMS", "wrong %"}};
-  for (const WorkRow& row : study.work) {
-    rows.push_back({grouped(row.given_visits), brief_ms(row.picture.ms_median), row.picture.spread(),
+  const auto cells = [&](const WorkRow& row) {
+    return cells_of(grouped(row.given_visits), brief_ms(row.picture.ms_median), row.picture.spread(),
                     percent(study.pixels - row.inexact_px, study.pixels), fixed(row.error_bound_grays, 2),
                     fixed(row.mean_error_grays, 2), decibels(row.picture.psnr_db),
-                    fixed(rms_of(row.picture.psnr_db), 2), percent(row.picture.wrong_px, study.pixels)});
-  }
+                    fixed(rms_of(row.picture.psnr_db), 2), percent(row.picture.wrong_px, study.pixels));
+  };
   return "\na frame of the default setting stopped early; bound, error: how far it can be and how far it is\n"
          "from the finished one, mean absolute greys; PSNR, RMS, wrong: against the reference\n" +
-         columns_of(rows, 0);
+         table_of({"visits given", "ms", "+-%", "exact %", "bound", "error", "PSNR", "RMS", "wrong %"}, 0,
+                  study.work, cells);
 }
 
 std::string light_table(const AccuracyStudy& study) {
-  std::vector<Cells> rows{
-      {"", "occlusion", "roughness", "bounces", "ms", "+-%", "PSNR", "RMS", "wrong %", "rays", "visits"}};
   const auto rays_of = [](int value) { return value < 0 ? std::string("-") : std::to_string(value); };
-  for (const AccuracyRow& row : study.light) {
-    if (row.group == "together" && !row.front) {
-      continue;
-    }
+  const auto cells = [&](const AccuracyRow& row) {
     const double pixels = static_cast<double>(study.pixels);
-    rows.push_back({row.front ? "*" : "", rays_of(row.light.occlusion_rays),
-                    rays_of(row.light.roughness_rays), rays_of(row.light.bounces), brief_ms(row.ms_median),
-                    row.spread(), decibels(row.psnr_db), fixed(rms_of(row.psnr_db), 2),
-                    percent(row.wrong_px, study.pixels),
-                    fixed(static_cast<double>(row.counts.rays) / pixels, 2),
-                    fixed(static_cast<double>(row.counts.node_visits) / pixels, 2)});
-  }
+    return is_left_out(row) ? Cells()
+                            : cells_of(row.front ? "*" : "", rays_of(row.light.occlusion_rays),
+                                       rays_of(row.light.roughness_rays), rays_of(row.light.bounces),
+                                       brief_ms(row.ms_median), row.spread(), decibels(row.psnr_db),
+                                       fixed(rms_of(row.psnr_db), 2), percent(row.wrong_px, study.pixels),
+                                       fixed(static_cast<double>(row.counts.rays) / pixels, 2),
+                                       fixed(static_cast<double>(row.counts.node_visits) / pixels, 2));
+  };
   return "\nlight: " + effects_text(study.effects) + "\nagainst " + study.light_reference.text() +
          ", one sample a pixel\nfirst what the scene asks for, each knob alone, then combinations on the "
          "front; rays and "
          "visits\na pixel\n" +
-         columns_of(rows, 1);
+         table_of({"", "occlusion", "roughness", "bounces", "ms", "+-%", "PSNR", "RMS", "wrong %", "rays",
+                   "visits"},
+                  1, study.light, cells);
 }
 
 // The rows of each group as a cloud of that name, error against cost.
@@ -212,26 +202,21 @@ JsonRow accuracy_objects(const AccuracyStudy& study) {
   JsonRow rows = JsonRow::array();
   for (const AccuracyRow& row : study.rows) {
     JsonRow object = object_of("setting", row);
-    object["options"] = row.setting.text();
-    object["silhouette_px"] = row.silhouette_px;
-    object["depth_error_mean_voxels"] = row.depth_mean_voxels;
-    object["depth_error_max_voxels"] = row.depth_max_voxels;
-    object["lm3s6965evb_instructions"] = row.lm3s_instructions;
+    put_all(&object, "options", row.setting.text(), "silhouette_px", row.silhouette_px,
+            "depth_error_mean_voxels", row.depth_mean_voxels, "depth_error_max_voxels", row.depth_max_voxels,
+            "lm3s6965evb_instructions", row.lm3s_instructions);
     rows.push_back(object);
   }
   for (const WorkRow& row : study.work) {
     JsonRow object = object_of("anytime", row.picture);
-    object["visits_given"] = row.given_visits;
-    object["inexact_px"] = row.inexact_px;
-    object["error_bound_grays"] = row.error_bound_grays;
-    object["mean_error_grays"] = row.mean_error_grays;
+    put_all(&object, "visits_given", row.given_visits, "inexact_px", row.inexact_px, "error_bound_grays",
+            row.error_bound_grays, "mean_error_grays", row.mean_error_grays);
     rows.push_back(object);
   }
   for (const AccuracyRow& row : study.light) {
     JsonRow object = object_of("light", row);
-    object["occlusion_rays"] = known(row.light.occlusion_rays);
-    object["roughness_rays"] = known(row.light.roughness_rays);
-    object["bounces"] = known(row.light.bounces);
+    put_all(&object, "occlusion_rays", known(row.light.occlusion_rays), "roughness_rays",
+            known(row.light.roughness_rays), "bounces", known(row.light.bounces));
     rows.push_back(object);
   }
   return rows;

@@ -182,11 +182,9 @@ class LightStudio {
     band.format = PixelFormat::kRgb888;
     band.rows = camera_.height_px();
     LitCounts lit_counts;
-    if (render_lit_band(effects, built_.compact(), camera_, shading_, scene, band, &lit_counts) !=
-        Status::kOk) {
-      throw InputError(
-          "its light cannot be drawn: too many lights, or rays of this camera that are too long");
-    }
+    fail_if(render_lit_band(effects, built_.compact(), camera_, shading_, scene, band, &lit_counts) !=
+                Status::kOk,
+            "its light cannot be drawn: too many lights, or rays of this camera that are too long");
     *counts = totals_of(lit_counts);
   }
 
@@ -254,9 +252,8 @@ class AccuracyStudio {
       // A plain picture needs no copy: its rows are drawn where they belong.
       std::uint8_t* target = pixels->data() + row * static_cast<std::size_t>(y);
       const Bytes work = quality.across == 1 ? Bytes(target, row) : Bytes(work_.data(), work_.size());
-      if (prepared.frame.draw_row(y, PixelFormat::kRgb888, work, counts, options()) != Status::kOk) {
-        throw InputError("internal error: a row cannot be drawn");
-      }
+      fail_if(prepared.frame.draw_row(y, PixelFormat::kRgb888, work, counts, options()) != Status::kOk,
+              "internal error: a row cannot be drawn");
       if (quality.across != 1) {
         std::copy_n(work_.data(), row, target);
       }
@@ -268,11 +265,10 @@ class AccuracyStudio {
   double refine(const Camera& camera, std::uint32_t visits, Pixels* memory, AnytimeFrame* frame) const {
     memory->resize(anytime_bytes(camera.width_px(), camera.height_px(), PixelFormat::kRgb888));
     const FrameWatch watch;
-    if (AnytimeFrame::make(built_.compact(), camera, shading_, PixelFormat::kRgb888,
-                           {memory->data(), memory->size()}, frame) != Status::kOk ||
-        frame->refine(built_.compact(), visits, Width::k64) != Status::kOk) {
-      throw InputError("internal error: a frame cannot be refined");
-    }
+    fail_if(AnytimeFrame::make(built_.compact(), camera, shading_, PixelFormat::kRgb888,
+                               {memory->data(), memory->size()}, frame) != Status::kOk ||
+                frame->refine(built_.compact(), visits, Width::k64) != Status::kOk,
+            "internal error: a frame cannot be refined");
     const double ms = watch.ms();
     memory->resize(picture_bytes());
     return ms;
@@ -285,9 +281,8 @@ class AccuracyStudio {
       for (std::int32_t x = 0; x < camera_.width_px(); ++x) {
         const Ray ray = prepared.camera.ray(x, y);
         Hit hit;
-        if (prepared.frame.closest_hit(ray, &hit, options()) != Status::kOk) {
-          throw InputError("internal error: a ray cannot be traced");
-        }
+        fail_if(prepared.frame.closest_hit(ray, &hit, options()) != Status::kOk,
+                "internal error: a ray cannot be traced");
         result.push_back(hit.kind == HitKind::kHit ? hit_distance(ray, hit) : -1);
       }
     }

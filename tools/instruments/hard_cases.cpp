@@ -302,55 +302,6 @@ void trace_all(const CaseWorld& world, const reference::Ray& ray, HardCaseRow* r
   in_each_arithmetic([&](auto epsilon) { return reference::octree_descent(world.pyramid, ray, epsilon); });
 }
 
-}  // namespace
-
-const std::array<TracerName, kTracers>& tracer_names() {
-  static const std::array<TracerName, kTracers> kNames{{
-      {"thimble_64", "thimble", "64 bits", false},
-      {"thimble_32", "thimble", "32 bits", false},
-      {"walk_float", "grid walk", "float", false},
-      {"walk_float_epsilon", "grid walk", "float", true},
-      {"walk_double", "grid walk", "double", false},
-      {"walk_double_epsilon", "grid walk", "double", true},
-      {"points_float", "point steps", "float", false},
-      {"points_float_epsilon", "point steps", "float", true},
-      {"points_double", "point steps", "double", false},
-      {"points_double_epsilon", "point steps", "double", true},
-      {"octree_float", "octree", "float", false},
-      {"octree_float_epsilon", "octree", "float", true},
-      {"octree_double", "octree", "double", false},
-      {"octree_double_epsilon", "octree", "double", true},
-  }};
-  return kNames;
-}
-
-std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed, const Progress& progress) {
-  const CaseWorld small(kSmall, 12, seed);
-  const CaseWorld large(kLarge, 200, seed + 1);
-  std::vector<HardCaseRow> rows;
-  const std::size_t count = std::size(kCases);
-  const std::uint64_t rays_a_case = std::max<std::uint64_t>((rays + count - 1) / count, 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    const HardCase& hard = kCases[i];
-    const CaseWorld& world = hard.level == kSmall ? small : large;
-    Draw draw(seed * 1000003 + i);
-    HardCaseRow row;
-    row.name = hard.name;
-    row.level = hard.level;
-    for (std::uint64_t ray = 0; ray < rays_a_case; ++ray) {
-      trace_all(world, hard.make(draw, std::int64_t{1} << hard.level), &row);
-      if (progress && ray % 1024 == 0) {
-        progress((static_cast<double>(i) + static_cast<double>(ray) / static_cast<double>(rays_a_case)) /
-                 static_cast<double>(count));
-      }
-    }
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-namespace {
-
 // This tracer's own: its two widths.
 constexpr std::size_t kOwn = 2;
 // float and double, without and with an epsilon.
@@ -380,11 +331,8 @@ std::string four_digits(double value) {
 JsonRow empty_object(const char* row) {
   JsonRow object;
   object["row"] = row;
-  for (const char* name :
-       {"case", "level", "tracer", "traversal", "arithmetic", "epsilon_voxels", "rays", "hits", "wrong",
-        "wrong_face", "operation", "bound_name", "unit", "error", "bound", "cases"}) {
-    object[name] = nullptr;
-  }
+  put_nulls(&object, {"case", "level", "tracer", "traversal", "arithmetic", "epsilon_voxels", "rays", "hits",
+                      "wrong", "wrong_face", "operation", "bound_name", "unit", "error", "bound", "cases"});
   return object;
 }
 
@@ -394,18 +342,12 @@ double epsilon_of(const TracerName& tracer) {
 
 void add_case(const HardCaseRow& row, JsonRow* rows) {
   for (std::size_t i = 0; i < kTracers; ++i) {
-    const TracerName& tracer = tracer_names()[i];
+    const TracerName& tracer = kTracerNames[i];
     JsonRow object = empty_object("rays");
-    object["case"] = row.name;
-    object["level"] = row.level == 0 ? JsonRow(nullptr) : JsonRow(row.level);
-    object["tracer"] = tracer.key;
-    object["traversal"] = tracer.traversal;
-    object["arithmetic"] = tracer.arithmetic;
-    object["epsilon_voxels"] = epsilon_of(tracer);
-    object["rays"] = row.rays;
-    object["hits"] = row.hits;
-    object["wrong"] = row.wrong[i];
-    object["wrong_face"] = row.wrong_face[i];
+    put_all(&object, "case", row.name, "level", row.level == 0 ? JsonRow(nullptr) : JsonRow(row.level),
+            "tracer", tracer.key, "traversal", tracer.traversal, "arithmetic", tracer.arithmetic,
+            "epsilon_voxels", epsilon_of(tracer), "rays", row.rays, "hits", row.hits, "wrong", row.wrong[i],
+            "wrong_face", row.wrong_face[i]);
     rows->push_back(object);
   }
 }
@@ -415,26 +357,27 @@ std::string of_rays(std::uint64_t part, std::uint64_t rays) {
 }
 
 std::string totals_table(const HardCaseRow& all) {
-  std::vector<Cells> rows{{"traversal", "arithmetic", "epsilon", "wrong", "%", "wrong face", "%"}};
-  for (std::size_t i = 0; i < kTracers; ++i) {
-    const TracerName& tracer = tracer_names()[i];
-    rows.push_back({tracer.traversal, tracer.arithmetic,
-                    tracer.has_epsilon ? four_digits(epsilon_of(tracer)) : "-", grouped(all.wrong[i]),
-                    of_rays(all.wrong[i], all.rays), grouped(all.wrong_face[i]),
-                    of_rays(all.wrong_face[i], all.rays)});
-  }
+  const auto cells = [&](const TracerName& tracer) {
+    const auto i = static_cast<std::size_t>(&tracer - kTracerNames.data());
+    const std::uint64_t wrong = all.wrong[i];
+    const std::uint64_t wrong_face = all.wrong_face[i];
+    return cells_of(tracer.traversal, tracer.arithmetic,
+                    tracer.has_epsilon ? four_digits(epsilon_of(tracer)) : "-", grouped(wrong),
+                    of_rays(wrong, all.rays), grouped(wrong_face), of_rays(wrong_face, all.rays));
+  };
   return grouped(all.rays) + " near-degenerate rays, " + grouped(all.hits) +
          " of which hit, judged by exact arithmetic (epsilon in voxels;\nwrong: another voxel, a miss or a "
          "hit "
          "too many; wrong face: the right voxel by another face)\n" +
-         columns_of(rows, 2);
+         table_of({"traversal", "arithmetic", "epsilon", "wrong", "%", "wrong face", "%"}, 2, kTracerNames,
+                  cells);
 }
 
 // One traversal of textbooks at a time, the columns of four arithmetics.
 std::string cases_table(const std::vector<HardCaseRow>& cases, std::size_t first) {
-  std::vector<Cells> rows{{std::string("rays wrong: ") + tracer_names()[first].traversal, "rays", "thimble"}};
+  std::vector<Cells> rows{{std::string("rays wrong: ") + kTracerNames[first].traversal, "rays", "thimble"}};
   for (std::size_t i = first; i < first + kArithmetics; ++i) {
-    const TracerName& tracer = tracer_names()[i];
+    const TracerName& tracer = kTracerNames[i];
     rows.front().push_back(std::string(tracer.arithmetic) + (tracer.has_epsilon ? ", epsilon" : ""));
   }
   for (const HardCaseRow& row : cases) {
@@ -448,17 +391,41 @@ std::string cases_table(const std::vector<HardCaseRow>& cases, std::size_t first
 }
 
 std::string operations_table(const std::vector<OperationError>& operations) {
-  std::vector<Cells> rows{{"operation", "bound", "unit", "largest", "allowed"}};
-  for (const OperationError& found : operations) {
-    rows.push_back(
-        {found.operation, found.bound_name, found.unit, four_digits(found.error), four_digits(found.bound)});
-  }
+  const auto cells = [](const OperationError& found) {
+    return cells_of(found.operation, found.bound_name, found.unit, four_digits(found.error),
+                    four_digits(found.bound));
+  };
   return "\nthe largest error of each fixed-point operation against exact arithmetic, and what its "
          "header\nallows\n" +
-         columns_of(rows, 3);
+         table_of({"operation", "bound", "unit", "largest", "allowed"}, 3, operations, cells);
 }
 
 }  // namespace
+
+std::vector<HardCaseRow> run_hard_cases(std::uint64_t rays, std::uint64_t seed, const Progress& progress) {
+  const CaseWorld small(kSmall, 12, seed);
+  const CaseWorld large(kLarge, 200, seed + 1);
+  std::vector<HardCaseRow> rows;
+  const std::size_t count = std::size(kCases);
+  const std::uint64_t rays_a_case = std::max<std::uint64_t>((rays + count - 1) / count, 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const HardCase& hard = kCases[i];
+    const CaseWorld& world = hard.level == kSmall ? small : large;
+    Draw draw(seed * 1000003 + i);
+    HardCaseRow row;
+    row.name = hard.name;
+    row.level = hard.level;
+    for (std::uint64_t ray = 0; ray < rays_a_case; ++ray) {
+      trace_all(world, hard.make(draw, std::int64_t{1} << hard.level), &row);
+      if (progress && ray % 1024 == 0) {
+        progress((static_cast<double>(i) + static_cast<double>(ray) / static_cast<double>(rays_a_case)) /
+                 static_cast<double>(count));
+      }
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
 
 JsonRow hard_case_objects(const HardCaseStudy& study) {
   JsonRow rows = JsonRow::array();
@@ -468,12 +435,8 @@ JsonRow hard_case_objects(const HardCaseStudy& study) {
   add_case(all_cases(study.cases), &rows);
   for (const OperationError& found : study.operations) {
     JsonRow object = empty_object("operation");
-    object["operation"] = found.operation;
-    object["bound_name"] = found.bound_name;
-    object["unit"] = found.unit;
-    object["error"] = found.error;
-    object["bound"] = found.bound;
-    object["cases"] = found.cases;
+    put_all(&object, "operation", found.operation, "bound_name", found.bound_name, "unit", found.unit,
+            "error", found.error, "bound", found.bound, "cases", found.cases);
     rows.push_back(object);
   }
   return rows;
@@ -491,8 +454,7 @@ std::string hard_case_fault(const HardCaseStudy& study) {
   const HardCaseRow all = all_cases(study.cases);
   for (std::size_t i = 0; i < kOwn; ++i) {
     if (const std::uint64_t wrong = all.wrong[i] + all.wrong_face[i]; wrong != 0) {
-      return grouped(wrong) + " of " + grouped(all.rays) + " rays go wrong in " +
-             tracer_names()[i].arithmetic;
+      return grouped(wrong) + " of " + grouped(all.rays) + " rays go wrong in " + kTracerNames[i].arithmetic;
     }
   }
   for (const OperationError& found : study.operations) {

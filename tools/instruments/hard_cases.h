@@ -60,7 +60,22 @@ struct TracerName {
   const char* arithmetic;  ///< "float"
   bool has_epsilon;
 };
-const std::array<TracerName, kTracers>& tracer_names();
+inline constexpr std::array<TracerName, kTracers> kTracerNames{{
+    {"thimble_64", "thimble", "64 bits", false},
+    {"thimble_32", "thimble", "32 bits", false},
+    {"walk_float", "grid walk", "float", false},
+    {"walk_float_epsilon", "grid walk", "float", true},
+    {"walk_double", "grid walk", "double", false},
+    {"walk_double_epsilon", "grid walk", "double", true},
+    {"points_float", "point steps", "float", false},
+    {"points_float_epsilon", "point steps", "float", true},
+    {"points_double", "point steps", "double", false},
+    {"points_double_epsilon", "point steps", "double", true},
+    {"octree_float", "octree", "float", false},
+    {"octree_float_epsilon", "octree", "float", true},
+    {"octree_double", "octree", "double", false},
+    {"octree_double_epsilon", "octree", "double", true},
+}};
 
 /// The usual epsilons, in voxels.
 inline constexpr float kFloatEpsilon = 1e-4F;

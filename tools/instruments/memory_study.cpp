@@ -59,23 +59,19 @@ struct DepthScene {
   // hold it.
   DepthScene(const std::vector<SolidBlock>& blocks, int world_level, int up, bool one_material)
       : pool_memory(HostMemory::largest()) {
-    if (Octree::make(world_level, pool_memory.bytes(), &pool) != Status::kOk) {
-      throw InputError("a world of depth " + std::to_string(world_level) + " is beyond the limits");
-    }
+    fail_if(Octree::make(world_level, pool_memory.bytes(), &pool) != Status::kOk, "a world of depth ",
+            world_level, " is beyond the limits");
     for (const SolidBlock& block : blocks) {
       const Vec3i corner{block.corner.x << up, block.corner.y << up, block.corner.z << up};
       const Status status =
           pool.insert_block(corner, block.level + up, one_material ? std::uint8_t{0} : block.material);
-      if (status != Status::kOk) {
-        throw InputError(std::string("the scene does not go into a pool of nodes: ") + status_text(status));
-      }
+      fail_if(status != Status::kOk, "the scene does not go into a pool of nodes: ", status_text(status));
     }
     shape = compact_shape(pool);
     const std::size_t size = compact_bytes(shape);
     tree_bytes.resize(size);
-    if (size == 0 || CompactTree::make(pool, Bytes(tree_bytes.data(), size), &compact) != Status::kOk) {
-      throw InputError("the scene does not go into a compact tree");
-    }
+    fail_if(size == 0 || CompactTree::make(pool, Bytes(tree_bytes.data(), size), &compact) != Status::kOk,
+            "the scene does not go into a compact tree");
     make_shared();
     dense_size = grid_size(compact.bounds().high, world_level);
   }
@@ -86,14 +82,11 @@ struct DepthScene {
   // Fills the dense grid from the blocks that this was made from.
   void make_dense(const std::vector<SolidBlock>& blocks) {
     dense_bytes.resize(dense_grid_bytes(dense_size));
-    if (DenseGrid::make(dense_size, Bytes(dense_bytes.data(), dense_bytes.size()), &dense) != Status::kOk) {
-      throw InputError("the scene does not go into a dense grid");
-    }
+    fail_if(DenseGrid::make(dense_size, Bytes(dense_bytes.data(), dense_bytes.size()), &dense) != Status::kOk,
+            "the scene does not go into a dense grid");
     for (const SolidBlock& block : blocks) {
       for_voxels(block.corner, block.level, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
-        if (dense.set({x, y, z}) != Status::kOk) {
-          throw InputError("internal error: a voxel outside the grid");
-        }
+        fail_if(dense.set({x, y, z}) != Status::kOk, "internal error: a voxel outside the grid");
       });
     }
     has_dense = true;
@@ -118,9 +111,7 @@ struct DepthScene {
       status = SharedTree::make(compact, Bytes(shared_bytes.data(), shared_bytes.size()), work.bytes(),
                                 &shared, &shared_build);
     }
-    if (status != Status::kOk) {
-      throw InputError("the scene does not go into a shared tree");
-    }
+    fail_if(status != Status::kOk, "the scene does not go into a shared tree");
   }
 
   HostMemory pool_memory;
@@ -154,9 +145,7 @@ TracedPicture trace_picture(const CompactTree& tree, const Camera& camera, const
     for (std::int32_t x = 0; x < camera.width_px(); ++x) {
       const Ray ray = camera.ray(x, y);
       Hit hit;
-      if (closest_hit(tree, ray, &hit) != Status::kOk) {
-        throw InputError("the rays of this camera cannot be traced");
-      }
+      fail_if(closest_hit(tree, ray, &hit) != Status::kOk, "the rays of this camera cannot be traced");
       picture.colors.push_back(shade(hit, ray, camera, shading));
       picture.distances.push_back(hit.kind == HitKind::kHit ? hit_distance(ray, hit) : -1);
     }
@@ -202,9 +191,8 @@ void draw(const DepthScene& scene, const Camera& camera, const Shading& given, i
       }
       RenderCounts counts;
       const FrameWatch watch;
-      if (scene.render(i, camera, shading, band, &counts) != Status::kOk) {
-        throw InputError("the rays of this camera cannot be traced");
-      }
+      fail_if(scene.render(i, camera, shading, band, &counts) != Status::kOk,
+              "the rays of this camera cannot be traced");
       times_ms[i].push_back(watch.ms());
       row->structures[i].visits_per_ray =
           static_cast<double>(counts.node_visits) / static_cast<double>(counts.rays);
@@ -394,9 +382,8 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
       std::vector<std::uint8_t> bytes(compact_bytes(compact_shape(own.pool)));
       std::size_t size = 0;
       CompactTree tree;
-      if (CompactTree::make(own.pool, Bytes(bytes.data(), bytes.size()), &tree, &size) != Status::kOk) {
-        throw InputError("internal error: a coarsened tree that cannot be written");
-      }
+      fail_if(CompactTree::make(own.pool, Bytes(bytes.data(), bytes.size()), &tree, &size) != Status::kOk,
+              "internal error: a coarsened tree that cannot be written");
       row.coarsened_bytes = size;
       row.solid_added = own.pool.voxels() - study.depths.back().voxels;
       row.coarsened_error = picture_error(trace_picture(tree, camera, shading), reference);

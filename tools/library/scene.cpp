@@ -9,7 +9,6 @@
 #include "commands/render_command.h"
 #include "instruments/memory_study.h"
 #include "output/output_file.h"
-#include "output/output_set.h"
 #include "output/png.h"
 #include "output/units.h"
 #include "output/voxel_file.h"
@@ -58,9 +57,8 @@ void parse(const std::string& name, const Options& words, bool is_open, const Ad
     CLI::App opening;
     SceneOptions().add_scene(opening);
     for (const std::string& option : options_given(*sub)) {
-      if (is_open && option.starts_with("-") && opening.get_option_no_throw(option) != nullptr) {
-        refuse_usage(option, "says how a scene is opened, and this one is open");
-      }
+      refuse_if(is_open && option.starts_with("-") && opening.get_option_no_throw(option) != nullptr, option,
+                ": says how a scene is opened, and this one is open");
     }
   });
   for (const std::string& word : words) {
@@ -230,9 +228,7 @@ std::vector<std::uint8_t> Scene::bake(const Options& options) const {
     const auto command = std::make_shared<BakeCommand>();
     parse("bake", with_words({"-o", "scene.oct"}, options, parts_->arguments.scene), true,
           [&](CLI::App& app) { add_bake_options(app, command); });
-    if (!command->scene.stats_path.empty()) {
-      throw InputError("--stats is a file, which only the command writes");
-    }
+    fail_if(!command->scene.stats_path.empty(), "--stats is a file, which only the command writes");
     command->scene.arguments = parts_->arguments;  // whose smaller depths are tried where it does not fit
     use_display(command->scene.board, &command->view);
     BakingOptions baking;
@@ -253,9 +249,8 @@ void Scene::write(const std::string& path) const {
   with_error([&] {
     check_text(path);
     const auto format = voxel_format(path);
-    if (!format || tree().empty()) {
-      throw InputError(format ? "nothing is solid" : path + " does not end in .vox, .npy, .ply or .csv");
-    }
+    fail_if(!format || tree().empty(),
+            format ? "nothing is solid" : path + " does not end in .vox, .npy, .ply or .csv");
     OutputSet outputs({path}, parts_->source->files());
     write_voxels(outputs[0], *format, tree(), parts_->source->palette(), has_colors(), {});
     outputs.commit();

@@ -24,6 +24,15 @@ void remove_unfinished() {
   }
 }
 
+void put_in_place_of(const char* kept, const char* name) {
+  for (std::atomic<const char*>& place : unfinished) {
+    const char* expected = kept;
+    if (place.compare_exchange_strong(expected, name)) {
+      return;
+    }
+  }
+}
+
 void end_by(int number) {
   remove_unfinished();
   std::signal(number, SIG_DFL);
@@ -72,21 +81,11 @@ HeldSignals::~HeldSignals() {
 }
 
 void remember_unfinished(const std::string& name) {
-  for (std::atomic<const char*>& place : unfinished) {
-    const char* none = nullptr;
-    if (place.compare_exchange_strong(none, name.c_str())) {
-      return;
-    }
-  }
+  put_in_place_of(nullptr, name.c_str());
 }
 
 void forget_unfinished(const std::string& name) {
-  for (std::atomic<const char*>& place : unfinished) {
-    const char* kept = name.c_str();
-    if (place.compare_exchange_strong(kept, nullptr)) {
-      return;
-    }
-  }
+  put_in_place_of(name.c_str(), nullptr);
 }
 
 }  // namespace thimble::tools

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "output/npy_header.h"
+#include "output/units.h"
 
 namespace thimble::tools {
 namespace {
@@ -71,9 +71,7 @@ struct PutBytes {
     } else if constexpr (std::is_same_v<Number, double>) {
       (*this)(std::bit_cast<std::uint64_t>(number), true);
     } else {
-      for (std::size_t i = 0; i < sizeof(number); ++i) {
-        to->push_back(static_cast<char>(static_cast<std::uint64_t>(number) >> 8 * i & 255));
-      }
+      append_little(to, static_cast<std::uint64_t>(number), sizeof number);
     }
   }
 };
@@ -102,13 +100,12 @@ HitRows::HitRows(const std::string& path, bool has_pixels, bool has_material)
     : is_array_(path.ends_with(".npy")), has_pixels_(has_pixels), has_material_(has_material) {}
 
 std::string HitRows::beginning(std::uint64_t rows) const {
-  std::string_view names = std::string_view(kHitColumns);
-  const std::string columns = (has_pixels_ ? std::string(kPixelColumns) : std::string()) + std::string(names);
+  const std::string columns = concat(has_pixels_ ? kPixelColumns : "", kHitColumns);
   if (!is_array_) {
     return columns + "\n";
   }
   std::string type = "[";
-  names = columns;
+  std::string_view names = columns;
   for (std::size_t i = has_pixels_ ? 0 : 2; i < kTypes.size(); ++i) {
     const std::size_t end = std::min(names.find(','), names.size());
     type.append(type.size() == 1 ? "('" : ", ('").append(names.substr(0, end)).append("', '");

@@ -1,40 +1,20 @@
 #include "output/image.h"
 
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cctype>
-#include <cstring>
-#include <span>
 
 #include "output/output_file.h"
 #include "output/png.h"
+#include "output/units.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::tools {
-namespace {
-
-std::string ending_of(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  const std::size_t slash = path.rfind('/');
-  if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) {
-    return {};
-  }
-  std::string ending = path.substr(dot);
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
-}  // namespace
 
 std::optional<ImageKind> image_kind(const std::string& path) {
-  // In the order of `ImageKind`.
-  constexpr std::array<std::string_view, 5> kEndings{".ppm", ".pgm", ".pbm", ".png", ".jpg"};
-  const std::string ending = path == "-" ? ".ppm" : ending_of(path);
-  const auto* const found = std::find(kEndings.begin(), kEndings.end(), ending == ".jpeg" ? ".jpg" : ending);
-  return found == kEndings.end() ? std::nullopt
-                                 : std::optional(static_cast<ImageKind>(found - kEndings.begin()));
+  // A name may be nothing but an ending. In the order of `ImageKind`.
+  return path == "-" ? ImageKind::kPpm
+         : ends_in("/" + path, ".jpeg")
+             ? ImageKind::kJpeg
+             : kind_by_ending<ImageKind>("/" + path, {".ppm", ".pgm", ".pbm", ".png", ".jpg"});
 }
 
 PixelFormat pixel_format(ImageKind kind) {
@@ -88,26 +68,16 @@ std::vector<std::uint8_t> file_pixels(const Image& image, ImageKind kind) {
 
 void write_image(OutputFile* file, ImageKind kind, const Image& image) {
   const std::vector<std::uint8_t> pixels = file_pixels(image, kind);
-  const std::string size = std::to_string(image.width_px) + " " + std::to_string(image.height_px) + "\n";
-  switch (kind) {
-    case ImageKind::kPpm:
-      file->write("P6\n" + size + "255\n");
-      break;
-    case ImageKind::kPgm:
-      file->write("P5\n" + size + "255\n");
-      break;
-    case ImageKind::kPbm:
-      file->write("P4\n" + size);
-      break;
-    case ImageKind::kPng:
-      file->write(std::span<const unsigned char>(
-          png_file(image.width_px, image.height_px, image.alpha.empty() ? 3 : 4, pixels)));
-      return;
-    case ImageKind::kJpeg:
-      file->write(std::span<const unsigned char>(jpeg_file(image.width_px, image.height_px, pixels)));
-      return;
+  if (kind == ImageKind::kPng) {
+    file->write(png_file(image.width_px, image.height_px, image.alpha.empty() ? 3 : 4, pixels));
+  } else if (kind == ImageKind::kJpeg) {
+    file->write(jpeg_file(image.width_px, image.height_px, pixels));
+  } else {
+    const char* const magic = kind == ImageKind::kPpm ? "P6" : kind == ImageKind::kPgm ? "P5" : "P4";
+    file->write(concat(magic, "\n", image.width_px, " ", image.height_px, "\n",
+                       kind == ImageKind::kPbm ? "" : "255\n"));
+    file->write(pixels);
   }
-  file->write(std::span<const unsigned char>(pixels));
 }
 
 void write_picture(OutputFile* file, const std::string& path, const Image& image) {
@@ -118,12 +88,10 @@ void write_picture(OutputFile* file, const std::string& path, const Image& image
 void write_pfm(OutputFile* file, std::int32_t width_px, std::int32_t height_px,
                const std::vector<float>& values) {
   static_assert(std::endian::native == std::endian::little, "the scale -1 says little-endian");
-  file->write("Pf\n" + std::to_string(width_px) + " " + std::to_string(height_px) + "\n-1.0\n");
+  file->write(concat("Pf\n", width_px, " ", height_px, "\n-1.0\n"));
   const std::size_t width = static_cast<std::size_t>(width_px);
   for (std::size_t row = static_cast<std::size_t>(height_px); row-- > 0;) {
-    std::vector<unsigned char> bytes(4 * width);
-    std::memcpy(bytes.data(), values.data() + row * width, bytes.size());
-    file->write(std::span<const unsigned char>(bytes));
+    file->write({reinterpret_cast<const unsigned char*>(values.data() + row * width), 4 * width});
   }
 }
 

@@ -14,7 +14,7 @@
 #include "output/file_place.h"
 #include "output/output_file.h"
 #include "output/units.h"
-#include "readers/input_error.h"
+#include "readers/file_bytes.h"
 #include "thimble/picture/camera.h"
 
 namespace thimble::tools {
@@ -35,11 +35,7 @@ std::uint32_t crc_from(std::uint32_t crc, std::span<const std::uint8_t> bytes) {
 }
 
 std::uint32_t number_at(const std::uint8_t* from) {
-  std::uint32_t number = 0;
-  for (unsigned i = 0; i < 4; ++i) {
-    number |= std::uint32_t{from[i]} << (8 * i);
-  }
-  return number;
+  return static_cast<std::uint32_t>(load_bits(from, 4, false));
 }
 
 HeaderBytes bytes_of(const PartHeader& header) {
@@ -86,33 +82,26 @@ class Reader {
   explicit Reader(const std::string& path) : path_(path) {
     std::error_code error;
     // Before it is opened, which waits for whoever writes into a pipe.
-    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
-      fail("is no file that can be read twice, as a part must be");
-    }
+    fail_if(std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error),
+            "is no file that can be read twice, as a part must be");
     claim_input(path);
     file_.reset(std::fopen(path.c_str(), "rbe"));
-    if (file_ == nullptr) {
-      fail(std::strerror(errno));
-    }
+    fail_if(file_ == nullptr, std::strerror(errno));
     size_ = std::filesystem::file_size(path, error);
-    if (error) {
-      fail(error.message());
-    }
+    fail_if(static_cast<bool>(error), error.message());
   }
-  [[noreturn]] void fail(const std::string& sentence) const {
-    throw InputError(printable(path_) + ": " + sentence);
+  template <class... Pieces>
+  void fail_if(bool is_wrong, const Pieces&... pieces) const {
+    tools::fail_if(is_wrong, printable(path_), ": ", pieces...);
   }
   std::uint64_t size() const { return size_; }
   void seek(std::uint64_t offset) const {
-    if (std::fseek(file_.get(), static_cast<long>(offset), SEEK_SET) != 0) {
-      fail(std::strerror(errno));
-    }
+    fail_if(std::fseek(file_.get(), static_cast<long>(offset), SEEK_SET) != 0, std::strerror(errno));
   }
   // All of `bytes`, from where the last read ended.
   void read(std::span<std::uint8_t> bytes) const {
-    if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) {
-      fail(std::ferror(file_.get()) != 0 ? "cannot be read" : "became shorter while it was read");
-    }
+    fail_if(std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size(),
+            std::ferror(file_.get()) != 0 ? "cannot be read" : "became shorter while it was read");
   }
 
  private:
@@ -156,24 +145,21 @@ PartFile PartFile::open(const std::string& path) {
   const std::size_t begun = static_cast<std::size_t>(std::min<std::uint64_t>(reader.size(), kHeaderBytes));
   reader.read(std::span(head).first(begun));
   const std::size_t compared = std::min(begun, kMagic.size());
-  if (begun == 0 ||
-      !std::equal(kMagic.begin(), kMagic.begin() + static_cast<std::ptrdiff_t>(compared), head.begin())) {
-    reader.fail("is no part that thimble render --rows or --part wrote");
-  }
-  if (begun < kHeaderBytes) {
-    reader.fail("is cut off within its header of " + std::to_string(kHeaderBytes) + " bytes");
-  }
+  reader.fail_if(
+      begun == 0 ||
+          !std::equal(kMagic.begin(), kMagic.begin() + static_cast<std::ptrdiff_t>(compared), head.begin()),
+      "is no part that thimble render --rows or --part wrote");
+  reader.fail_if(begun < kHeaderBytes, "is cut off within its header of ", kHeaderBytes, " bytes");
   PartFile part;
   part.path_ = path;
-  if (number_at(head.data() + 44) != crc_from(0, std::span(head).first(44)) || !parse(head, &part.header_)) {
-    reader.fail("is damaged: its header's checksum is wrong");
-  }
+  reader.fail_if(
+      number_at(head.data() + 44) != crc_from(0, std::span(head).first(44)) || !parse(head, &part.header_),
+      "is damaged: its header's checksum is wrong");
   const std::uint64_t expected =
       kHeaderBytes + std::uint64_t{part.header_.unit_bytes()} * part.header_.count + kCrcBytes;
-  if (reader.size() != expected) {
-    reader.fail((reader.size() < expected ? "is cut off: it has " : "is too long: it has ") +
-                grouped(reader.size()) + " bytes of " + grouped(expected));
-  }
+  reader.fail_if(reader.size() != expected,
+                 reader.size() < expected ? "is cut off: it has " : "is too long: it has ",
+                 grouped(reader.size()), " bytes of ", grouped(expected));
   std::uint32_t crc = crc_from(0, head);
   std::vector<std::uint8_t> block(std::size_t{1} << 16);
   for (std::uint64_t left = expected - kHeaderBytes - kCrcBytes; left != 0;) {
@@ -185,9 +171,7 @@ PartFile PartFile::open(const std::string& path) {
   }
   std::array<std::uint8_t, kCrcBytes> stored{};
   reader.read(stored);
-  if (number_at(stored.data()) != crc) {
-    reader.fail("is damaged: its checksum is wrong");
-  }
+  reader.fail_if(number_at(stored.data()) != crc, "is damaged: its checksum is wrong");
   return part;
 }
 

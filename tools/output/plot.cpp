@@ -106,78 +106,6 @@ std::string decade_text(int decade) {
   return text;
 }
 
-}  // namespace
-
-std::string log_plot_text(const Plot& plot) {
-  Decades x_range;
-  Decades y_range;
-  bool first = true;
-  // On a linear axis: the whole numbers from the least to the greatest.
-  double least = 0;
-  double greatest = 1;
-  for (const Series& series : plot.series) {
-    for (const auto& [x, y] : series.points) {
-      x_range.hold(x, first);
-      y_range.hold(y, first);
-      least = first ? x : std::min(least, x);
-      greatest = first ? x : std::max(greatest, x);
-      first = false;
-    }
-  }
-  for (const Mark& mark : plot.marks) {
-    y_range.hold(mark.y, first);
-    first = false;
-  }
-  greatest = std::max(greatest, least + 1);
-  const auto x_part = [&](double x) {
-    return plot.whole_x ? (x - least) / (greatest - least) : x_range.part(x);
-  };
-  const Axes& axes = kLogAxes;
-  const auto x_at = [&](double x) { return axes.left + x_part(x) * axes.width(); };
-  const auto y_at = [&](double y) { return axes.bottom - y_range.part(y) * axes.height(); };
-
-  std::string svg = svg_begin(kWidth, kHeight, ".mark { stroke: #888888; stroke-dasharray: 2 3 }",
-                              ".axis { stroke: #e6e6e6 }");
-  svg += label(kWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
-  for (double whole = least; plot.whole_x && whole <= greatest; whole += 1) {
-    svg += axes.x_mark(x_at(whole), std::to_string(std::lround(whole)));
-  }
-  for (int decade = x_range.low; !plot.whole_x && decade <= x_range.high; ++decade) {
-    svg += axes.x_mark(x_at(std::pow(10, decade)), decade_text(decade));
-  }
-  for (int decade = y_range.low; decade <= y_range.high; ++decade) {
-    svg += axes.y_mark(y_at(std::pow(10, decade)), decade_text(decade));
-  }
-  svg += axes.lines() + axes.names(plot.x_label, plot.y_label);
-  for (const Mark& mark : plot.marks) {
-    const double y = y_at(mark.y);
-    svg += line(axes.left, y, axes.right, y, "mark") +
-           label(axes.left + 6, y - 4, "start", mark.name, " font-size=\"11\"");
-  }
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    const Series& series = plot.series[i];
-    const std::string color = kColors[i % kLineColors];
-    const std::string dash = series.dashed ? " stroke-dasharray=\"6 4\"" : "";
-    svg += polyline("fill=\"none\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash, series.points,
-                    [&](const auto& point) {
-                      return std::pair{x_at(point.first), y_at(point.second)};
-                    });
-    for (const auto& [x, y] : series.points) {
-      svg += circle(x_at(x), y_at(y), 3, "fill=\"" + color + "\"");
-    }
-    const std::size_t legend_row = i / 2;
-    const double column = axes.left + static_cast<double>(i % 2) * axes.width() / 2;
-    const double row = axes.bottom + 62 + 18 * static_cast<double>(legend_row);
-    svg += "<line x1=\"" + number(column) + "\" y1=\"" + number(row - 4) + "\" x2=\"" + number(column + 28) +
-           "\" y2=\"" + number(row - 4) + "\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + "/>\n";
-    svg += label(column + 36, row, "start", series.name);
-  }
-  svg += "</svg>\n";
-  return svg;
-}
-
-namespace {
-
 constexpr double kBarsLeft = 150;
 constexpr double kBarsRight = 190;
 constexpr double kBarsTop = 48;
@@ -195,55 +123,6 @@ std::string tick_text(double value, double tick) {
   const int digits = tick < 1 ? static_cast<int>(std::ceil(-std::log10(tick) - 1e-9)) : 0;
   return fixed(value, std::clamp(digits, 0, 9));
 }
-
-}  // namespace
-
-std::string bar_chart_text(const BarChart& chart) {
-  double least = 0;
-  double most = 0;
-  for (const Bar& bar : chart.bars) {
-    least = std::min({least, bar.value, bar.low});
-    most = std::max({most, bar.value, bar.high});
-  }
-  if (most - least <= 0) {
-    most = least + 1;
-  }
-  const double tick = tick_of(most - least);
-  const auto first = static_cast<int>(std::floor(least / tick));
-  const auto last = static_cast<int>(std::ceil(most / tick));
-  const auto x_at = [&](double value) {
-    return kBarsLeft + (value - first * tick) / ((last - first) * tick) * (kWidth - kBarsLeft - kBarsRight);
-  };
-  const double bottom = kBarsTop + kStep * static_cast<double>(chart.bars.size());
-  const double height = bottom + 52;
-  std::string svg =
-      svg_begin(kWidth, height, ".bar { fill: #0072b2 }", ".axis { stroke: #e6e6e6 } .bar { fill: #56b4e9 }");
-  svg += label(kWidth / 2, 24, "middle", chart.title, " font-size=\"15\"");
-  for (int step = first; step <= last; ++step) {
-    const double x = x_at(step * tick);
-    svg +=
-        line(x, kBarsTop, x, bottom, "grid") + label(x, bottom + 16, "middle", tick_text(step * tick, tick));
-  }
-  double y = kBarsTop;
-  for (const Bar& bar : chart.bars) {
-    const double middle = y + kStep / 2;
-    const double from = std::min(x_at(0), x_at(bar.value));
-    const double to = std::max(x_at(0), x_at(bar.value));
-    svg += label(kBarsLeft - 8, middle + 4, "end", bar.name);
-    svg += "<rect x=\"" + number(from) + "\" y=\"" + number(middle - kThickness / 2) + "\" width=\"" +
-           number(to - from) + "\" height=\"" + number(kThickness) + "\" class=\"bar\"/>\n";
-    if (bar.low != bar.high) {
-      svg += line(x_at(bar.low), middle, x_at(bar.high), middle, "axis");
-    }
-    svg += label(std::max(to, x_at(bar.high)) + 8, middle + 4, "start", bar.text);
-    y += kStep;
-  }
-  svg += line(x_at(0), kBarsTop, x_at(0), bottom, "axis");
-  svg += label((kBarsLeft + kWidth - kBarsRight) / 2, bottom + 38, "middle", chart.x_label);
-  return svg + "</svg>\n";
-}
-
-namespace {
 
 constexpr Axes kScatterAxes{72, kWidth - 24, 52, 52 + 330};
 constexpr double kLineHeight = 18;
@@ -354,6 +233,119 @@ class Numbers {
 };
 
 }  // namespace
+
+std::string log_plot_text(const Plot& plot) {
+  Decades x_range;
+  Decades y_range;
+  bool first = true;
+  // On a linear axis: the whole numbers from the least to the greatest.
+  double least = 0;
+  double greatest = 1;
+  for (const Series& series : plot.series) {
+    for (const auto& [x, y] : series.points) {
+      x_range.hold(x, first);
+      y_range.hold(y, first);
+      least = first ? x : std::min(least, x);
+      greatest = first ? x : std::max(greatest, x);
+      first = false;
+    }
+  }
+  for (const Mark& mark : plot.marks) {
+    y_range.hold(mark.y, first);
+    first = false;
+  }
+  greatest = std::max(greatest, least + 1);
+  const auto x_part = [&](double x) {
+    return plot.whole_x ? (x - least) / (greatest - least) : x_range.part(x);
+  };
+  const Axes& axes = kLogAxes;
+  const auto x_at = [&](double x) { return axes.left + x_part(x) * axes.width(); };
+  const auto y_at = [&](double y) { return axes.bottom - y_range.part(y) * axes.height(); };
+
+  std::string svg = svg_begin(kWidth, kHeight, ".mark { stroke: #888888; stroke-dasharray: 2 3 }",
+                              ".axis { stroke: #e6e6e6 }");
+  svg += label(kWidth / 2, 24, "middle", plot.title, " font-size=\"15\"");
+  for (double whole = least; plot.whole_x && whole <= greatest; whole += 1) {
+    svg += axes.x_mark(x_at(whole), std::to_string(std::lround(whole)));
+  }
+  for (int decade = x_range.low; !plot.whole_x && decade <= x_range.high; ++decade) {
+    svg += axes.x_mark(x_at(std::pow(10, decade)), decade_text(decade));
+  }
+  for (int decade = y_range.low; decade <= y_range.high; ++decade) {
+    svg += axes.y_mark(y_at(std::pow(10, decade)), decade_text(decade));
+  }
+  svg += axes.lines() + axes.names(plot.x_label, plot.y_label);
+  for (const Mark& mark : plot.marks) {
+    const double y = y_at(mark.y);
+    svg += line(axes.left, y, axes.right, y, "mark") +
+           label(axes.left + 6, y - 4, "start", mark.name, " font-size=\"11\"");
+  }
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const Series& series = plot.series[i];
+    const std::string color = kColors[i % kLineColors];
+    const std::string dash = series.dashed ? " stroke-dasharray=\"6 4\"" : "";
+    svg += polyline("fill=\"none\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash, series.points,
+                    [&](const auto& point) {
+                      return std::pair{x_at(point.first), y_at(point.second)};
+                    });
+    for (const auto& [x, y] : series.points) {
+      svg += circle(x_at(x), y_at(y), 3, "fill=\"" + color + "\"");
+    }
+    const std::size_t legend_row = i / 2;
+    const double column = axes.left + static_cast<double>(i % 2) * axes.width() / 2;
+    const double row = axes.bottom + 62 + 18 * static_cast<double>(legend_row);
+    svg += "<line x1=\"" + number(column) + "\" y1=\"" + number(row - 4) + "\" x2=\"" + number(column + 28) +
+           "\" y2=\"" + number(row - 4) + "\" stroke-width=\"2\" stroke=\"" + color + "\"" + dash + "/>\n";
+    svg += label(column + 36, row, "start", series.name);
+  }
+  svg += "</svg>\n";
+  return svg;
+}
+
+std::string bar_chart_text(const BarChart& chart) {
+  double least = 0;
+  double most = 0;
+  for (const Bar& bar : chart.bars) {
+    least = std::min({least, bar.value, bar.low});
+    most = std::max({most, bar.value, bar.high});
+  }
+  if (most - least <= 0) {
+    most = least + 1;
+  }
+  const double tick = tick_of(most - least);
+  const auto first = static_cast<int>(std::floor(least / tick));
+  const auto last = static_cast<int>(std::ceil(most / tick));
+  const auto x_at = [&](double value) {
+    return kBarsLeft + (value - first * tick) / ((last - first) * tick) * (kWidth - kBarsLeft - kBarsRight);
+  };
+  const double bottom = kBarsTop + kStep * static_cast<double>(chart.bars.size());
+  const double height = bottom + 52;
+  std::string svg =
+      svg_begin(kWidth, height, ".bar { fill: #0072b2 }", ".axis { stroke: #e6e6e6 } .bar { fill: #56b4e9 }");
+  svg += label(kWidth / 2, 24, "middle", chart.title, " font-size=\"15\"");
+  for (int step = first; step <= last; ++step) {
+    const double x = x_at(step * tick);
+    svg +=
+        line(x, kBarsTop, x, bottom, "grid") + label(x, bottom + 16, "middle", tick_text(step * tick, tick));
+  }
+  double y = kBarsTop;
+  for (const Bar& bar : chart.bars) {
+    const double middle = y + kStep / 2;
+    const double from = std::min(x_at(0), x_at(bar.value));
+    const double to = std::max(x_at(0), x_at(bar.value));
+    svg += label(kBarsLeft - 8, middle + 4, "end", bar.name);
+    svg += "<rect x=\"" + number(from) + "\" y=\"" + number(middle - kThickness / 2) + "\" width=\"" +
+           number(to - from) + "\" height=\"" + number(kThickness) + "\" class=\"bar\"/>\n";
+    if (bar.low != bar.high) {
+      svg += line(x_at(bar.low), middle, x_at(bar.high), middle, "axis");
+    }
+    svg += label(std::max(to, x_at(bar.high)) + 8, middle + 4, "start", bar.text);
+    y += kStep;
+  }
+  svg += line(x_at(0), kBarsTop, x_at(0), bottom, "axis");
+  svg += label((kBarsLeft + kWidth - kBarsRight) / 2, bottom + 38, "middle", chart.x_label);
+  return svg + "</svg>\n";
+}
 
 std::string scatter_text(const Scatter& scatter) {
   std::vector<std::pair<double, double>> points;

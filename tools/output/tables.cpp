@@ -25,6 +25,12 @@ std::string csv_cell(const JsonRow& value) {
 
 }  // namespace
 
+void put_nulls(JsonRow* object, std::initializer_list<const char*> names) {
+  for (const char* const name : names) {
+    (*object)[name] = nullptr;
+  }
+}
+
 std::string csv_of(const JsonRow& rows) {
   std::string text;
   for (const auto& [name, value] : rows.front().items()) {

@@ -37,6 +37,29 @@ bool is_of_xml(unsigned code) {
   return code < 0x20 ? code == '\t' || code == '\n' || code == '\r' : code != 0xFFFE && code != 0xFFFF;
 }
 
+// Letters to add, leave out, change or swap with their neighbour, to get from one word to the other (the
+// optimal string alignment distance).
+std::size_t typing_distance(std::string_view from, std::string_view to) {
+  std::vector<std::size_t> before;
+  std::vector<std::size_t> last;
+  std::vector<std::size_t> row(to.size() + 1);
+  for (std::size_t j = 0; j <= to.size(); ++j) {
+    row[j] = j;
+  }
+  for (std::size_t i = 1; i <= from.size(); ++i) {
+    before = std::move(last);
+    last = row;
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (from[i - 1] == to[j - 1] ? 0U : 1U)});
+      if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1]) {
+        row[j] = std::min(row[j], before[j - 2] + 1);
+      }
+    }
+  }
+  return row[to.size()];
+}
+
 }  // namespace
 
 std::string utf8_text(std::string_view text, bool for_xml) {
@@ -119,23 +142,21 @@ bool ends_in(std::string_view name, std::string_view ending) {
                     [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
 }
 
-std::string crc_text(std::uint32_t crc) {
+std::string hex_text(std::uint32_t number, int digits) {
   std::array<char, 9> text{};
-  std::snprintf(text.data(), text.size(), "%08x", static_cast<unsigned>(crc));
+  std::snprintf(text.data(), text.size(), "%0*x", digits, static_cast<unsigned>(number));
   return text.data();
+}
+
+std::string crc_text(std::uint32_t crc) {
+  return hex_text(crc, 8);
 }
 
 std::string printable(std::string_view text) {
   std::string out;
   for (const char letter : text) {
     const auto code = static_cast<unsigned char>(letter);
-    if (code < 0x20 || code == 0x7F) {
-      std::array<char, 8> escape{};
-      std::snprintf(escape.data(), escape.size(), "\\x%02x", static_cast<unsigned>(code));
-      out += escape.data();
-    } else {
-      out += letter;
-    }
+    out += code < 0x20 || code == 0x7F ? "\\x" + hex_text(code, 2) : std::string(1, letter);
   }
   return out;
 }
@@ -148,6 +169,19 @@ std::string scene_title(std::string_view scene) {
 
 std::string in_quotes(std::string_view text) {
   return '"' + printable(text) + '"';
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& words) {
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : words) {
+    const std::size_t distance = typing_distance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 
 }  // namespace thimble::tools

@@ -1,7 +1,9 @@
-/// Numbers as a person reads and writes them.
+/// Numbers and words as a person reads and writes them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,17 +34,35 @@ std::string percent(std::uint64_t part, std::uint64_t whole);
 std::string joined(const std::vector<std::string>& words, std::string_view between);
 /// Whether a name ends in `ending`, which is in small letters, in any case, with more before it.
 bool ends_in(std::string_view name, std::string_view ending);
+/// The kind whose place among `endings` that of the name's ending is, if any.
+template <class Kind>
+std::optional<Kind> kind_by_ending(std::string_view name, std::initializer_list<std::string_view> endings) {
+  const auto* const found = std::find_if(endings.begin(), endings.end(),
+                                         [&](std::string_view ending) { return ends_in(name, ending); });
+  return found == endings.end() ? std::nullopt : std::optional(static_cast<Kind>(found - endings.begin()));
+}
 
-/// Writes `number` in 4 bytes, the lowest first.
+/// Writes `number` in so many bytes, the lowest first.
 template <class Byte>
-void put_little(Byte* to, std::uint32_t number) {
-  for (int i = 0; i < 4; ++i) {
+void put_little(Byte* to, std::uint64_t number, std::size_t count = 4) {
+  for (std::size_t i = 0; i < count; ++i) {
     to[i] = static_cast<Byte>(number >> (8 * i));
   }
 }
+/// The same behind a text.
+inline void append_little(std::string* to, std::uint64_t number, std::size_t count = 4) {
+  to->resize(to->size() + count);
+  put_little(to->data() + to->size() - count, number, count);
+}
 
-/// A CRC-32 as 8 hex digits.
+/// A number as so many hex digits.
+std::string hex_text(std::uint32_t number, int digits);
+/// A CRC-32 as 8 of them.
 std::string crc_text(std::uint32_t crc);
+/// r, g, b as "#0072b2".
+inline std::string color_text(const std::uint8_t* rgb) {
+  return '#' + hex_text(static_cast<std::uint32_t>(rgb[0] << 16 | rgb[1] << 8 | rgb[2]), 6);
+}
 
 /// `text` for a sentence on a terminal: control characters, line feeds too, as \xNN, so that a file's name
 /// can neither break the sentence nor steer the terminal. UTF-8 stays as it is.
@@ -56,5 +76,9 @@ std::string utf8_text(std::string_view text, bool for_xml = false);
 std::string scene_title(std::string_view scene);
 /// The same in double quotes.
 std::string in_quotes(std::string_view text);
+
+/// " (did you mean render?)": the one of `words` that somebody who typed `word` most likely meant. At most a third of
+/// its letters are missing, too many, wrong or swapped with their neighbour; where there is none, nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string>& words);
 
 }  // namespace thimble::tools

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
 #include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "output/npy_header.h"
+#include "output/hit_rows.h"
 #include "output/units.h"
 #include "readers/oct.h"
 
@@ -43,13 +42,6 @@ Used used_materials(const CompactTree& tree) {
   return used;
 }
 
-// In `count` bytes, the lowest first.
-void put_little(std::string* to, std::uint32_t value, int count = 4) {
-  for (int i = 0; i < count; ++i) {
-    *to += static_cast<char>(value >> (8 * i) & 255U);
-  }
-}
-
 class Writer {
  public:
   explicit Writer(OutputFile* file) : file_(file) {}
@@ -64,13 +56,8 @@ class Writer {
       end();
     }
   }
-  template <class Number>
-  void number(Number value) {
-    std::array<char, 32> digits{};
-    text({digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr});
-  }
-  void little(std::uint32_t value, int count) {
-    put_little(&bytes_, value, count);
+  void little(std::uint32_t value, std::size_t count) {
+    append_little(&bytes_, value, count);
     text({});
   }
   void color(const Rgb& color) {
@@ -128,13 +115,7 @@ void write_csv(Writer* to, const CompactTree& tree, const Palette& palette, bool
   }
   to->text(has_colors ? "x,y,z,r,g,b\n" : "x,y,z\n");
   for_each_voxel(tree, progress, [&](const Vec3i& voxel, std::uint8_t material) {
-    to->number(voxel.x);
-    to->text(",");
-    to->number(voxel.y);
-    to->text(",");
-    to->number(voxel.z);
-    to->text(colors[material]);
-    to->text("\n");
+    to->text(concat(voxel.x, ",", voxel.y, ",", voxel.z, colors[material], "\n"));
   });
 }
 
@@ -146,13 +127,10 @@ void write_npy(Writer* to, const CompactTree& tree, const Palette& palette, bool
   const auto y_size = static_cast<std::uint64_t>(size.y);
   const auto z_size = static_cast<std::uint64_t>(size.z);
   const std::uint64_t bytes = x_size * y_size * z_size * parts;
-  if (bytes > kMostArrayBytes) {
-    throw InputError("an array of " + std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
-                     std::to_string(size.z) + " voxels takes " + grouped(bytes) + " bytes, " +
-                     grouped(kMostArrayBytes) + " are the most; a .ply lists what is solid alone");
-  }
-  to->text(npy_header("'|u1'", std::to_string(size.x) + ", " + std::to_string(size.y) + ", " +
-                                   std::to_string(size.z) + (has_colors ? ", 4" : "")));
+  fail_if(bytes > kMostArrayBytes, "an array of ", size.x, " x ", size.y, " x ", size.z, " voxels takes ",
+          grouped(bytes), " bytes, ", grouped(kMostArrayBytes),
+          " are the most; a .ply lists what is solid alone");
+  to->text(npy_header("'|u1'", concat(size.x, ", ", size.y, ", ", size.z, has_colors ? ", 4" : "")));
   std::vector<char> array(bytes);
   for_each_voxel(tree, progress, [&](const Vec3i& voxel, std::uint8_t material) {
     char* const at =
@@ -239,7 +217,7 @@ std::string scene_graph(const std::map<std::array<std::int32_t, 3>, VoxModel>& m
   const auto words_of = [](std::initializer_list<std::uint32_t> words) {
     std::string content;
     for (const std::uint32_t word : words) {
-      put_little(&content, word);
+      append_little(&content, word);
     }
     return content;
   };
@@ -259,7 +237,7 @@ std::string scene_graph(const std::map<std::array<std::int32_t, 3>, VoxModel>& m
   transform(0, 1, "");
   std::string group = words_of({1, 0, count});
   for (std::uint32_t i = 0; i < count; ++i) {
-    put_little(&group, 2 + 2 * i);
+    append_little(&group, 2 + 2 * i);
   }
   add("nGRP", group);
   std::uint32_t number = 0;
@@ -304,10 +282,8 @@ void write_vox(Writer* to, const CompactTree& tree, const Palette& palette, cons
   for (const auto& [cell, model] : models) {
     bytes += model_bytes(model);
   }
-  if (bytes > INT32_MAX) {
-    throw InputError("as .vox this takes " + grouped(bytes) +
-                     " bytes, more than its chunks can count; .ply can");
-  }
+  fail_if(bytes > INT32_MAX, "as .vox this takes ", grouped(bytes),
+          " bytes, more than its chunks can count; .ply can");
   to->text("VOX ");
   to->little(models.size() == 1 ? 150 : 200, 4);
   to->text("MAIN");
@@ -327,13 +303,7 @@ void write_vox(Writer* to, const CompactTree& tree, const Palette& palette, cons
 }  // namespace
 
 std::optional<VoxelFormat> voxel_format(std::string_view path) {
-  constexpr std::array<std::string_view, 4> kEndings{".vox", ".npy", ".ply", ".csv"};
-  for (std::size_t i = 0; i < kEndings.size(); ++i) {
-    if (ends_in(path, kEndings[i])) {
-      return static_cast<VoxelFormat>(i);
-    }
-  }
-  return std::nullopt;
+  return kind_by_ending<VoxelFormat>(path, {".vox", ".npy", ".ply", ".csv"});
 }
 
 void write_voxels(OutputFile* file, VoxelFormat format, const CompactTree& tree, const Palette& palette,

@@ -18,16 +18,14 @@ class LineWords {
   /// Goes on with `part` of the line.
   void enter(std::string_view part) { rest_ = part; }
   /// The column is where `word` begins.
-  [[noreturn]] void fail(std::string_view word, const std::string& sentence) const {
-    throw InputError("line " + std::to_string(number_) + ", column " +
-                     std::to_string(word.data() - line_.data() + 1) + ": " + sentence);
+  template <class... Pieces>
+  void fail_if(bool is_wrong, std::string_view word, const Pieces&... pieces) const {
+    tools::fail_if(is_wrong, "line ", number_, ", column ", word.data() - line_.data() + 1, ": ", pieces...);
   }
   /// The next word; `what` names it in the error that there is none.
   std::string_view word(const std::string& what) {
     const std::string_view word = take_word(rest_);
-    if (word.empty()) {
-      fail(rest_, what + " is missing");
-    }
+    fail_if(word.empty(), rest_, what, " is missing");
     return word;
   }
   std::int64_t whole(const std::string& what, std::int64_t low, std::int64_t high) {
@@ -38,8 +36,8 @@ class LineWords {
                         std::int64_t high) const {
     std::int64_t value = 0;
     if (!parse_integer(text, value) || value < low || value > high) {
-      fail(text, what + " is " + quoted(text) + ", which is not a whole number from " + std::to_string(low) +
-                     " to " + std::to_string(high));
+      fail_if(true, text, what, " is ", quoted(text), ", which is not a whole number from ", low, " to ",
+              high);
     }
     return value;
   }
@@ -48,18 +46,17 @@ class LineWords {
     double value = 0;
     const NumberKind kind = parse_number(text, value);
     if (kind != NumberKind::kFinite || (is_above_0 && value <= 0)) {
-      fail(text, what + " is " + quoted(text) + ", which is not " +
-                     (kind == NumberKind::kFinite      ? "above 0"
-                      : kind == NumberKind::kNotFinite ? "a finite number"
-                                                       : "a number"));
+      fail_if(true, text, what, " is ", quoted(text), ", which is not ",
+              kind == NumberKind::kFinite      ? "above 0"
+              : kind == NumberKind::kNotFinite ? "a finite number"
+                                               : "a number");
     }
     return value;
   }
   /// Nothing may follow; `fault` says of a word that does what is wrong with it.
   void end(const std::string& fault) {
-    if (const std::string_view more = take_word(rest_); !more.empty()) {
-      fail(more, quoted(more) + fault);
-    }
+    const std::string_view more = take_word(rest_);
+    fail_if(!more.empty(), more, quoted(more), fault);
   }
 
  private:

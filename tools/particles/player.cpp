@@ -50,6 +50,79 @@ Vec2i nearest_ball(const ParticleWorld& world, Vec2i at, std::int32_t reach) {
   return best;
 }
 
+constexpr std::array<const char*, 4> kButtons{"", "left", "middle", "right"};
+// In the order of `InputKind`.
+constexpr std::array<const char*, 6> kVerbs{"key", "move", "press", "release", "wheel", "end"};
+constexpr std::array<std::pair<const char*, host::Key>, 9> kNamedKeys{{{"space", host::Key::kSpace},
+                                                                       {"up", host::Key::kUp},
+                                                                       {"down", host::Key::kDown},
+                                                                       {"left", host::Key::kLeft},
+                                                                       {"right", host::Key::kRight},
+                                                                       {"enter", host::Key::kEnter},
+                                                                       {"tab", host::Key::kTab},
+                                                                       {"escape", host::Key::kEscape},
+                                                                       {"backspace", host::Key::kBackspace}}};
+constexpr std::int64_t kMostTicks = std::numeric_limits<std::int64_t>::max() - 1;
+constexpr std::int64_t kFarthest = 1'000'000;
+constexpr std::int64_t kMostWheelSteps = 1000;
+
+bool is_key(std::string_view word) {
+  return (word.size() == 1 && word[0] > ' ' && word[0] <= '~') ||
+         std::any_of(kNamedKeys.begin(), kNamedKeys.end(),
+                     [&](const auto& named) { return word == named.first; });
+}
+
+bool has_place(const InputEvent& event) {
+  return event.kind != InputKind::kKey && event.kind != InputKind::kEnd;
+}
+
+void read_place(LineWords* words, InputEvent* event) {
+  const std::string_view both = words->word("the place X,Y");
+  const std::size_t comma = both.find(',');
+  words->fail_if(comma == std::string_view::npos, both, "the place is ", quoted(both), ", which is not X,Y");
+  const auto cell = [&](std::string_view text, const char* what) {
+    return static_cast<std::int32_t>(words->whole_of(text, what, -kFarthest, kFarthest));
+  };
+  event->x = cell(both.substr(0, comma), "x");
+  event->y = cell(both.substr(comma + 1), "y");
+}
+
+InputEvent read_event(std::string_view line, LineWords* words) {
+  InputEvent event;
+  const std::size_t colon = line.find(':');
+  words->fail_if(colon == std::string_view::npos, line,
+                 "a line is TICK: key|move|press|release|wheel|end ...");
+  words->enter(line.substr(0, colon));
+  event.tick = static_cast<std::uint64_t>(words->whole("the tick", 0, kMostTicks));
+  words->end(" is too much after the tick");
+  words->enter(line.substr(colon + 1));
+  const std::string_view verb = words->word("an event: key, move, press, release, wheel or end");
+  const auto* const found = std::find(kVerbs.begin(), kVerbs.end(), verb);
+  words->fail_if(found == kVerbs.end(), verb, quoted(verb),
+                 " is not key, move, press, release, wheel or end");
+  event.kind = static_cast<InputKind>(found - kVerbs.begin());
+  if (event.kind == InputKind::kKey) {
+    const std::string_view key = words->word("the key");
+    words->fail_if(
+        !is_key(key), key, quoted(key),
+        " is not a key: one character, or space, up, down, left, right, enter, tab, escape or backspace");
+    event.key = key;
+  } else if (event.kind == InputKind::kPress || event.kind == InputKind::kRelease) {
+    const std::string_view button = words->word("the button: left, middle or right");
+    const auto* const pressed = std::find(kButtons.begin() + 1, kButtons.end(), button);
+    words->fail_if(pressed == kButtons.end(), button, quoted(button), " is not left, middle or right");
+    event.button = static_cast<std::uint8_t>(pressed - kButtons.begin());
+  } else if (event.kind == InputKind::kWheel) {
+    event.steps =
+        static_cast<std::int32_t>(words->whole("the number of steps", -kMostWheelSteps, kMostWheelSteps));
+  }
+  if (has_place(event)) {
+    read_place(words, &event);
+  }
+  words->end(" is too much after the event");
+  return event;
+}
+
 }  // namespace
 
 Player::Player(PopulatedWorld* world, std::int32_t rate)
@@ -274,18 +347,11 @@ void Player::command(char key) {
   }
 }
 
-std::string Player::figures(double eps) const {
-  return "Min Size: " + std::to_string(settings_.least_diameter) +
-         "\nMax Size: " + std::to_string(settings_.most_diameter) +
-         "\nBounciness: " + fixed(settings_.bounciness, 6) +
-         "\n\nTotal Colliders: " + std::to_string(world_->world().count()) + "\nEps: " + fixed(eps, 6);
-}
-
-std::string Player::figures_line(double eps) const {
-  return "Min Size: " + std::to_string(settings_.least_diameter) +
-         "  Max Size: " + std::to_string(settings_.most_diameter) +
-         "  Bounciness: " + fixed(settings_.bounciness, 2) +
-         "  Total Colliders: " + std::to_string(world_->world().count()) + "  Eps: " + fixed(eps, 1);
+std::string Player::figures(double eps, const char* between, bool is_brief) const {
+  return concat("Min Size: ", settings_.least_diameter, between, "Max Size: ", settings_.most_diameter,
+                between, "Bounciness: ", fixed(settings_.bounciness, is_brief ? 2 : 6), is_brief ? "" : "\n",
+                between, "Total Colliders: ", world_->world().count(), between,
+                "Eps: ", fixed(eps, is_brief ? 1 : 6));
 }
 
 std::string Player::tool_text() const {
@@ -319,87 +385,6 @@ std::string Player::help() {
          " o figures on and off\n"
          " ? this help   q ends";
 }
-
-namespace {
-
-constexpr std::array<const char*, 4> kButtons{"", "left", "middle", "right"};
-constexpr std::array<std::pair<const char*, host::Key>, 9> kNamedKeys{{{"space", host::Key::kSpace},
-                                                                       {"up", host::Key::kUp},
-                                                                       {"down", host::Key::kDown},
-                                                                       {"left", host::Key::kLeft},
-                                                                       {"right", host::Key::kRight},
-                                                                       {"enter", host::Key::kEnter},
-                                                                       {"tab", host::Key::kTab},
-                                                                       {"escape", host::Key::kEscape},
-                                                                       {"backspace", host::Key::kBackspace}}};
-constexpr std::int64_t kMostTicks = std::numeric_limits<std::int64_t>::max() - 1;
-constexpr std::int64_t kFarthest = 1'000'000;
-constexpr std::int64_t kMostWheelSteps = 1000;
-
-bool is_key(std::string_view word) {
-  return (word.size() == 1 && word[0] > ' ' && word[0] <= '~') ||
-         std::any_of(kNamedKeys.begin(), kNamedKeys.end(),
-                     [&](const auto& named) { return word == named.first; });
-}
-
-void read_place(LineWords* words, InputEvent* event) {
-  const std::string_view both = words->word("the place X,Y");
-  const std::size_t comma = both.find(',');
-  if (comma == std::string_view::npos) {
-    words->fail(both, "the place is " + quoted(both) + ", which is not X,Y");
-  }
-  const auto cell = [&](std::string_view text, const char* what) {
-    return static_cast<std::int32_t>(words->whole_of(text, what, -kFarthest, kFarthest));
-  };
-  event->x = cell(both.substr(0, comma), "x");
-  event->y = cell(both.substr(comma + 1), "y");
-}
-
-InputEvent read_event(std::string_view line, LineWords* words) {
-  InputEvent event;
-  const std::size_t colon = line.find(':');
-  if (colon == std::string_view::npos) {
-    words->fail(line, "a line is TICK: key|move|press|release|wheel|end ...");
-  }
-  words->enter(line.substr(0, colon));
-  event.tick = static_cast<std::uint64_t>(words->whole("the tick", 0, kMostTicks));
-  words->end(" is too much after the tick");
-  words->enter(line.substr(colon + 1));
-  const std::string_view verb = words->word("an event: key, move, press, release, wheel or end");
-  if (verb == "key") {
-    event.kind = InputKind::kKey;
-    const std::string_view key = words->word("the key");
-    if (!is_key(key)) {
-      words->fail(key, quoted(key) +
-                           " is not a key: one character, or space, up, down, left, right, enter, tab, " +
-                           "escape or backspace");
-    }
-    event.key = key;
-  } else if (verb == "move") {
-    event.kind = InputKind::kMove;
-    read_place(words, &event);
-  } else if (verb == "press" || verb == "release") {
-    event.kind = verb == "press" ? InputKind::kPress : InputKind::kRelease;
-    const std::string_view button = words->word("the button: left, middle or right");
-    const auto* const found = std::find(kButtons.begin() + 1, kButtons.end(), button);
-    if (found == kButtons.end()) {
-      words->fail(button, quoted(button) + " is not left, middle or right");
-    }
-    event.button = static_cast<std::uint8_t>(found - kButtons.begin());
-    read_place(words, &event);
-  } else if (verb == "wheel") {
-    event.kind = InputKind::kWheel;
-    event.steps =
-        static_cast<std::int32_t>(words->whole("the number of steps", -kMostWheelSteps, kMostWheelSteps));
-    read_place(words, &event);
-  } else if (verb != "end") {
-    words->fail(verb, quoted(verb) + " is not key, move, press, release, wheel or end");
-  }
-  words->end(" is too much after the event");
-  return event;
-}
-
-}  // namespace
 
 std::optional<InputEvent> input_event(const host::Event& event, std::uint64_t tick) {
   InputEvent input;
@@ -453,23 +438,13 @@ std::optional<InputEvent> input_event(const host::Event& event, std::uint64_t ti
 }
 
 std::string to_text(const InputEvent& event) {
-  const std::string front = std::to_string(event.tick) + ": ";
-  const std::string place = std::to_string(event.x) + "," + std::to_string(event.y) + "\n";
-  switch (event.kind) {
-    case InputKind::kKey:
-      return front + "key " + event.key + "\n";
-    case InputKind::kMove:
-      return front + "move " + place;
-    case InputKind::kPress:
-      return front + "press " + kButtons[event.button] + " " + place;
-    case InputKind::kRelease:
-      return front + "release " + kButtons[event.button] + " " + place;
-    case InputKind::kWheel:
-      return front + "wheel " + std::to_string(event.steps) + " " + place;
-    case InputKind::kEnd:
-      break;
-  }
-  return front + "end\n";
+  const std::string what = event.kind == InputKind::kKey       ? " " + event.key
+                           : event.kind == InputKind::kPress   ? concat(" ", kButtons[event.button])
+                           : event.kind == InputKind::kRelease ? concat(" ", kButtons[event.button])
+                           : event.kind == InputKind::kWheel   ? concat(" ", event.steps)
+                                                               : "";
+  return concat(event.tick, ": ", kVerbs[static_cast<std::size_t>(event.kind)], what,
+                has_place(event) ? concat(" ", event.x, ",", event.y) : "", "\n");
 }
 
 std::vector<InputEvent> read_input(std::string_view text) {
@@ -484,12 +459,10 @@ std::vector<InputEvent> read_input(std::string_view text) {
     }
     LineWords words(lines.line_number(), line);
     InputEvent event = read_event(line, &words);
-    if (!events.empty() && event.tick < events.back().tick) {
-      words.fail(first, "tick " + std::to_string(event.tick) + " comes after tick " +
-                            std::to_string(events.back().tick));
-    }
-    if (!events.empty() && events.back().kind == InputKind::kEnd) {
-      words.fail(first, "an event follows the end");
+    if (!events.empty()) {
+      const InputEvent& last = events.back();
+      words.fail_if(event.tick < last.tick, first, "tick ", event.tick, " comes after tick ", last.tick);
+      words.fail_if(last.kind == InputKind::kEnd, first, "an event follows the end");
     }
     events.push_back(std::move(event));
   }

@@ -87,10 +87,8 @@ class Player {
   /// Whether the next tick may change what is seen.
   bool is_moving() const { return !stands() && (world_->world().awake() > 0 || is_held()); }
 
-  /// The five figures of the paper's Figure 1, a line each; `eps` is the rate of steps.
-  std::string figures(double eps) const;
-  /// The same in one line.
-  std::string figures_line(double eps) const;
+  /// The five figures of the paper's Figure 1 with `between` between them; `eps` is the rate of steps.
+  std::string figures(double eps, const char* between = "\n", bool is_brief = false) const;
   /// What the mouse does, and how the world fares; up to 32 characters each.
   std::string tool_text() const;
   std::string world_text() const;

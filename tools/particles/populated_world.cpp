@@ -50,6 +50,17 @@ std::int32_t to_q16(double cells) {
   return static_cast<std::int32_t>(std::lround(cells * kOneQ16));
 }
 
+// The next line that has anything on it.
+std::optional<LineWords> next_line(LineReader* lines) {
+  std::string_view line;
+  while (lines->next(line)) {
+    if (!trimmed(line).empty()) {
+      return LineWords(lines->line_number(), line);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::uint32_t restitution_q16(double bounciness) {
@@ -60,25 +71,19 @@ PopulatedWorld::PopulatedWorld(const WorldOptions& options, const std::optional<
     : options_(options), bodies_(bodies), bytes_(particles_bytes(config_of(options))) {
   const std::uint32_t came = fill();
   if (bodies_) {
-    if (came == 0 && options_.count != 0) {
-      throw InputError("none of the " + grouped(options_.count) + " bodies lies in a box of " +
-                       std::to_string(options_.width) + " x " + std::to_string(options_.height) + " cells");
-    }
+    fail_if(came == 0 && options_.count != 0, "none of the ", grouped(options_.count),
+            " bodies lies in a box of ", options_.width, " x ", options_.height, " cells");
     return;
   }
-  if (came != options_.count) {
-    throw InputError(grouped(options_.count) + " balls of " + std::to_string(options_.least_diameter) +
-                     " to " + std::to_string(options_.most_diameter) + " cells do not fit into " +
-                     std::to_string(options_.width) + " x " + std::to_string(options_.height) + " cells; " +
-                     grouped(came) + " did");
-  }
+  fail_if(came != options_.count, grouped(options_.count), " balls of ", options_.least_diameter, " to ",
+          options_.most_diameter, " cells do not fit into ", options_.width, " x ", options_.height,
+          " cells; ", grouped(came), " did");
 }
 
 std::uint32_t PopulatedWorld::fill() {
-  if (ParticleWorld::make(config_of(options_), {bytes_.data(), bytes_.size()}, &world_) != Status::kOk ||
-      world_.set_diameters(options_.least_diameter, options_.most_diameter) != Status::kOk) {
-    throw InputError("a value of the world is beyond its limits");
-  }
+  fail_if(ParticleWorld::make(config_of(options_), {bytes_.data(), bytes_.size()}, &world_) != Status::kOk ||
+              world_.set_diameters(options_.least_diameter, options_.most_diameter) != Status::kOk,
+          "a value of the world is beyond its limits");
   if (bodies_) {
     place_bodies();
     return world_.count();
@@ -159,43 +164,22 @@ void PopulatedWorld::begin_again(const WorldOptions& options) {
   fill();
 }
 
-namespace {
-
-// The next line that has anything on it.
-std::optional<LineWords> next_line(LineReader* lines) {
-  std::string_view line;
-  while (lines->next(line)) {
-    if (!trimmed(line).empty()) {
-      return LineWords(lines->line_number(), line);
-    }
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
 Bodies read_bodies(std::string_view text) {
   constexpr std::int64_t kMostBodies = 1'000'000'000;
   const std::string too_many = " is one value too many";
   LineReader lines(text);
   auto words = next_line(&lines);
-  if (!words) {
-    throw InputError("the file holds no bodies");
-  }
+  fail_if(!words, "the file holds no bodies");
   const std::int64_t announced = words->whole("the number of bodies", 0, kMostBodies);
   words->end(too_many);
   words = next_line(&lines);
-  if (!words) {
-    throw InputError("the radius of the world, on the second line, is missing");
-  }
+  fail_if(!words, "the radius of the world, on the second line, is missing");
   Bodies result;
   result.radius = words->number("the radius of the world", true);
   words->end(too_many);
   while ((words = next_line(&lines))) {
-    if (static_cast<std::int64_t>(result.bodies.size()) == announced) {
-      words->fail(words->rest(),
-                  "there are more bodies than the " + std::to_string(announced) + " announced");
-    }
+    words->fail_if(static_cast<std::int64_t>(result.bodies.size()) == announced, words->rest(),
+                   "there are more bodies than the ", announced, " announced");
     Body body;
     body.x = words->number("x");
     body.y = words->number("y");
@@ -211,10 +195,8 @@ Bodies read_bodies(std::string_view text) {
     words->end(too_many);
     result.bodies.push_back(body);
   }
-  if (static_cast<std::int64_t>(result.bodies.size()) != announced) {
-    throw InputError("the file ends after " + std::to_string(result.bodies.size()) + " of the " +
-                     std::to_string(announced) + " bodies announced");
-  }
+  fail_if(static_cast<std::int64_t>(result.bodies.size()) != announced, "the file ends after ",
+          result.bodies.size(), " of the ", announced, " bodies announced");
   return result;
 }
 

@@ -1,14 +1,12 @@
 #include "particles/world_files.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
 
 #include "apps/ball_color.h"
 #include "host/canvas.h"
-#include "output/units.h"
+#include "output/tables.h"
 
 namespace thimble::tools {
 
@@ -26,25 +24,15 @@ std::string state_csv(const ParticleWorld& world) {
 
 std::string particle_stats(const PopulatedWorld& populated, const PlayedCounts& counts, double step_seconds) {
   const ParticleWorld& world = populated.world();
-  nlohmann::ordered_json json;
-  json["width"] = world.config().width;
-  json["height"] = world.config().height;
-  json["seed"] = populated.options().seed;
-  json["steps"] = counts.steps;
-  json["particles"] = world.count();
-  json["asleep"] = world.asleep();
-  json["collisions"] = counts.ball_hits + counts.wall_hits;
-  json["ball_hits"] = counts.ball_hits;
-  json["wall_hits"] = counts.wall_hits;
-  json["moves"] = counts.moves;
-  json["mask_tests"] = counts.mask_tests;
-  json["woken"] = counts.woken;
-  json["bytes"] = world.used_bytes();
-  json["field_bytes"] = world.field().used_bytes();
-  json["capacity"] = world.config().capacity;
-  json["step_seconds"] = step_seconds;
-  json["state_crc32"] = crc_text(world.state_crc32());
-  return json.dump(2) + "\n";
+  JsonRow json;
+  put_all(&json, "width", world.config().width, "height", world.config().height, "seed",
+          populated.options().seed, "steps", counts.steps, "particles", world.count(), "asleep",
+          world.asleep(), "collisions", counts.ball_hits + counts.wall_hits, "ball_hits", counts.ball_hits,
+          "wall_hits", counts.wall_hits, "moves", counts.moves, "mask_tests", counts.mask_tests, "woken",
+          counts.woken, "bytes", world.used_bytes(), "field_bytes", world.field().used_bytes(), "capacity",
+          world.config().capacity, "step_seconds", step_seconds, "state_crc32",
+          crc_text(world.state_crc32()));
+  return json_text(json);
 }
 
 std::string particle_summary(const PopulatedWorld& populated, const PlayedCounts& counts,

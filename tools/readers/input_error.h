@@ -17,6 +17,14 @@ class InputError : public std::runtime_error {
   explicit InputError(const First& first, const Rest&... rest) : std::runtime_error(concat(first, rest...)) {}
 };
 
+/// Throws one of these pieces where `is_wrong`.
+template <class... Pieces>
+void fail_if(bool is_wrong, const Pieces&... pieces) {
+  if (is_wrong) {
+    throw InputError(pieces...);
+  }
+}
+
 /// The input may be good, but the system has nothing left to open it with. Whoever can do without an input that is bad
 /// does not do without this one.
 class ShortageError : public InputError {

@@ -10,7 +10,6 @@
 #include "host/packed_picture.h"
 #include "host/y4m.h"
 #include "output/output_file.h"
-#include "output/output_set.h"
 #include "scene/palette.h"
 #include "thimble/picture/pixel.h"
 

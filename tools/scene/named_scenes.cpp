@@ -8,7 +8,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "output/suggestion.h"
+#include "output/units.h"
 #include "readers/input_error.h"
 
 namespace thimble::tools {
