@@ -137,7 +137,7 @@ class Pictures(unittest.TestCase):
 
     def test_a_wrong_option_is_said_as_the_command_says_it(self):
         scene = cube()[1]
-        for options, sentence in (({"tilt_": 3}, '"--tilt-" is not an option of thimble render .did you mean --tilt'),
+        for options, sentence in (({"tilt_": 3}, '"--tilt-=3" is not an option of thimble render .did you mean --tilt'),
                                   ({"fov": 300}, "--fov: "),
                                   ({"depth": 4}, "--depth: says how a scene is opened, and this one is open"),
                                   ({"help": True}, '"--help" is not an option'),
@@ -146,6 +146,8 @@ class Pictures(unittest.TestCase):
                                   ({"rows": "0:3"}, "only the command writes")):
             with self.assertRaisesRegex(thimble.Error, sentence):
                 scene.render(32, 32, **options)
+        with self.assertRaisesRegex(thimble.Error, "--z-up takes no value"):
+            thimble.open("castle", z_up=1)
         with self.assertRaisesRegex(thimble.Error, "only the command writes"):
             scene.bake(stats="s.json")
         self.assertEqual(scene.render(8, 8, quiet=np.bool_(True), verbose=np.bool_(False)).shape, (8, 8, 3))

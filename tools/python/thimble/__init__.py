@@ -51,10 +51,11 @@ def _words(options: Dict[str, Any]) -> List[bytes]:
             continue
         if value is True:
             words.append(option)
-        elif isinstance(value, (tuple, list, _np.ndarray)):
-            words += [option, ",".join(str(item) for item in _np.asarray(value).tolist())]
-        else:
-            words += [option, str(value)]
+            continue
+        if isinstance(value, (tuple, list, _np.ndarray)):
+            value = ",".join(str(item) for item in _np.asarray(value).tolist())
+        # In one word the value is not taken for the scene where the option takes none.
+        words += [f"{option}={value}"] if str(value) else [option, ""]
     return [_os.fsencode(word) for word in words]
 
 
