@@ -562,6 +562,7 @@ TEST_CASE("npz: stored and deflated -> the largest array; damage -> a sentence")
   }
   CHECK(contains(error_of(read_npy, zip({{"a.npy", scalar}}, true)), "two dimensions"));
   CHECK(contains(error_of(read_npy, npy("<f4", "(3)", std::string(12, '\0'))), "3 numbers"));
+  CHECK(contains(error_of(read_npy, scalar), "an array of one number is"));
   CHECK(contains(error_of(read_npy, npy("<c8", "(3, 3)", "")), "'<c8'"));
   CHECK(contains(error_of(read_npy, npy("|O", "(3, 3)", "")), "'|O'"));
   CHECK(contains(error_of(read_npy, npy("<f8", "(4096, 4096, 4096)", "")), "room for 0"));

@@ -399,6 +399,8 @@ TEST_CASE("gadget: damaged snapshots -> a sentence that names the place") {
   CHECK(contains(changed(4, "\x05"), "counts 7 particles"));  // Gas that is not there.
   CHECK(contains(changed(4, std::string(24, '\xff')), "counts 25769803770 particles"));
   CHECK(contains(changed(260, "\x01"), "its length is 256 before the data and 257 after it"));
+  CHECK(contains(error_of(read_gadget, whole.substr(0, 264 + 4 + 24)),
+                 "it takes 24 bytes and a marker of 4, but 24 bytes are left"));
   CHECK(contains(changed(268, packed(NAN, false)), "particle 1 is not finite"));
   CHECK(contains(error_of(read_gadget, snapshot({0, 0, 0, 0, 0, 0})), "no particles"));
   CHECK(contains(error_of(read_gadget, record("HEAD1234") + whole), "format 2"));

@@ -61,7 +61,8 @@ Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, bool i
   record.size_bytes = static_cast<std::uint32_t>(load_bits(&bytes[offset], kMarkerBytes, is_big_endian));
   const std::uint64_t left = bytes.size() - record.offset;
   if (std::uint64_t{record.size_bytes} + kMarkerBytes > left) {
-    throw InputError(place, ": its length is ", record.size_bytes, " bytes, but ", left, " bytes are left");
+    throw InputError(place, ": it takes ", record.size_bytes, " bytes and a marker of ", kMarkerBytes,
+                     ", but ", left, " bytes are left");
   }
   const std::uint64_t marker =
       load_bits(&bytes[record.offset + record.size_bytes], kMarkerBytes, is_big_endian);

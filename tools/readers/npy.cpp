@@ -295,10 +295,9 @@ Source source_of(Array array, const ReadOptions& options) {
   if (dimensions == 3 || is_color) {
     return std::make_unique<ArrayGrid>(std::move(array));
   }
-  throw InputError(
-      "an array of ", shape_of(header),
-      " numbers is read as nothing; points are N x 3 to N x 9, heights H x W, voxels X x Y x Z, colours "
-      "X x Y x Z x 3 or 4 bytes");
+  throw InputError("an array of ", shape_of(header), header.shape.empty() ? "" : " numbers",
+                   " is read as nothing; points are N x 3 to N x 9, heights H x W, voxels X x Y x Z, colours "
+                   "X x Y x Z x 3 or 4 bytes");
 }
 
 /// The member of an archive that has the most to show, unpacked.
