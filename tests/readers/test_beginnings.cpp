@@ -82,14 +82,18 @@ TEST_CASE("check_beginning: first bytes that no reader takes -> a sentence") {
   }
 }
 
-TEST_CASE("info: endless and bloated files -> refused at once, in little memory") {
+TEST_CASE("info: endless and bloated files -> refused at once, in little memory, as are rays and bodies") {
   const TemporaryFolder folder;
-  for (const std::string& path :
-       {std::string("/dev/zero"), write_gzip(folder, "zeros.vox.gz", std::string(1 << 20, '\0'), 256),
-        write_gzip(folder, "zeros.obj.gz", std::string(1 << 20, '\0'), 256),
-        write_gzip(folder, "lines.xyz.gz", std::string(1 << 20, '\n'), 256)}) {
-    CAPTURE(path);
-    const CommandResult result = limited({"info", path}, 150);
+  const std::string zeros(1 << 20, '\0');
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"info", "/dev/zero"},
+           {"info", write_gzip(folder, "zeros.vox.gz", zeros, 256)},
+           {"info", write_gzip(folder, "zeros.obj.gz", zeros, 256)},
+           {"info", write_gzip(folder, "lines.xyz.gz", std::string(1 << 20, '\n'), 256)},
+           {"trace", "spheres", "--threads", "1", "--rays", "/dev/zero"},
+           {"particles", "--steps", "1", "--display", "none", "--bodies", "/dev/zero"}}) {
+    CAPTURE(words.back());
+    const CommandResult result = limited(words, 250);
     CAPTURE(result.describe());
     CHECK(result.status == 1);
     CHECK(thimble::tests::is_one_sentence(result.err));

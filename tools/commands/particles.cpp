@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "particles/player.h"
 #include "particles/world_files.h"
 #include "readers/file_bytes.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {
@@ -371,7 +373,12 @@ void run(const ParticlesCommand& given) {
 
   std::optional<Bodies> bodies;
   if (!command.bodies_path.empty()) {
-    bodies = about(command.bodies_path, [&] { return read_bodies(load_file(command.bodies_path).text()); });
+    bodies = about(command.bodies_path, [&] {
+      const auto look = [](std::span<const std::uint8_t> first) {
+        refuse_zero_bytes(first, "bodies, one a line");
+      };
+      return read_bodies(load_file(command.bodies_path, kFileLimitBytes, look).text());
+    });
     const auto most = static_cast<std::uint32_t>(std::min<std::size_t>(bodies->bodies.size(), kMaxBalls));
     world_options.count = command.count_given ? std::min(world_options.count, most) : most;
     if (!command.gravity_given) {

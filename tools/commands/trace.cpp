@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -265,7 +266,12 @@ void run(const TraceCommand& command) {
   const auto source = command.scene.open();
   BuiltScene built = command.scene.build(*source);
   const RayFile file = about(command.rays_path, [&] {
-    return RayFile(share(load_file(command.rays_path)),
+    const auto look = [](std::span<const std::uint8_t> first) {
+      if (!looks_like_npy(first)) {
+        refuse_zero_bytes(first, "rays, one a line");
+      }
+    };
+    return RayFile(share(load_file(command.rays_path, kFileLimitBytes, look)),
                    {built.level(), command.direction_bits, command.engine.name == "ray32"});
   });
   Stats stats(command.scene.arguments.scene, *source, built);

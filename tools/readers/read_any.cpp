@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -102,11 +103,7 @@ const ReaderRow& row_for(std::string_view path, std::span<const std::uint8_t> by
 
 /// Refuses first bytes that are those of no text that means anything.
 void check_text(std::span<const std::uint8_t> first, const char* name) {
-  const auto zero = std::find(first.begin(), first.end(), std::uint8_t{0});
-  if (zero != first.end()) {
-    throw InputError("holds a zero byte at byte offset ", zero - first.begin(),
-                     ", and text, as which it would be read (", name, "), holds none");
-  }
+  refuse_zero_bytes(first, name);
   const bool is_blank = std::all_of(first.begin(), first.end(),
                                     [](std::uint8_t byte) { return is_space(static_cast<char>(byte)); });
   if (is_blank && first.size() >= kFirstLookBytes) {

@@ -1,5 +1,6 @@
 #include "readers/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <system_error>
@@ -30,6 +31,14 @@ std::string quoted(std::string_view word) {
   }
   out += word.size() > kLongest ? "...'" : "'";
   return out;
+}
+
+void refuse_zero_bytes(std::span<const std::uint8_t> first, const char* name) {
+  const auto zero = std::find(first.begin(), first.end(), std::uint8_t{0});
+  if (zero != first.end()) {
+    throw InputError("holds a zero byte at byte offset ", zero - first.begin(),
+                     ", and text, as which it would be read (", name, "), holds none");
+  }
 }
 
 NumberKind parse_number(std::string_view word, double& value) {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,10 @@ template <class... Pieces>
 /// `word` in single quotes for an error's sentence: cut to a length that fits on a line, bytes that do not
 /// print replaced by '?'.
 std::string quoted(std::string_view word);
+
+/// Refuses a file's first bytes that are those of no text, such as an endless device's.
+/// @param name  what the text would be read as
+void refuse_zero_bytes(std::span<const std::uint8_t> first, const char* name);
 
 /// What a word is when read as a number.
 enum class NumberKind : std::uint8_t {
