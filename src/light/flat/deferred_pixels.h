@@ -37,21 +37,6 @@ struct WetNotes {
   uint32_t of[kTileAcrossPx * kTileDownPx] = {};
 };
 
-// The face on which a ray has landed; not where on it.
-inline FacePoint landed_on(const SightCourse<false>& course) {
-  const Landing& landing = course.landing;
-  FacePoint face;
-  for (int i = 0; i < 3; ++i) {
-    const int32_t side = course.frame->side[i];
-    const int32_t brick = static_cast<int32_t>(count_of(landing.left, i)) - (512 - side);
-    face.voxel[i] = 4 * (course.flip[i] != 0 ? side - 1 - brick : brick) +
-                    static_cast<int32_t>(landing.voxel >> 2 * i & 3U);
-  }
-  face.axis = landing.axis;
-  face.faces_up = course.flip[landing.axis] != 0;
-  return face;
-}
-
 // The same with the notes of the tile.
 struct WetProgress : FlatProgress {
   WetNotes* notes;

@@ -3,9 +3,7 @@
 // gathers its light by rays of its own (point_lighting.h). ../README.md derives what is used. For flat.cpp alone.
 #pragma once
 
-#include "../../picture/panels.h"
 #include "../arithmetic.h"
-#include "../exposure.h"
 #include "thimble/light/map_render.h"
 
 // As in brick_render.cpp.
@@ -30,19 +28,16 @@ template <EffectSet kSet>
 constexpr uint32_t kInks = kGathersLight<kSet> || kIsWet<kSet> ? 8
                            : kMirrors<kSet>                    ? 16
                                                                : 32;
-// Faces whose material is kept.
+// Voxels whose material is kept.
 template <EffectSet kSet>
-constexpr uint32_t kFaces = kIsWet<kSet> ? 32 : 64;
+constexpr uint32_t kVoxels = kIsWet<kSet> || kSlots != 0 ? 32 : 64;
 constexpr uint16_t kNoKey = UINT16_MAX;
-
-uint8_t* line_of(const Band& band, size_t stride, int32_t y) {
-  return band.pixels.data + stride * row_place(band.format, y - band.first_row);
-}
 
 // Shades and stores what SightPainter finds. kSecondary: rays leave its points, as they do from mirrors; in water a second
 // sink sends them, for the pixels that the first has noted.
 template <EffectSet kSet, bool kIsDeep = false, bool kSecondary = kMirrors<kSet>>
-class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
+class FlatSink : StoredPixels,
+                 PointLighting<kSet, kIsDeep, kSecondary>,
                  MirrorRays<kSet, FlatSink<kSet, kIsDeep, kSecondary>>,
                  WaterRays<kSet, FlatSink<kSet, kIsDeep, kSecondary>, kSecondary> {
   friend class MirrorRays<kSet, FlatSink<kSet, kIsDeep, kSecondary>>;
@@ -52,19 +47,10 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
   static constexpr bool kDeep = kIsDeep;
 
   FlatSink(Frame& frame, const BrickMap& map, const Band& band, size_t stride, bool counts)
-      : WaterRays<kSet, FlatSink<kSet, kDeep, kSecondary>, kSecondary>(frame, *this),
-        frame_(frame),
+      : StoredPixels(frame, band, stride),
+        WaterRays<kSet, FlatSink<kSet, kDeep, kSecondary>, kSecondary>(frame, *this),
         map_(map),
-        band_(band),
-        stride_(stride),
-        storing_(storing_of(band.format)),
         counts_(counts) {
-    const bool blue_first = is_format<PixelFormat::kBgr565>(band.format);
-    shift_[0] = blue_first ? 0 : 11;
-    shift_[1] = 5;
-    shift_[2] = blue_first ? 11 : 0;
-    is_whole_ = storing_ == Storing::kHalfwords && frame.options.dither &&
-                ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
     for (FlatInk& ink : inks_) {
       ink.key = kNoKey;
     }
@@ -113,14 +99,15 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     const unsigned face = course.face[course.landing.axis];
     unsigned lights = lights_of_[face];
     if constexpr (kIsWet<kSet>) {
-      const FacePoint point = landed_on(course);
+      FacePoint point;
+      find_face(course, &point);
       if (!this->is_dry(point, floor_q8())) {
         this->note(pixel_at(x, y), note_of(point));
         return;
       }
     }
     if constexpr (kMirrors<kSet>) {
-      const uint8_t material = material_of(course.landing.voxel, face);
+      const uint8_t material = material_of(course.landing.voxel);
       if (mirrors(material)) {
         FacePoint point;
         find_point(course, d, &point);
@@ -134,7 +121,7 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
         find_point(course, d, &point);
         lights = suns_at(lights, point);
         ++hits_;
-        show_gathered(x, y, point, material_of(course.landing.voxel, face), face, lights);
+        show_gathered(x, y, point, material_of(course.landing.voxel), face, lights);
         return;
       } else if (lights != 0) {
         find_place(course, d, &point);
@@ -142,7 +129,7 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
       }
     }
     ++hits_;
-    store(x, y, ink_of_face(material_of(course.landing.voxel, face), face, lights));
+    store(x, y, ink_of_face(material_of(course.landing.voxel), face, lights));
   }
 
   void miss(int32_t x, int32_t y) {
@@ -170,8 +157,8 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
         return;
       }
     }
+    const uint8_t material = material_of(face.voxel);
     if constexpr (kMirrors<kSet>) {
-      const uint8_t material = material_of(face.voxel, side);
       if (mirrors(material)) {
         for_each(seen.place, seen.pixels, [&](int32_t x, int32_t y, uint32_t pixel) {
           const Vec3<uint32_t> d = seen.direction(pixel);
@@ -184,9 +171,16 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     unsigned lights = lights_of_[side];
     unsigned open = 0;  // lights that may reach a part of it
     if constexpr (kHasShadows) {
+      // A few points are sooner traced than the face.
+      const uint32_t columns = seen.pixels.columns();
+      const uint32_t others = columns & (columns - 1);
+      const bool is_small = (others & (others - 1)) == 0;
       for (size_t i = 0; i < kMaxFlatSuns; ++i) {
         if ((lights >> i & 1U) != 0) {
-          const FaceLight light = light_of_face(suns_[i], face.point, &blockers_[kSlots != 0 ? i : 0]);
+          Blockers<kDeep>& blockers = blockers_[kSlots != 0 ? i : 0];
+          blockers.count = Blockers<kDeep>::kMost + 1;
+          const FaceLight light =
+              is_small ? FaceLight::kMixed : light_of_face(suns_[i], face.point, &blockers);
           lights &= ~(light == FaceLight::kDark ? 1U << i : 0U);
           open |= light == FaceLight::kMixed ? 1U << i : 0U;
           if (counts_ && light != FaceLight::kMixed) {
@@ -200,7 +194,6 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     if (counts_) {
       hits_ += count_of(seen.pixels);
     }
-    const uint8_t material = material_of(face.voxel, side);
     if (!kGathers && open == 0) {
       store(seen.place, seen.pixels, ink_of_face(material, side, lights));
     } else {
@@ -252,7 +245,6 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
       this->add_mirror_counts(counts);
     }
   }
-  uint8_t* line_of(int32_t y) const { return lit::line_of(band_, stride_, y); }
 
   // Sets where notes are made.
   template <class Progress>
@@ -292,28 +284,10 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
   static constexpr bool kGathers = kGathersLight<kSet>;
   static constexpr bool kKeepsSuns = PointLighting<kSet, kDeep, kSecondary>::kKeepsSuns;
 
-  static uint32_t count_of(const Pixels& pixels) {
-    uint32_t count = 0;
-    for (uint32_t word : pixels.word) {
-      count += static_cast<uint32_t>(bits::popcount32(word));
-    }
-    return count;
-  }
-  // Calls `call(x, y, pixel)` for pixels of the band's part of a tile.
-  template <class Call>
-  static void for_each(const TilePlace& place, const Pixels& pixels, const Call& call) {
-    for (uint32_t i = 0; i < kTileWords; ++i) {
-      for (uint32_t word = pixels.word[i]; word != 0; word &= word - 1) {
-        const uint32_t pixel = 32 * i + bits::lowest_bit(word);
-        call(place.x + static_cast<int32_t>(pixel % kTileAcrossPx),
-             place.y + static_cast<int32_t>(pixel / kTileAcrossPx), pixel);
-      }
-    }
-  }
-
   // The suns of `lights` that reach a point, ray by ray; `point` is what is_shadowed takes.
   template <class... Point>
   [[gnu::always_inline]] unsigned suns_at(unsigned lights, const Point&... point) {
+#pragma GCC unroll 1
     for (size_t i = 0; i < kMaxFlatSuns; ++i) {
       if ((lights >> i & 1U) != 0) {
         ++shadow_rays_;
@@ -326,10 +300,11 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     return lights;
   }
 
-  // Draws the points of a face one by one; the lights in `open` may reach some of them and not others.
+  // Draws the points of a face; the lights in `open` may reach some. Those that the same lights reach are stored together.
   [[gnu::noinline]] void store_points(const SeenPixels& seen, SeenFace& face, uint8_t material,
                                       unsigned lights, unsigned open) {
     const unsigned side = seen.course.face[face.point.axis];
+    Pixels reached[kGathers ? 1 : 1 << kMaxFlatSuns] = {};
     for_each(seen.place, seen.pixels, [&](int32_t x, int32_t y, uint32_t pixel) {
       find_point(seen.course, seen.direction(pixel), &face);
       unsigned reach = lights;
@@ -348,9 +323,14 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
       if constexpr (kGathers) {
         show_gathered(x, y, face.point, material, side, reach);
       } else {
-        store(x, y, ink_of_face(material, side, reach));
+        reached[reach].word[pixel >> 5] |= 1U << (pixel & 31U);
       }
     });
+    for (unsigned reach = 0; !kGathers && reach <= lights; ++reach) {
+      if (reached[reach].columns() != 0) {
+        store(seen.place, reached[reach], ink_of_face(material, side, reach));
+      }
+    }
   }
 
   // Stores a point lit by secondary rays; the suns of `reach` shine on it.
@@ -387,7 +367,9 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     return static_cast<uint32_t>(kTileAcrossPx * (y % kTileDownPx) + x % kTileAcrossPx);
   }
   // Where the box begins along z, in 1/256 voxel.
-  int32_t floor_q8() const { return 4 * Q8::kOne * map_.box().low.z; }
+  int32_t floor_q8() const {
+    return 4 * Q8::kOne * map_.box().low.z;
+  }
 
   // For MapFrame.
   template <class WetFrame>
@@ -436,22 +418,22 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     }
     return background(frame_);
   }
-  bool has_sky() const { return has<kSet, Effect::kSky>(frame_); }
+  bool has_sky() const {
+    return has<kSet, Effect::kSky>(frame_);
+  }
 
-  // A face's key has 25 bits, of level 9 and 10 32: its place in the table says the lower ones, the entry keeps the others
-  // beside the material.
+  // A voxel has 22 bits, of level 9 and 10 29: its place in the table says the lower ones, the entry keeps the others beside
+  // the material.
   using Seen = Choose<kDeep, uint64_t, uint32_t>;
   static_assert(kMaxDeepBricks <= uint32_t{1} << 23);
-  [[gnu::always_inline]] uint8_t material_of(uint32_t voxel, unsigned face) {
-    const uint32_t key = voxel << 3 | face;
-    const Seen rest = key / kFaces<kSet>;
-    Seen& seen = seen_[(key ^ rest) % kFaces<kSet>];
+  [[gnu::always_inline]] uint8_t material_of(uint32_t voxel) {
+    const Seen rest = voxel / kVoxels<kSet>;
+    Seen& seen = seen_[(voxel ^ rest) % kVoxels<kSet>];
     if (seen >> 8 != rest) {
       seen = rest << 8 | map_.material(frame_.tree, voxel >> 6, voxel & 63U);
     }
     return static_cast<uint8_t>(seen);
   }
-
   [[gnu::always_inline]] const FlatInk& ink_of_face(uint8_t material, unsigned face, unsigned lights) {
     const uint32_t key = uint32_t{material} << 5 | face << 2 | lights;
     FlatInk& ink = inks_[(key ^ key >> 5) % kInks<kSet>];
@@ -497,124 +479,8 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
     }
   }
 
-  [[gnu::noinline]] void make_ink(const Color& color, FlatInk* ink) const {
-    if (storing_ == Storing::kAny) {
-      for (int i = 0; i < 3; ++i) {
-        ink->rest[i] = static_cast<uint16_t>(color.c[i] < kMaxChannel ? color.c[i] : kMaxChannel);
-      }
-      return;
-    }
-    uint32_t channel[3];
-    expose(color, &channel);
-    ink->low = 0;
-    if (storing_ == Storing::kBytes) {
-      const Rgb8 stored = in_8_bits(channel);
-      ink->low = band_.format == PixelFormat::kGray8
-                     ? uint32_t{gray_of(stored)}
-                     : uint32_t{stored.r} | uint32_t{stored.g} << 8 | uint32_t{stored.b} << 16;
-      return;
-    }
-    if (storing_ == Storing::kGrays) {
-      channel[0] = (77 * channel[0] + 150 * channel[1] + 29 * channel[2]) >> 8;
-    }
-    for (int i = 0; i < (storing_ == Storing::kGrays ? 1 : 3); ++i) {
-      const uint32_t levels = storing_ == Storing::kHalfwords       ? (i == 1 ? 63 : 31)
-                              : band_.format == PixelFormat::kGray4 ? 15
-                                                                    : 1;
-      const uint32_t value = channel[i] * levels;
-      ink->low |= value / kWhite << (storing_ == Storing::kGrays ? 0 : shift_[i]);
-      ink->rest[i] = static_cast<uint16_t>(value % kWhite);
-    }
-  }
-
-  // The pixel of a halfword where the next step is stored from `limit` on.
-  [[gnu::always_inline]] uint32_t halfword(const FlatInk& ink, uint32_t limit) const {
-    return ink.low + (ink.rest[0] >= limit ? 1U << shift_[0] : 0U) + (ink.rest[1] >= limit ? 1U << 5 : 0U) +
-           (ink.rest[2] >= limit ? 1U << shift_[2] : 0U);
-  }
-
-  [[gnu::always_inline]] void store(int32_t x, int32_t y, const FlatInk& ink) {
-    uint8_t* line = line_of(y);
-    const uint32_t limit = frame_.options.dither ? kDither.at[(y & 7) << 3 | (x & 7)] : kNoDither;
-    if (storing_ == Storing::kGrays) {
-      const uint32_t step = ink.low + (ink.rest[0] >= limit ? 1U : 0U);
-      if (band_.format == PixelFormat::kGray4) {
-        line[x >> 1] = static_cast<uint8_t>(line[x >> 1] | step << ((x & 1) != 0 ? 0 : 4));
-      } else {
-        line[x >> 3] = static_cast<uint8_t>(line[x >> 3] | step << (7 - (x & 7)));
-      }
-      return;
-    }
-    store_color(line, x, y, limit, ink);
-  }
-
-  // Stores an ink in the pixels of a tile that a mask selects.
-  [[gnu::noinline]] void store(const TilePlace& place, const Pixels& pixels, const FlatInk& ink) {
-    if (storing_ == Storing::kBytes) {
-      const TilePlace bytes{line_of(place.y), stride_, place.x, place.y, place.across, place.down};
-      if (band_.format == PixelFormat::kRgb888) {
-        store_triples(bytes, pixels, ink.low);
-      } else {
-        store_whole<uint8_t>(bytes, pixels, ink.low);
-      }
-      return;
-    }
-    if (!is_whole_) {
-      for_each(place, pixels, [&](int32_t x, int32_t y, uint32_t) { store(x, y, ink); });
-      return;
-    }
-    const uint32_t low = ink.low;
-    const uint32_t red = ink.rest[0];
-    const uint32_t green = ink.rest[1];
-    const uint32_t blue = ink.rest[2];
-    const uint32_t one_red = 1U << shift_[0];
-    const uint32_t one_blue = 1U << shift_[2];
-    const bool swaps = is_big_endian() != bits::kBigEndian;
-    const TilePlace halves{line_of(place.y), stride_, place.x, place.y, place.across, place.down};
-    const uint8_t* row_end = nullptr;
-    const uint16_t* limits = nullptr;
-    store_runs<sizeof(Half)>(
-        halves, pixels,
-        [&](const uint8_t* end, int row) {
-          row_end = end;
-          limits = kDither.at + ((place.y + row) & 7) * 8;
-        },
-        [](const uint8_t*) { return false; }, [](uint8_t*) {},
-        [&](uint8_t* to) {
-          // A row ends at a multiple of eight columns.
-          const uint32_t limit = limits[static_cast<size_t>(to - row_end) / 2 & 7];
-          uint32_t value = low;
-          value += red >= limit ? one_red : 0;
-          value += green >= limit ? 1U << 5 : 0;
-          value += blue >= limit ? one_blue : 0;
-          *static_cast<Half*>(static_cast<void*>(to)) =
-              static_cast<Half>(swaps ? value >> 8 | value << 8 : value);
-        });
-  }
-
-  bool is_big_endian() const { return is_format<PixelFormat::kRgb565Be>(band_.format); }
-
-  // Not inlined, since pixels of these formats are seldom drawn one by one.
-  [[gnu::noinline]] void store_color(uint8_t* line, int32_t x, int32_t y, uint32_t limit,
-                                     const FlatInk& ink) const {
-    if (storing_ == Storing::kHalfwords) {
-      const uint32_t value = halfword(ink, limit);
-      line[2 * x] = static_cast<uint8_t>(is_big_endian() ? value >> 8 : value);
-      line[2 * x + 1] = static_cast<uint8_t>(is_big_endian() ? value : value >> 8);
-    } else if (storing_ == Storing::kBytes) {
-      store_ink(line, x, y, band_.format, ink.low);
-    } else {
-      lit::store(frame_, band_, line, x, y, Color{{ink.rest[0], ink.rest[1], ink.rest[2]}});
-    }
-  }
-  const Frame& frame_;
   const BrickMap& map_;
-  const Band& band_;
-  size_t stride_;
-  Storing storing_;
-  bool counts_;       // counts the rays of faces that are drawn as a whole, too
-  bool is_whole_;     // halfwords may be stored as such
-  uint8_t shift_[3];  // of a halfword's channels
+  bool counts_;  // counts the rays of faces that are drawn as a whole, too
   uint8_t lights_of_[6];
   // A camera that draws_fast has less than 2^23 pixels, each of at most 32 rays of occlusion, or of 100 to lights.
   uint32_t hits_ = 0;
@@ -625,7 +491,7 @@ class FlatSink : PointLighting<kSet, kIsDeep, kSecondary>,
   FlatInk sky_;
   static constexpr bool kFindsFaces = !(kSecondary && kIsWet<kSet>);
   FlatInk inks_[kFindsFaces ? kInks<kSet> : 1];
-  Seen seen_[kFindsFaces ? kFaces<kSet> : 1];  // material, from bit 8 on the face
+  Seen seen_[kFindsFaces ? kVoxels<kSet> : 1];
   ShadowCourse<kDeep> suns_[kHasShadows ? kMaxFlatSuns : 1];
   // Of the face that is being drawn.
   Blockers<kDeep> blockers_[kHasShadows && kSlots != 0 && kFindsFaces ? kMaxFlatSuns : 1];

@@ -19,7 +19,7 @@ template <EffectSet kSet, class Sink, bool = kMirrors<kSet>>
 class MirrorRays {};
 
 // Part of a Sink that has point_color(point, surface) without mirrors, beyond(direction) where a ray leaves the world, and
-// material_of(voxel, side).
+// material_of(voxel).
 template <EffectSet kSet, class Sink>
 class MirrorRays<kSet, Sink, true> {
  public:
@@ -88,7 +88,7 @@ class MirrorRays<kSet, Sink, true> {
         return true;
       }
       ++hits_;
-      const Surface surface = surface_of(frame, sink().material_of(voxel, side_of(point)));
+      const Surface surface = surface_of(frame, sink().material_of(voxel));
       const bool goes_on = is_mirror(surface) && bounces < frame.scene.bounces;
       Weight mirrored;
       if (goes_on) {

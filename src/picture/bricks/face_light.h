@@ -11,19 +11,21 @@
 #include "beam.h"
 #include "exposed.h"
 #include "shadow.h"
+#include "sweep.h"
 
 namespace thimble::bricks {
 namespace {
 
-enum class FaceLight : uint8_t { kLit, kDark, kMixed };
+enum class FaceLight : uint8_t { kMixed, kLit, kDark };
 
 // The voxels that may hide a light from points of a face, by a, b and c, mirrored. Where there are more than kMost, or
 // a component of the light's direction is 0, each point traces its own ray.
 template <bool kDeep>
 struct Blockers {
-  static constexpr uint32_t kMost = 12;
+  static constexpr uint32_t kMost = kSlots == 0 ? 1 : 12;  // none are looked for where tiles are not swept
   using Cell = Choose<kDeep, uint16_t, uint8_t>;
   uint32_t count;
+  uint32_t corner[3];  // of the face, from which its points lie, in 1/256 voxel
   Cell cell[kMost][3];
 };
 
@@ -41,6 +43,7 @@ class FaceBeam {
       const int32_t own = face.voxel[axis];
       const int32_t cell = course.goes_down(axis) ? course.cells[axis] - 1 - own : own;
       const int32_t on = axis == face.axis ? 1 : 0;
+      blockers->corner[k] = static_cast<uint32_t>(cell + (on != 0 || course.goes_down(axis) ? 1 : 0)) << 8;
       if (k == 2) {
         slab_ = cell + on;
         begins_ = on == 0;
@@ -121,8 +124,8 @@ class FaceBeam {
     // The windows, counted from the first brick: bits of a, and rows of b.
     uint32_t across[4];
     uint32_t down[4];
-    uint32_t all = 0;      // bit i: all rays cross slab i from plane to plane, within the box
-    uint32_t met[4] = {};  // how many voxels of each window are solid
+    // Voxels of each window that are not known to be solid; some more where rays may pass beside it.
+    uint32_t open[4];
     const int32_t first = slab_ & 3;
     const int32_t base[2] = {from_[0] * (4 * kOne), from_[1] * (4 * kOne)};
     const int32_t last_a = last_[0] - 4 * from_[0];
@@ -134,17 +137,20 @@ class FaceBeam {
     for (int32_t i = first; i < 4; ++i) {
       const int32_t end_a = high_a >> 16;
       const int32_t end_b = high_b >> 16;
-      across[i] = (2U << end_a) - (1U << (low_a >> 16));
-      down[i] = (2U << end_b) - (1U << (low_b >> 16));
+      const int32_t from_a = low_a >> 16;
+      const int32_t from_b = low_b >> 16;
+      across[i] = (2U << end_a) - (1U << from_a);
+      down[i] = (2U << end_b) - (1U << from_b);
+      open[i] = begins_ || end_a > last_a || end_b > last_b
+                    ? 1U << 16
+                    : static_cast<uint32_t>((end_a - from_a + 1) * (end_b - from_b + 1));
       high_a += high_slope_[0];
       high_b += high_slope_[1];
-      if (begins_) {
-        begins_ = false;  // rays that begin within the slab do not cross all of it
-        continue;
+      if (!begins_) {  // rays that begin within the slab do not cross all of it
+        low_a += low_slope_[0];
+        low_b += low_slope_[1];
       }
-      low_a += low_slope_[0];
-      low_b += low_slope_[1];
-      all |= end_a <= last_a && end_b <= last_b ? 1U << i : 0U;
+      begins_ = false;
     }
     low_[0] = low_a + base[0];
     low_[1] = low_b + base[1];
@@ -172,16 +178,13 @@ class FaceBeam {
           const uint32_t solid = slabs[i] & window;
           if (solid != 0) {
             some_ = true;
-            met[i] += bits::popcount32(solid);
+            open[i] -= bits::popcount32(solid);  // NOLINT
+            if (open[i] == 0) {
+              return true;
+            }
             note(solid, 4 * a, 4 * b, layer + i);
           }
         }
-      }
-    }
-    for (int32_t i = first; i < 4; ++i) {
-      if (met[i] != 0 && (all >> i & 1U) != 0 &&
-          met[i] == bits::popcount32(across[i]) * bits::popcount32(down[i])) {  // NOLINT
-        return true;
       }
     }
     return false;
@@ -230,9 +233,8 @@ bool is_blocked(const ShadowCourse<kDeep>& course, const Blockers<kDeep>& blocke
   uint32_t d[3];
   for (int k = 0; k < 3; ++k) {
     const int axis = course.axes[k];
-    const int32_t on = axis == point.axis && point.faces_up ? 256 : point.within[axis];
-    const int32_t own = point.voxel[axis] * 256 + on;
-    at[k] = static_cast<uint32_t>(course.goes_down(axis) ? course.cells[axis] * 256 - own : own);
+    const auto within = static_cast<uint32_t>(point.within[axis]);
+    at[k] = blockers.corner[k] + (course.goes_down(axis) ? 0 - within : within);
     d[k] = course.d[axis];
   }
   // The windows keep `ahead` below 2^27, so the bits that its products lose above bit 31 do not matter.

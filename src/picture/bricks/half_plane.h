@@ -21,6 +21,7 @@ constexpr int kTileWords = kTileAcrossPx * kTileDownPx / 32;
 
 // The pixels of a tile.
 struct Pixels {
+  uint32_t columns() const { return word[0] | word[1] | word[2] | word[3]; }
   uint32_t word[kTileWords];
 };
 

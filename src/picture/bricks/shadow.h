@@ -30,6 +30,7 @@ struct ShadowCourse : Choose<kIsDeep, SunEnds, NoSunPlane> {
   uint32_t d[3];       // the direction, mirrored
   int32_t cells[3];    // sides of the box
   uint32_t near_left;  // counts of bricks for a ray in the box's lowest brick
+  uint32_t both_left;  // counts of a brick from both sides, added
   int32_t near_place;  // offset in the directory of the corner brick that all rays come from
   // d / d[c], rounded down and up, in 1/2^16.
   int32_t low_slope[3];
@@ -52,6 +53,7 @@ struct ShadowCourse : Choose<kIsDeep, SunEnds, NoSunPlane> {
     c = 0;
     mirrored = 0;
     near_left = 0;
+    both_left = 0;
     near_place = 0;
     uint32_t all = 0;
     int32_t step = 2;
@@ -70,6 +72,7 @@ struct ShadowCourse : Choose<kIsDeep, SunEnds, NoSunPlane> {
       cells[i] = 4 * side;
       next_brick[i] = down ? -step : step;
       near_left += static_cast<uint32_t>(down ? 511 : 512 - side) << 10 * i;
+      both_left += static_cast<uint32_t>(1023 - side) << 10 * i;
       near_place += down ? (side - 1) * step : 0;
       step *= side;
     }
@@ -143,7 +146,7 @@ template <int kC, class OneCourse>
 
 // Whether a ray meets something solid.
 template <bool kDeep>
-[[gnu::noinline]] bool is_shadowed(const ShadowCourse<kDeep>& course, ShadowStart& start) {
+bool is_shadowed(const ShadowCourse<kDeep>& course, ShadowStart& start) {
   if constexpr (kDeep) {
     int32_t at[3];
     for (int k = 0; k < 3; ++k) {
@@ -206,17 +209,16 @@ template <bool kDeep, class Sight>
 bool is_shadowed(const ShadowCourse<kDeep>& light, const Sight& course, const FacePoint& point) {
   const auto& landing = course.landing;
   ShadowStart start{landing.left, landing.cell, landing.voxel & 63U, {}};
-  const unsigned differ = light.mirrored ^ course.mirrored;
+  const uint32_t differ = light.mirrored ^ course.mirrored;
+  const uint32_t fields = ((differ << 18 | differ << 9 | differ) & 0x100401U) * 1023;  // of counts of bricks
+  start.left += (light.both_left & fields) - 2 * (landing.left & fields);
 #pragma GCC unroll(kDivides ? 3 : 1)
   for (int i = 0; i < 3; ++i) {
-    if ((differ >> i & 1U) != 0) {
-      const uint32_t both = 1023 - static_cast<uint32_t>(light.cells[i] >> 2);
-      start.left += (both - 2 * count_of(landing.left, i)) << 10 * i;
-    }
     const auto in = static_cast<uint32_t>(point.within[i]);
-    start.within[i] = light.goes_down(i) && in != 0 ? 256 - in : in;
-    // Goes to the next voxel: across the face, or where a ray that goes down starts on a plane.
-    if (i == point.axis || (in == 0 && light.goes_down(i))) {
+    if (in != 0) {
+      start.within[i] = light.goes_down(i) ? 256 - in : in;
+    } else if (i == point.axis || light.goes_down(i)) {
+      // Goes to the next voxel: across the face, or where a ray that goes down starts on a plane.
       const uint32_t field = 3U << 2 * i;
       if ((start.place & field) == (light.goes_down(i) ? 0 : field)) {
         start.place ^= field;

@@ -85,14 +85,22 @@ void find_place(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FaceP
   const int32_t way[3] = {way_to(course, 0), way_to(course, 1), way_to(course, 2)};
   find_within(course.landing.axis, course, way, d, point);
 }
+// Finds the face on which a ray has landed; not where on it.
 template <bool kDeep>
-void find_point(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FacePoint* point) {
+void find_face(const SightCourse<kDeep>& course, FacePoint* face) {
+  const Landing& landing = course.landing;
   for (int i = 0; i < 3; ++i) {
     const int32_t side = course.frame->side[i];
-    const int32_t brick = static_cast<int32_t>(count_of(course.landing.left, i)) - (512 - side);
-    point->voxel[i] = 4 * (course.flip[i] != 0 ? side - 1 - brick : brick) +
-                      static_cast<int32_t>(course.landing.voxel >> 2 * i & 3U);
+    const int32_t brick = static_cast<int32_t>(count_of(landing.left, i)) - (512 - side);
+    face->voxel[i] = 4 * (course.flip[i] != 0 ? side - 1 - brick : brick) +
+                     static_cast<int32_t>(landing.voxel >> 2 * i & 3U);
   }
+  face->axis = landing.axis;
+  face->faces_up = course.flip[landing.axis] != 0;
+}
+template <bool kDeep>
+void find_point(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FacePoint* point) {
+  find_face(course, point);
   find_place(course, d, point);
 }
 
@@ -145,11 +153,8 @@ struct SeenPixels {
     return in_world(course, turned);
   }
   static Vec3<uint32_t> in_world(const Course& course, const uint32_t (&turned)[3]) {
-    Vec3<uint32_t> d{};
-    for (int k = 0; k < 3; ++k) {
-      d[course.axis[k]] = turned[k];
-    }
-    return d;
+    const int c = course.c;
+    return {turned[c == 0 ? 2 : 0], turned[c == 0 ? 0 : 3 - c], turned[c == 2 ? 2 : 1]};
   }
 };
 

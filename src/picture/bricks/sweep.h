@@ -103,7 +103,7 @@ struct Sweep {
     return (left.word[y >> 1] >> x & 1U) != 0;
   }
   bool done() const {
-    return (left.word[0] | left.word[1] | left.word[2] | left.word[3]) == 0;
+    return left.columns() == 0;
   }
 };
 
