@@ -123,7 +123,7 @@ TEST_CASE("wide: less and less memory for lit pictures -> fewer threads, then no
           Pixels drawn(expected.size());
           Band part = band;
           part.pixels = Bytes(drawn.data(), drawn.size());
-          CHECK(streams->render(effects, camera, shading, lit, part, nullptr) == Status::kOk);
+          CHECK(streams->render({effects, camera, shading, lit}, part, nullptr) == Status::kOk);
           return drawn;
         });
   }

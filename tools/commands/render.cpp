@@ -33,10 +33,6 @@ constexpr std::int32_t kMostEdgeRows = 64;
 // Samples of a lit picture that are drawn at once, about: the threads of a stream wait for one another at its end.
 constexpr std::int32_t kMostSamplesAtOnce = 1 << 17;
 
-std::int32_t plain_band_rows(const RenderCommand& command, PixelFormat format) {
-  return band_rows(command, row_bytes(format, command.view.width_px), kMostBandRows);
-}
-
 // What drawing or tracing answered.
 void check_camera(const RenderCommand& command, Status status) {
   fail_if(status != Status::kOk, "--engine ", command.engine.name, " does not take the rays of this camera");
@@ -131,23 +127,17 @@ Light light_of(const RenderCommand& command, const SceneSource& source) {
 BuildOptions drawing_bytes(const RenderCommand& command, const SceneSource& source, const Light& light,
                            PixelFormat format) {
   BuildOptions bytes;
+  const Quality& quality = command.quality;
   const std::int32_t width = command.view.width_px;
-  const bool plain = command.quality.plain();
-  const std::uint64_t quality_bytes = quality_band_bytes(command.quality, format, width);
-  bytes.band_bytes = plain ? band_bytes(format, width, plain_band_rows(command, format)) : quality_bytes;
-  bytes.least_band_bytes = plain ? band_bytes(format, width, 1) : quality_bytes;
-  if (command.quality.at_edges) {
-    const int threads = light.effects == Effect::kNone ? 1 : command.engine.threads;
-    const std::uint64_t row = edge_band_bytes(format, width, 1, 1);
-    bytes.band_bytes = edge_band_bytes(
-        format, width, band_rows(command, static_cast<std::size_t>(row), kMostEdgeRows), threads);
-    bytes.least_band_bytes = edge_band_bytes(format, width, 1, threads);
-  }
-  if (light.effects != Effect::kNone && command.quality.samples() > 1 && !command.quality.at_edges) {
-    const std::int32_t most = std::max(1, kMostSamplesAtOnce / (width * command.quality.samples()));
-    bytes.band_bytes *=
-        static_cast<std::uint64_t>(band_rows(command, static_cast<std::size_t>(quality_bytes), most));
-  }
+  const bool is_lit = light.effects != Effect::kNone;
+  const int threads = quality.at_edges && is_lit ? command.engine.threads : 1;
+  const std::int32_t most = quality.plain()    ? kMostBandRows
+                            : quality.at_edges ? kMostEdgeRows
+                            : is_lit           ? std::max(1, kMostSamplesAtOnce / (width * quality.samples()))
+                                               : 1;
+  const auto row = static_cast<std::size_t>(quality_band_bytes(quality, format, width));
+  bytes.band_bytes = quality_band_bytes(quality, format, width, band_rows(command, row, most), threads);
+  bytes.least_band_bytes = quality_band_bytes(quality, format, width, 1, threads);
   const bool in_flash = command.scene.board != nullptr && source.baked() != nullptr;
   bytes.render_state_bytes =
       in_flash ? lit_render_bytes(light.effects) : lit_state_bytes(light.scene(), light.effects);
@@ -193,20 +183,25 @@ Status paint_with(const BandPainter& painter, const Subject& subject, const Prog
   return paint(painter, subject.camera().width_px(), rows, subject.format, progress, painting);
 }
 
+BandPainter painter_of(const Subject& subject, const Sampler& sampler, Bytes work) {
+  const Quality& quality = subject.command.quality;
+  return quality.at_edges ? edge_painter(sampler, subject.camera(), subject.fine, subject.format, work)
+                          : square_painter(sampler, subject.fine, quality.across, subject.format, work);
+}
+
 // Throws InputError for a camera whose rays it does not take.
 Painting paint_without_effects(const Subject& subject, const QualityFrame& frame, GpuEngine* gpu,
                                const Progress& progress) {
   const RenderCommand& command = subject.command;
   const EngineOptions& engine = command.engine;
-  const TraceOptions options = engine.trace_options();
+  const BandPainter by_rays =
+      painter_of(subject, ray_sampler(frame, engine.trace_options()), subject.built.band());
   Painting painting;
   const auto paint_or_fail = [&](const BandPainter& painter) {
     check_camera(command, paint_with(painter, subject, progress, &painting));
   };
   if (!command.quality.plain()) {
-    paint_or_fail(command.quality.at_edges ? ray_edge_painter(subject.built, frame, subject.camera(),
-                                                              subject.fine, subject.format, options)
-                                           : quality_painter(subject.built, frame, options));
+    paint_or_fail(by_rays);
     return painting;
   }
   if (gpu != nullptr) {
@@ -226,7 +221,7 @@ Painting paint_without_effects(const Subject& subject, const QualityFrame& frame
     check_camera(command, status == Status::kTooFine && engine.name == "auto" ? Status::kOk : status);
   }
   if (status != Status::kOk) {
-    paint_or_fail(ray_painter(subject.built, subject.camera(), subject.shading, subject.format, options));
+    paint_or_fail(by_rays);
   }
   painting.preparation_seconds = wide != nullptr ? wide->seconds() : 0;
   return painting;
@@ -236,21 +231,19 @@ Painting paint_lit(const Subject& subject, const Light& light, GpuEngine* gpu, c
   LitPicture picture;
   picture.effects = light.effects;
   picture.scene = light.scene();
-  picture.across = subject.command.quality.across;
   const EngineOptions& engine = subject.command.engine;
-  const bool at_edges = subject.command.quality.at_edges;
   // With --board nothing of the host's stands in the board's RAM.
   const auto streams = subject.command.scene.board == nullptr && gpu == nullptr
                            ? engine.lit_streams(&subject.built, picture.effects, picture.scene)
                            : nullptr;
   picture.streams = gpu != nullptr ? gpu : streams.get();
   picture.threads = engine.lit_threads(&subject.built, picture.effects);
+  // Streams write a pixel once, where it belongs.
+  const bool needs_work = picture.streams == nullptr || subject.command.quality.across != 1;
+  const Sampler sampler = lit_sampler(subject.built, subject.shading, picture);
   Painting painting;
-  const auto painter =
-      at_edges ? lit_edge_painter(subject.built, subject.camera(), subject.fine, subject.shading,
-                                  subject.format, picture)
-               : lit_painter(subject.built, subject.fine, subject.shading, subject.format, picture);
-  fail_if(paint_with(painter, subject, progress, &painting) != Status::kOk,
+  fail_if(paint_with(painter_of(subject, sampler, needs_work ? subject.built.band() : Bytes()), subject,
+                     progress, &painting) != Status::kOk,
           "its lights or surfaces are beyond the limits of a lit picture");
   painting.preparation_seconds = picture.streams != nullptr ? picture.streams->seconds() : 0;
   return painting;
@@ -262,9 +255,10 @@ Image inked(const Subject& subject, const Image& tones, PixelFormat format, cons
   const std::int32_t height = tones.height_px;
   const Shading shading = scene_shading(ShadeMode::kDepth, {}, subject.camera(), subject.built.bounds());
   Painting depths;
-  const TraceOptions options = subject.command.engine.trace_options();
+  const QualityFrame frame(subject.built, {}, subject.camera(), subject.camera(), shading, {});
   check_camera(subject.command,
-               paint(ray_painter(subject.built, subject.camera(), shading, PixelFormat::kGray8, options),
+               paint(square_painter(ray_sampler(frame, subject.command.engine.trace_options()),
+                                    subject.camera(), 1, PixelFormat::kGray8, subject.built.band()),
                      width, {0, height}, PixelFormat::kGray8, progress, &depths));
   std::vector<std::uint8_t> memory(ink_bytes(width, height));
   InkPicture ink;

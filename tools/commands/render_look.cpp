@@ -52,10 +52,13 @@ class LookStudio {
     if (is_lit && streams_ == nullptr) {
       streams_ = command_.engine.lit_streams(&built_, look_.effects, look_.lit_scene());
     }
+    if (wishes_.across != 0) {
+      (void)finer(command_.view, look_.across);  // its error names too large a picture
+    }
     canvas_ = {&built_.compact(),
                &look_,
                &framing_,
-               fine_camera(),
+               fine_camera(framing_, &look_),
                work(),
                is_lit ? command_.engine.lit_threads(&built_, look_.effects) : command_.engine.threads,
                command_.output.rows.value_or(RowRange{}),
@@ -124,27 +127,6 @@ class LookStudio {
       whole_ = built_.arena().take(kStarBytes * pixels);
     }
     return whole_.empty() ? built_.band() : whole_;
-  }
-
-  Camera fine_camera() {
-    if (wishes_.across != 0) {
-      (void)finer(command_.view, look_.across);  // its error names too large a picture
-    }
-    Camera camera;
-    const auto set = [&] {
-      const std::int32_t across = look_.across;
-      return command_.view.width_px * across <= kMaxPicturePx &&
-                     command_.view.height_px * across <= kMaxPicturePx
-                 ? set_camera(framing_.kept, command_.view.width_px * across,
-                              command_.view.height_px * across, built_.level(), &camera)
-                 : Status::kOutOfRange;
-    };
-    if (set() != Status::kOk) {
-      look_.across = 1;  // such a camera has no rays between the pixels'
-      look_.at_edges = false;
-      camera = framing_.camera;
-    }
-    return camera;
   }
 
   const RenderCommand& command_;

@@ -309,10 +309,12 @@ std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, st
   if (name != "wide" && (name != "auto" || built->draws_from_file())) {
     return nullptr;
   }
-  auto renderer = WideRenderer::make(built, width_px, height_px, threads);
-  fail_if(renderer == nullptr && name == "wide", built->structure() == StructureKind::kCompact
-                                                     ? "no room for --engine wide within --memory"
-                                                     : "--engine wide draws --structure compact only");
+  const bool is_compact = built->structure() == StructureKind::kCompact;
+  auto renderer = is_compact
+                      ? WideRenderer::make(built->compact(), &built->arena(), width_px, height_px, threads)
+                      : nullptr;
+  fail_if(renderer == nullptr && name == "wide", is_compact ? "no room for --engine wide within --memory"
+                                                            : "--engine wide draws --structure compact only");
   return renderer;
 }
 

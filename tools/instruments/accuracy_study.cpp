@@ -8,6 +8,7 @@
 #include "output/hit_rows.h"
 #include "output/units.h"
 #include "readers/source.h"
+#include "scene/painter.h"
 #include "thimble/picture/anytime.h"
 
 namespace thimble::tools {
@@ -201,6 +202,7 @@ class LightStudio {
 // A setting ready to be drawn.
 struct Prepared {
   Camera camera;
+  Camera fine;
   QualityFrame frame;
 };
 
@@ -223,7 +225,7 @@ class AccuracyStudio {
     const Camera camera = frame_scene(view, source_, built_.level(), built_.bounds()).camera;
     const Camera fine =
         frame_scene(finer(view, setting.quality.across), source_, built_.level(), built_.bounds()).camera;
-    return {camera, QualityFrame(built_, setting.quality, camera, fine, shading_, colors_)};
+    return {camera, fine, QualityFrame(built_, setting.quality, camera, fine, shading_, colors_)};
   }
 
   LightStudio light(const EffectChoice& choice) const { return {source_, built_, choice, camera_, shading_}; }
@@ -247,17 +249,21 @@ class AccuracyStudio {
     pixels->resize(picture_bytes());
     work_.resize(
         static_cast<std::size_t>(quality_band_bytes(quality, PixelFormat::kRgb888, camera_.width_px())));
+    const BandPainter painter = square_painter(ray_sampler(prepared.frame, options()), prepared.fine,
+                                               quality.across, PixelFormat::kRgb888, {});
+    PaintCounts painted;
     const FrameWatch watch;
     for (std::int32_t y = 0; y < camera_.height_px(); ++y) {
       // A plain picture needs no copy: its rows are drawn where they belong.
       std::uint8_t* target = pixels->data() + row * static_cast<std::size_t>(y);
       const Bytes work = quality.across == 1 ? Bytes(target, row) : Bytes(work_.data(), work_.size());
-      fail_if(prepared.frame.draw_row(y, PixelFormat::kRgb888, work, counts, options()) != Status::kOk,
+      fail_if(painter.draw({work, PixelFormat::kRgb888, 0, y, 1}, &painted) != Status::kOk,
               "internal error: a row cannot be drawn");
       if (quality.across != 1) {
         std::copy_n(work_.data(), row, target);
       }
     }
+    *counts = painted.all;
     return watch.ms();
   }
 

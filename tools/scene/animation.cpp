@@ -182,11 +182,9 @@ class GifColors {
  private:
   template <class Visit>
   static void for_pixels(const Image& image, const Visit& visit) {
+    const std::uint8_t* rgb = image.pixels.data();
     for (std::int32_t y = 0; y < image.height_px; ++y) {
-      for (std::int32_t x = 0; x < image.width_px; ++x) {
-        const std::uint8_t* rgb = image.pixels.data() + 3 * (static_cast<std::size_t>(y) *
-                                                                 static_cast<std::size_t>(image.width_px) +
-                                                             static_cast<std::size_t>(x));
+      for (std::int32_t x = 0; x < image.width_px; ++x, rgb += 3) {
         const int nudge = static_cast<int>(bayer_rank(x, y)) / 8 - 4;
         const auto nudged = [nudge](int value) {
           return static_cast<std::uint8_t>(std::clamp(value + nudge, 0, 255));

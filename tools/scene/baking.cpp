@@ -108,18 +108,15 @@ class Assembly {
   /// Into `memory`, in which the tree may lie behind kFrontBytes, where there is room.
   void write(HostMemory memory, Baked* result) const {
     const std::size_t size = bytes();
-    if (size == SIZE_MAX) {
-      throw InputError("too large to be baked: a baked scene holds less than 4 GiB");
-    }
+    fail_if(size == SIZE_MAX, "too large to be baked: a baked scene holds less than 4 GiB");
     result->effects = effects_;
     result->memory = memory.bytes().size < size ? HostMemory(size) : std::move(memory);
     const bool is_made =
         BakedScene::make(parts_, result->memory.bytes().subspan(0, size), nullptr) == Status::kOk;
     result->memory.keep(size);
     result->bytes = {result->memory.bytes().data, size};
-    if (!is_made || BakedScene::open({result->bytes.data(), size}, &result->scene) != Status::kOk) {
-      throw InputError("internal error: the scene cannot be baked");
-    }
+    fail_if(!is_made || BakedScene::open({result->bytes.data(), size}, &result->scene) != Status::kOk,
+            "internal error: the scene cannot be baked");
   }
 
  private:
@@ -181,14 +178,12 @@ class Assembly {
 class Coarsener {
  public:
   explicit Coarsener(const CompactTree& tree) : memory_(HostMemory::largest()) {
-    if (Octree::make(tree.level(), memory_.bytes(), &octree_) != Status::kOk) {
-      throw InputError("internal error: no pool to coarsen in");
-    }
+    fail_if(Octree::make(tree.level(), memory_.bytes(), &octree_) != Status::kOk,
+            "internal error: no pool to coarsen in");
     // In Morton order, so that the passes over the pool go through memory from front to back.
     for_each_block(tree, [&](const Vec3i& at, int level, std::uint8_t material) {
-      if (octree_.insert_block(at, level, material) != Status::kOk) {
-        throw InputError("the scene does not fit into this machine's memory");
-      }
+      fail_if(octree_.insert_block(at, level, material) != Status::kOk,
+              "the scene does not fit into this machine's memory");
     });
     save();
   }
@@ -208,19 +203,17 @@ class Coarsener {
   }
   void coarsen_at(int step) { octree_.coarsen_at(step); }
   void coarsen_to(std::uint64_t nodes) {
-    if (octree_.coarsen_to(static_cast<std::size_t>(nodes)) != Status::kOk) {
-      throw InputError("internal error: the tree does not coarsen");
-    }
+    fail_if(octree_.coarsen_to(static_cast<std::size_t>(nodes)) != Status::kOk,
+            "internal error: the tree does not coarsen");
   }
   /// The pool as a compact tree; 0 bytes where it is too large for one.
   std::size_t tree_bytes() const { return compact_bytes(compact_shape(octree_)); }
   std::vector<std::uint8_t> tree() const {
     std::vector<std::uint8_t> bytes(tree_bytes());
     std::size_t written = 0;
-    if (bytes.empty() ||
-        CompactTree::make(octree_, {bytes.data(), bytes.size()}, nullptr, &written) != Status::kOk) {
-      throw InputError("internal error: the coarsened tree cannot be written");
-    }
+    fail_if(bytes.empty() ||
+                CompactTree::make(octree_, {bytes.data(), bytes.size()}, nullptr, &written) != Status::kOk,
+            "internal error: the coarsened tree cannot be written");
     return bytes;
   }
 
@@ -307,11 +300,14 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
   Assembly whole(source, options, exact);
   result.work_bytes = built.high_water_bytes();
   result.fits = whole.bytes() <= limit;
-  if (result.fits || !options.coarsen) {
+  const auto write = [&](Assembly* assembly, const CompactTree& tree, HostMemory memory) {
     if (options.brick_map) {
-      whole.add_brick_map(exact, options.most_map_level, limit);
+      assembly->add_brick_map(tree, options.most_map_level, limit);
     }
-    whole.write(built.take_memory(), &result);
+    assembly->write(std::move(memory), &result);
+  };
+  if (result.fits || !options.coarsen) {
+    write(&whole, exact, built.take_memory());
   } else {
     // What stands around the tree takes the same room whatever the tree, or less: merging can only leave
     // materials unused.
@@ -321,15 +317,11 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
         coarsened_tree(exact, limit > around ? limit - around : 0, &pool_bytes, progress);
     result.work_bytes += pool_bytes;
     CompactTree tree;
-    if (CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk) {
-      throw InputError("internal error: the coarsened tree does not open");
-    }
+    fail_if(CompactTree::open({bytes.data(), bytes.size()}, &tree) != Status::kOk,
+            "internal error: the coarsened tree does not open");
     Assembly coarse(source, options, tree);
     result.fits = coarse.bytes() <= limit;
-    if (options.brick_map) {
-      coarse.add_brick_map(tree, options.most_map_level, limit);
-    }
-    coarse.write({}, &result);
+    write(&coarse, tree, {});
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -29,9 +29,7 @@ platform::SceneMark mark_of(const platform::Program& program) {
       }
     }
   }
-  if (found != 1) {
-    throw InputError("is no program that takes a scene behind it");
-  }
+  fail_if(found != 1, "is no program that takes a scene behind it");
   return mark;
 }
 
@@ -49,17 +47,15 @@ BoardImage open_image(std::string_view elf, const platform::BoardFacts& board) {
     throw InputError(error.what());
   }
   image.mark = mark_of(image.program);
-  if (std::string_view(image.mark.board, strnlen(image.mark.board, sizeof image.mark.board)) != board.name) {
-    throw InputError("is an image for another board");
-  }
-  if (image.mark.baked_version != kBakedVersion) {
-    throw InputError("takes scenes of another version; make images builds it anew");
-  }
-  if (image.mark.place < image.program.end() || image.mark.end < image.mark.place ||
-      image.mark.place % 8 != 0 ||
-      image.mark.end - std::uint64_t{image.program.segments.front().address} > kMostFlashBytes) {
-    throw InputError("has no place for a scene behind it");
-  }
+  fail_if(
+      std::string_view(image.mark.board, strnlen(image.mark.board, sizeof image.mark.board)) != board.name,
+      "is an image for another board");
+  fail_if(image.mark.baked_version != kBakedVersion,
+          "takes scenes of another version; make images builds it anew");
+  fail_if(image.mark.place < image.program.end() || image.mark.end < image.mark.place ||
+              image.mark.place % 8 != 0 ||
+              image.mark.end - std::uint64_t{image.program.segments.front().address} > kMostFlashBytes,
+          "has no place for a scene behind it");
   return image;
 }
 

@@ -28,31 +28,6 @@ Vec3i extent_of(const SceneSource& source) {
   return {extent[0], extent[1], extent[2]};
 }
 
-// How many different voxels `source` streams. For reporting only, in memory beside the arena: the voxels are
-// counted in as many turns as keep a list of them below 256 MiB, each turn a part of the world.
-std::uint64_t count_distinct(const SceneSource& source, const Progress& progress) {
-  constexpr std::uint64_t kMostKeys = std::uint64_t{1} << 25;
-  std::uint64_t streamed = 0;
-  source.stream([&](auto, auto, auto, auto) { ++streamed; }, progress);
-  const std::uint64_t turns = streamed / kMostKeys + 1;
-  std::uint64_t distinct = 0;
-  for (std::uint64_t turn = 0; turn < turns; ++turn) {
-    std::vector<std::uint64_t> codes;
-    source.stream(
-        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
-          const std::uint64_t code = morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                                 static_cast<std::uint32_t>(z));
-          if (code % turns == turn) {
-            codes.push_back(code);
-          }
-        },
-        progress);
-    std::sort(codes.begin(), codes.end());
-    distinct += static_cast<std::uint64_t>(std::unique(codes.begin(), codes.end()) - codes.begin());
-  }
-  return distinct;
-}
-
 Bytes aligned(Bytes bytes, std::size_t alignment) {
   const std::size_t past = reinterpret_cast<std::size_t>(bytes.data) & (alignment - 1);
   return bytes.subspan(past == 0 ? 0 : alignment - past);
@@ -334,14 +309,7 @@ class StructureBuilder {
       built_.compact = tree;
       return;
     }
-    const Bytes home = arena_.take(tree.size_bytes());
-    if (home.empty()) {
-      throw Shortage{};
-    }
-    std::memcpy(home.data, tree.bytes(), home.size);
-    if (CompactTree::open(home, &built_.compact) != Status::kOk) {
-      throw InputError("internal error: the baked tree does not open");
-    }
+    keep_compact({tree.bytes(), tree.size_bytes()});
   }
 
   template <class Key>
@@ -409,15 +377,17 @@ class StructureBuilder {
     keep_compact(target.subspan(0, size));
   }
 
-  // Moves the tree to the front of what is free and takes its bytes.
-  void keep_compact(Bytes tree) {
+  // Takes bytes for the tree at the front of what is free, and moves or copies it there.
+  void keep_compact(ConstBytes tree) {
     const Bytes home = arena_.take(tree.size);
+    if (home.empty()) {
+      throw Shortage{};
+    }
     if (home.data != tree.data) {
       std::memmove(home.data, tree.data, tree.size);
     }
-    if (CompactTree::open(home, &built_.compact) != Status::kOk) {
-      throw InputError("internal error: the compact tree just built is damaged");
-    }
+    fail_if(CompactTree::open(home, &built_.compact) != Status::kOk,
+            "internal error: the compact tree is damaged");
   }
 
   const SceneSource& source_;
@@ -483,8 +453,10 @@ BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, c
       structure() == StructureKind::kPool ? traced_.pool.solid_added() != 0 : compact().merged();
   const BakedScene* baked = source.baked();
   if (coarsened) {
-    solid_added_ =
-        voxels() - (baked != nullptr ? baked->tree().voxel_count() : count_distinct(source, progress));
+    BuildOptions whole;  // for reporting only, in memory beside the arena
+    whole.threads = options.threads;
+    solid_added_ = voxels() - (baked != nullptr ? baked->tree().voxel_count()
+                                                : BuiltScene(source, whole, progress).voxels());
   }
   solid_added_ += baked != nullptr ? baked->tree().solid_added() : 0;
 }

@@ -113,13 +113,7 @@ bool has_round_glass(const CompactTree& tree, const LitDescription& lighting) {
   return std::any_of(balance.begin(), balance.end(), [](std::int32_t faces) { return faces > 0; });
 }
 
-// The picture's axes as integers of 2^10.
-struct ViewAxes {
-  Vec3i right;
-  Vec3i up;
-  Vec3i forward;
-};
-
+// An axis of the picture as integers of 2^10.
 Vec3i short_vector(const Real3& v) {
   constexpr double kLength = 1024;
   const double scale = kLength / std::sqrt(dot(v, v));
@@ -128,32 +122,26 @@ Vec3i short_vector(const Real3& v) {
           static_cast<std::int32_t>(std::lround(v[2] * scale))};
 }
 
-ViewAxes axes_of(const SceneCamera& camera) {
+// Towards a sun behind the viewer, to a side and above: what is seen is lit, and no two sides of a corner
+// alike. To the left, but where of the two upright sides of the box that are seen the one on the right takes more than
+// twice the picture of the other, which would then lie in the dim.
+Vec3i sun_over_shoulder(const SceneCamera& camera, const VoxelBox& box) {
   const PictureAxes axes(camera);
-  return {short_vector(axes.right), short_vector(axes.up), short_vector(axes.forward)};
-}
-
-// Whether of the two upright sides of the box that are seen the one on the right takes more than twice the
-// picture of the other.
-bool is_seen_from_right(const ViewAxes& axes, const VoxelBox& box) {
+  const Vec3i right = short_vector(axes.right);
+  const Vec3i up = short_vector(axes.up);
+  const Vec3i forward = short_vector(axes.forward);
   std::int64_t seen[2];
   for (int axis = 0; axis < 2; ++axis) {
-    seen[axis] = std::abs(std::int64_t{axes.forward[axis]}) * (box.high[1 - axis] - box.low[1 - axis]);
+    seen[axis] = std::abs(std::int64_t{forward[axis]}) * (box.high[1 - axis] - box.low[1 - axis]);
   }
   const int larger = seen[1] > seen[0] ? 1 : 0;
   // Its normal points against the view; the picture's right is level.
-  const std::int32_t normal = axes.forward[larger] > 0 ? -1 : 1;
-  return !box.empty() && seen[larger] > 2 * seen[1 - larger] && normal * axes.right[larger] > 0;
-}
-
-// Towards a sun behind the viewer, to a side and above: what is seen is lit, and no two sides of a corner
-// alike. To the left, but where that would leave most of what is seen in the dim.
-Vec3i sun_over_shoulder(const SceneCamera& camera, const VoxelBox& box) {
-  const ViewAxes axes = axes_of(camera);
-  const std::int32_t right = is_seen_from_right(axes, box) ? 1 : -1;
+  const std::int32_t normal = forward[larger] > 0 ? -1 : 1;
+  const bool is_from_right =
+      !box.empty() && seen[larger] > 2 * seen[1 - larger] && normal * right[larger] > 0;
   Vec3i sun;
   for (int axis = 0; axis < 3; ++axis) {
-    sun[axis] = -7 * axes.forward[axis] / 8 + right * (axes.right[axis] / 2) + axes.up[axis] / 2;
+    sun[axis] = -7 * forward[axis] / 8 + (is_from_right ? 1 : -1) * (right[axis] / 2) + up[axis] / 2;
   }
   return sun;
 }

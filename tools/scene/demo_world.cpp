@@ -262,11 +262,11 @@ class DemoWorld {
 
  private:
   /// Corners in units.
-  void add(Shape shape, Tone tone, const Corner& low, const Corner& high) {
-    add_fine(shape, tone, {low[0] * kUnit, low[1] * kUnit, low[2] * kUnit},
-             {high[0] * kUnit, high[1] * kUnit, high[2] * kUnit});
-  }
-  void add_fine(Shape shape, Tone tone, const Corner& low, const Corner& high) {
+  void add(Shape shape, Tone tone, Corner low, Corner high) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] *= kUnit;
+      high[axis] *= kUnit;
+    }
     if (count_ < parts_.size()) {
       parts_[count_++] = {shape, tone, low, high};
     }

@@ -17,8 +17,6 @@
 namespace thimble::tools {
 namespace {
 
-using Corners = std::array<Real3, 8>;
-
 Real3 unit(const Real3& a) {
   return scaled(a, 1 / std::sqrt(dot(a, a)));
 }
@@ -42,10 +40,8 @@ struct Reach {
 };
 
 Vec3Q8 reachable_q8(const Real3& point, const Reach& reach, const char* what) {
-  if (!reach.holds(point)) {
-    throw InputError(what, " ", text_of(point), " is outside the accepted ", shortest(reach.low), " to ",
-                     shortest(reach.high), " (-4 to 5 world sizes)");
-  }
+  fail_if(!reach.holds(point), what, " ", text_of(point), " is outside the accepted ", shortest(reach.low),
+          " to ", shortest(reach.high), " (-4 to 5 world sizes)");
   return to_q8(point);
 }
 
@@ -61,9 +57,8 @@ Vec3Q8 saturated_q8(const Real3& point) {
 }
 
 Q14 span_q14(double voxels) {
-  if (!(voxels * Q14::kOne <= INT32_MAX)) {
-    throw InputError("a picture ", shortest(voxels), " voxels wide is beyond the limit of 131,071 (--span)");
-  }
+  fail_if(!(voxels * Q14::kOne <= INT32_MAX), "a picture ", shortest(voxels),
+          " voxels wide is beyond the limit of 131,071 (--span)");
   return Q14::from_raw(static_cast<std::int32_t>(std::max(1L, std::lround(voxels * Q14::kOne))));
 }
 
@@ -71,11 +66,8 @@ double voxels_of(Q14 length) {
   return static_cast<double>(length.raw) / Q14::kOne;
 }
 
-Corners corners_of(const VoxelBox& box) {
-  const std::array<Vec3i, 8> whole = box_corners(box);
-  Corners corners{};
-  std::transform(whole.begin(), whole.end(), corners.begin(), [](const Vec3i& at) { return real_of(at); });
-  return corners;
+Real3 middle_of(const VoxelBox& bounds) {
+  return scaled(plus(real_of(bounds.low), real_of(bounds.high)), 0.5);
 }
 
 // What is looked at, and which way.
@@ -86,26 +78,20 @@ struct Sight {
   PictureAxes axes;  // of length 1
 };
 
-Sight sight_of(const ViewWishes& wishes, const Reach& reach, const Corners& corners) {
+Sight sight_of(const ViewWishes& wishes, const Reach& reach, const VoxelBox& bounds) {
   Sight sight;
-  sight.target = wishes.target.value_or(scaled(plus(corners[0], corners[7]), 0.5));
+  sight.target = wishes.target.value_or(middle_of(bounds));
   if (wishes.eye) {
     reachable_q8(*wishes.eye, reach, "--eye");
   }
   const Real3 direction = wishes.eye ? minus(sight.target, *wishes.eye) : wishes.forward;
-  if (largest(direction) == 0) {
-    throw InputError("--eye and --target are the same point");
-  }
-  if (wishes.up && largest(*wishes.up) == 0) {
-    throw InputError("--up 0,0,0 has no direction");
-  }
+  fail_if(largest(direction) == 0, "--eye and --target are the same point");
+  fail_if(wishes.up && largest(*wishes.up) == 0, "--up 0,0,0 has no direction");
   sight.forward = to_integers(direction, kMaxViewComponent);
   sight.up = wishes.up ? to_integers(*wishes.up, kMaxViewComponent) : default_up(sight.forward);
   const Real3 forward = to_reals(sight.forward);
   const Real3 up = to_reals(sight.up);
-  if (largest(cross(forward, up)) == 0) {
-    throw InputError("--up is parallel to the direction of view");
-  }
+  fail_if(largest(cross(forward, up)) == 0, "--up is parallel to the direction of view");
   sight.axes.forward = unit(forward);
   sight.axes.right = unit(cross(sight.axes.forward, up));
   sight.axes.up = cross(sight.axes.right, sight.axes.forward);
@@ -129,10 +115,10 @@ struct Room {
   double before = 0;      // the farthest corner on the eye's side of the target
 };
 
-Room room_for(const Corners& corners, const Sight& sight, const Lens& lens, double fill) {
+Room room_for(const VoxelBox& box, const Sight& sight, const Lens& lens, double fill) {
   Room room;
-  for (const Real3& corner : corners) {
-    const Real3 offset = minus(corner, sight.target);
+  for (const Vec3i& corner : box_corners(box)) {
+    const Real3 offset = minus(real_of(corner), sight.target);
     const double x = std::abs(dot(offset, sight.axes.right));
     const double y = std::abs(dot(offset, sight.axes.up));
     const double z = dot(offset, sight.axes.forward);
@@ -178,12 +164,8 @@ bool shows_all(std::span<const Vec3i> points, const Real3& eye, const PictureAxe
 }
 
 void check(Status status, const std::string& advice) {
-  if (status == Status::kBadArgument) {
-    throw InputError("--up is parallel to the direction of view");
-  }
-  if (status != Status::kOk) {
-    throw InputError("the camera: ", status_text(status), ": ", advice);
-  }
+  fail_if(status == Status::kBadArgument, "--up is parallel to the direction of view");
+  fail_if(status != Status::kOk, "the camera: ", status_text(status), ": ", advice);
 }
 
 Status set_camera(const ViewWishes& wishes, int level, Framing* framing) {
@@ -312,11 +294,6 @@ class SeenExtent {
   std::vector<Real3> points_;
 };
 
-Real3 middle_of(const VoxelBox& bounds) {
-  return {(bounds.low.x + bounds.high.x) / 2.0, (bounds.low.y + bounds.high.y) / 2.0,
-          (bounds.low.z + bounds.high.z) / 2.0};
-}
-
 // From the middle of `bounds` by that much along the axes.
 Real3 placed(const VoxelBox& bounds, const PictureAxes& axes, double right, double up, double forward) {
   return plus(plus(middle_of(bounds), scaled(axes.right, right)),
@@ -324,6 +301,15 @@ Real3 placed(const VoxelBox& bounds, const PictureAxes& axes, double right, doub
 }
 
 constexpr double kIsometric = 35.264389682754654;  // the angle of a cube's diagonal and its faces
+
+// Those of kBest and kIso are the corner in front on the left.
+ViewAngles angles_of(NamedView view) {
+  constexpr ViewAngles kSide{-45, kIsometric};
+  constexpr std::array<ViewAngles, 8> kAngles{
+      // in the order of `NamedView`
+      {kSide, kSide, kSide, {0, 0}, {180, 0}, {-90, 0}, {90, 0}, {0, 90}}};
+  return kAngles[static_cast<std::size_t>(view)];
+}
 
 // The side that is wished, in numbers.
 ViewAngles angles_for(const ViewWishes& wishes, const SceneShape& shape) {
@@ -456,22 +442,13 @@ PictureAxes::PictureAxes(const SceneCamera& camera) {
   up = cross(right, forward);
 }
 
-ViewAngles angles_of(NamedView view) {
-  constexpr ViewAngles kSide{-45, kIsometric};
-  constexpr std::array<ViewAngles, 8> kAngles{
-      // in the order of `NamedView`
-      {kSide, kSide, kSide, {0, 0}, {180, 0}, {-90, 0}, {90, 0}, {0, 90}}};
-  return kAngles[static_cast<std::size_t>(view)];
-}
-
 Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   const std::int32_t side = std::int32_t{1} << level;
   const VoxelBox box = bounds.empty() ? VoxelBox{{0, 0, 0}, {side, side, side}} : bounds;
-  const Corners corners = corners_of(box);
   const Reach reach(level);
   const Lens lens(wishes);
-  const Sight sight = sight_of(wishes, reach, corners);
-  const Room room = room_for(corners, sight, lens, wishes.fill);
+  const Sight sight = sight_of(wishes, reach, box);
+  const Room room = room_for(box, sight, lens, wishes.fill);
   const Real3 eye =
       wishes.eye.value_or(eye_at(sight, wishes.orthographic ? room.before + 1 : room.distance, reach));
 
@@ -509,11 +486,9 @@ Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, int lev
     framing.kept.direction_bits = static_cast<std::uint8_t>(wishes.direction_bits);
   }
   const Status status = set_camera(framing.kept, wishes.width_px, wishes.height_px, level, &framing.camera);
-  if (status != Status::kOk) {
-    throw InputError("the scene's own camera does not suit a picture of ", wishes.width_px, "x",
-                     wishes.height_px, ": ", status_text(status),
-                     "; another --size, or a camera of your own (--eye, --target, --span), helps");
-  }
+  fail_if(status != Status::kOk, "the scene's own camera does not suit a picture of ", wishes.width_px, "x",
+          wishes.height_px, ": ", status_text(status),
+          "; another --size, or a camera of your own (--eye, --target, --span), helps");
   return framing;
 }
 
@@ -530,7 +505,7 @@ Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
     return frame_box(wishes, shape.level, shape.bounds);
   }
   const Reach reach(shape.level);
-  const Sight sight = sight_of(wishes, reach, corners_of(shape.bounds));
+  const Sight sight = sight_of(wishes, reach, shape.bounds);
   const ViewWishes placed_view = fitted(wishes, shape, sight);
   if (reach.holds(*placed_view.eye) && reach.holds(*placed_view.target)) {
     try {
@@ -569,7 +544,7 @@ Framing frame_round(const ViewWishes& wishes, const SceneSource& source, const S
   double distance = 0;
   view.target = RoundExtent(shape).target(Lens(view), angles.tilt, &distance);
   const Reach reach(shape.level);
-  view.eye = kept_q8(eye_at(sight_of(view, reach, corners_of(shape.bounds)), distance, reach));
+  view.eye = kept_q8(eye_at(sight_of(view, reach, shape.bounds), distance, reach));
   try {
     return frame_box(view, shape.level, shape.bounds);
   } catch (const InputError&) {
@@ -581,7 +556,7 @@ std::vector<Framing> frame_turns(const ViewWishes& given, const SceneShape& shap
   ViewWishes wishes = given;
   const ViewAngles first = angles_for(wishes, shape);
   const Reach reach(shape.level);
-  const Corners box = corners_of(shape.bounds.empty() ? VoxelBox{{0, 0, 0}, {1, 1, 1}} : shape.bounds);
+  const VoxelBox box = shape.bounds.empty() ? VoxelBox{{0, 0, 0}, {1, 1, 1}} : shape.bounds;
   const Lens lens(wishes);
   std::vector<ViewWishes> views;
   double distance = 0;
@@ -629,9 +604,8 @@ Shading scene_shading(ShadeMode mode, Span<const Rgb8> palette, const Camera& ca
 
 ViewWishes finer(const ViewWishes& wishes, int across) {
   const std::int32_t most = kMaxPicturePx / across;
-  if (wishes.width_px > most || wishes.height_px > most) {
-    throw InputError(across * across, " samples a pixel want a picture of at most ", most, " pixels a side");
-  }
+  fail_if(wishes.width_px > most || wishes.height_px > most, across * across,
+          " samples a pixel want a picture of at most ", most, " pixels a side");
   ViewWishes fine = wishes;
   fine.width_px *= across;
   fine.height_px *= across;

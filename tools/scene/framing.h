@@ -45,9 +45,6 @@ struct ViewAngles {
   double tilt = 0;  ///< above the horizon, -90 .. 90
 };
 
-/// Those of a named view. kBest and kIso want a scene: without one they are the corner in front on the left.
-ViewAngles angles_of(NamedView view);
-
 /// Points and lengths in voxels. What is not given frames the scene.
 struct ViewWishes {
   std::int32_t width_px = 800;  ///< 1 .. kMaxPicturePx

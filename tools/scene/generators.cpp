@@ -61,9 +61,8 @@ std::optional<std::uint64_t> parse_number(const std::string& text) {
 std::uint64_t parse_in_range(const std::string& name, const std::string& text, std::uint64_t low,
                              std::uint64_t high) {
   const std::optional<std::uint64_t> value = parse_number(text);
-  if (!value || *value < low || *value > high) {
-    throw InputError(name, " must be a whole number ", low, "..", high, ", not \"", text, "\"");
-  }
+  fail_if(!value || *value < low || *value > high, name, " must be a whole number ", low, "..", high,
+          ", not \"", text, "\"");
   return *value;
 }
 
@@ -79,12 +78,9 @@ void parse_options(const std::string& options, GeneratorSpec& spec) {
     const std::string key = option.substr(0, equals);
     const std::string value = option.substr(std::min(equals + 1, option.size()));
     bool* const seen = key == "seed" ? &has_seed : key == "depth" ? &has_depth : nullptr;
-    if (seen == nullptr || equals == option.size()) {
-      throw InputError("unknown generator option \"", option, "\"; there are seed=S and depth=L");
-    }
-    if (*seen) {
-      throw InputError("generator option ", key, " is given twice");
-    }
+    fail_if(seen == nullptr || equals == option.size(), "unknown generator option \"", option,
+            "\"; there are seed=S and depth=L");
+    fail_if(*seen, "generator option ", key, " is given twice");
     *seen = true;
     if (seen == &has_seed) {
       spec.seed = parse_in_range(key, value, 0, std::numeric_limits<std::uint64_t>::max());
@@ -416,10 +412,6 @@ std::uint64_t integer_sqrt(std::uint64_t value) {
   return root;
 }
 
-int default_depth(GeneratorKind kind) {
-  return kind == GeneratorKind::kPoints || kind == GeneratorKind::kCluster ? 10 : 6;
-}
-
 std::optional<GeneratorSpec> parse_generator(const std::string& text) {
   const std::size_t name_end = std::min(text.find_first_of(":,"), text.size());
   const std::string name = text.substr(0, name_end);
@@ -428,13 +420,11 @@ std::optional<GeneratorSpec> parse_generator(const std::string& text) {
   if (found == kGenerators.end()) {
     return std::nullopt;
   }
-  GeneratorSpec spec{.kind = found->kind, .depth = default_depth(found->kind)};
-  const bool counted = spec.kind == GeneratorKind::kPoints || spec.kind == GeneratorKind::kCluster;
+  const bool counted = is_counted(found->kind);
+  GeneratorSpec spec{.kind = found->kind, .depth = counted ? 10 : 6};
   const bool has_count = name_end < text.size() && text[name_end] == ':';
-  if (counted != has_count) {
-    throw InputError(counted ? name + " needs a number of points, as in " + name + ":1000000"
-                             : name + " takes no number, only ,seed=S and ,depth=L");
-  }
+  fail_if(counted != has_count, counted ? name + " needs a number of points, as in " + name + ":1000000"
+                                        : name + " takes no number, only ,seed=S and ,depth=L");
   std::size_t options = name_end;
   if (has_count) {
     options = std::min(text.find(',', name_end), text.size());
@@ -458,9 +448,7 @@ bool is_generator(const std::string& word) {
 std::vector<std::string> generator_examples() {
   std::vector<std::string> examples;
   for (const Name& name : kGenerators) {
-    examples.emplace_back(name.text);
-    examples.back() +=
-        name.kind == GeneratorKind::kPoints || name.kind == GeneratorKind::kCluster ? ":1000000" : "";
+    examples.push_back(concat(name.text, is_counted(name.kind) ? ":1000000" : ""));
   }
   return examples;
 }

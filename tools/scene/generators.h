@@ -28,6 +28,10 @@
 namespace thimble::tools {
 
 enum class GeneratorKind : std::uint8_t { kPoints, kCluster, kSpheres, kWater, kDemo };
+/// Whether it has a number of points.
+constexpr bool is_counted(GeneratorKind kind) {
+  return kind == GeneratorKind::kPoints || kind == GeneratorKind::kCluster;
+}
 
 inline constexpr std::uint64_t kMaxGeneratorPoints = 1'000'000'000;
 
@@ -35,11 +39,8 @@ struct GeneratorSpec {
   GeneratorKind kind = GeneratorKind::kPoints;
   std::uint64_t count = 0;  ///< points and cluster: 0 .. kMaxGeneratorPoints; else not used
   std::uint64_t seed = 1;
-  int depth = 10;  ///< 1..12
+  int depth = 10;  ///< 1..12; unless given 10 for points and cluster, 6 for the others
 };
-
-/// 10 for points and cluster, 6 for the others.
-int default_depth(GeneratorKind kind);
 
 /// What `text` asks for. Nothing when the part before the first `:` or `,` is not one of the five names, so
 /// that it may be a file (`points.xyz`). InputError when the name is one of them and the rest is wrong.

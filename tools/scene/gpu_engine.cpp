@@ -47,30 +47,26 @@ class Device final : public GpuEngine {
     const std::lock_guard<std::mutex> lock(mutex_);
     return told([&] { return renderer_.trace(rays, hits); });
   }
-  Status render(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                const Band& band, LitCounts* counts, const Ground* ground, Bytes shares) override {
-    const gpu::Backdrop backdrop = backdrop_of(ground);
-    return draw_lit({effects, camera, shading, scene, ground != nullptr ? &backdrop : nullptr}, band,
-                    ground != nullptr ? shares : Bytes(), counts);
+  Status render(const LitView& view, const Band& band, LitCounts* counts, Bytes shares) override {
+    const gpu::Backdrop backdrop = backdrop_of(view.ground);
+    return draw_lit(frame_of(view, backdrop), band, view.ground != nullptr ? shares : Bytes(), counts);
   }
-  Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                       Span<const SamplePlace> places, const Ground* ground, Bytes rgb, Bytes shares,
-                       LitCounts* /*counts*/) override {
+  Status render_pixels(const LitView& view, Span<const SamplePlace> places, Bytes rgb, LitCounts* /*counts*/,
+                       Bytes shares) override {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const gpu::Backdrop backdrop = backdrop_of(ground);
+    const gpu::Backdrop backdrop = backdrop_of(view.ground);
     words_.resize(places.size);
     std::transform(places.data, places.data + places.size, words_.begin(), [](const SamplePlace& place) {
       return static_cast<std::uint32_t>(place.x) | static_cast<std::uint32_t>(place.y) << 16;
     });
     const Status status = told([&] {
-      return renderer_.draw_places({effects, camera, shading, scene, ground != nullptr ? &backdrop : nullptr},
-                                   {words_.data(), words_.size()});
+      return renderer_.draw_places(frame_of(view, backdrop), {words_.data(), words_.size()});
     });
     for (std::size_t i = 0; i < words_.size() && status == Status::kOk; ++i) {
       for (std::size_t channel = 0; channel < 3; ++channel) {
         rgb.data[3 * i + channel] = static_cast<std::uint8_t>(words_[i] >> (8 * channel));
       }
-      if (ground != nullptr) {
+      if (view.ground != nullptr) {
         shares.data[i] = static_cast<std::uint8_t>(words_[i] >> 24);
       }
     }
@@ -80,6 +76,10 @@ class Device final : public GpuEngine {
  private:
   using Clock = std::chrono::steady_clock;
 
+  static gpu::LitFrame frame_of(const LitView& view, const gpu::Backdrop& backdrop) {
+    return {view.effects, view.camera, view.shading, view.scene,
+            view.ground != nullptr ? &backdrop : nullptr};
+  }
   Status draw_lit(const gpu::LitFrame& frame, Band band, Bytes shares, LitCounts* counts) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const std::int32_t width = frame.camera.width_px();

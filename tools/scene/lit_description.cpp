@@ -300,9 +300,8 @@ std::vector<std::uint8_t> lighting_section(const LitDescription& lit, const Used
     scene.water_material = plain.water_material;
   }
   std::vector<std::uint8_t> bytes(lighting_bytes(scene));
-  if (bytes.empty() || BakedLighting::make(lighting, level, {bytes.data(), bytes.size()}) != Status::kOk) {
-    throw InputError("its lights, surfaces or water are beyond the limits of a baked scene");
-  }
+  fail_if(bytes.empty() || BakedLighting::make(lighting, level, {bytes.data(), bytes.size()}) != Status::kOk,
+          "its lights, surfaces or water are beyond the limits of a baked scene");
   return bytes;
 }
 
@@ -439,22 +438,9 @@ LitScene lit_scene_for(const LitDescription& lit, const UsedMaterials& used, Eff
   return scene;
 }
 
-std::size_t lit_table_bytes(const LitScene& scene) {
-  return scene.surfaces.size * sizeof(Surface) + scene.lights.size * sizeof(Light);
-}
-
 std::size_t lit_state_bytes(const LitScene& scene, EffectSet effects) {
-  return lit_render_bytes(effects) + (effects == Effect::kNone ? 0 : lit_table_bytes(scene));
-}
-
-void add_counts(const LitCounts& more, LitCounts* counts) {
-  for (int kind = 0; kind < kLitRayKinds; ++kind) {
-    counts->rays[kind] += more.rays[kind];
-    counts->hits[kind] += more.hits[kind];
-    counts->node_visits[kind] += more.node_visits[kind];
-  }
-  counts->step_limited += more.step_limited;
-  counts->pending_high_water = std::max(counts->pending_high_water, more.pending_high_water);
+  const std::size_t tables = scene.surfaces.size * sizeof(Surface) + scene.lights.size * sizeof(Light);
+  return lit_render_bytes(effects) + (effects == Effect::kNone ? 0 : tables);
 }
 
 RenderCounts totals_of(const LitCounts& counts) {

@@ -216,14 +216,9 @@ EffectSet expected_effects(const SceneSource& source, const LitDescription& lit,
 /// those of `lit`, or of a constant.
 LitScene lit_scene_for(const LitDescription& lit, const UsedMaterials& used, EffectSet effects);
 
-/// Bytes of the tables of surfaces and lights.
-std::size_t lit_table_bytes(const LitScene& scene);
-/// Bytes that drawing keeps besides tree and band: the renderer's state and the tables. `render_bytes()`
-/// without effects.
+/// Bytes that drawing keeps besides tree and band: the renderer's state, and the tables of surfaces and lights.
+/// `render_bytes()` without effects.
 std::size_t lit_state_bytes(const LitScene& scene, EffectSet effects);
-
-/// Adds what another thread counted.
-void add_counts(const LitCounts& more, LitCounts* counts);
 
 /// Of rays of every kind together.
 RenderCounts totals_of(const LitCounts& counts);

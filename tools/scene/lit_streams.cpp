@@ -18,19 +18,18 @@ class WideLitStreams final : public LitStreams {
 
   int threads() const override { return threads_.count(); }
   double seconds() const override { return seconds_; }
-  Status render(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                const Band& band, LitCounts* counts, const Ground* /*ground*/, Bytes /*shares*/) override {
-    return wide::render_lit(effects, map_, camera, shading, scene, band, workspace_, &threads_, counts);
+  Status render(const LitView& view, const Band& band, LitCounts* counts, Bytes /*shares*/) override {
+    return wide::render_lit(view.effects, map_, view.camera, view.shading, view.scene, band, workspace_,
+                            &threads_, counts);
   }
-  Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading, const LitScene& scene,
-                       Span<const SamplePlace> places, const Ground* /*ground*/, Bytes rgb, Bytes /*shares*/,
-                       LitCounts* counts) override {
+  Status render_pixels(const LitView& view, Span<const SamplePlace> places, Bytes rgb, LitCounts* counts,
+                       Bytes /*shares*/) override {
     places_.resize(places.size);
     std::transform(places.data, places.data + places.size, places_.begin(), [](const SamplePlace& place) {
       return wide::PixelPlace{place.x, place.y};
     });
-    return wide::render_lit_pixels(effects, map_, camera, shading, scene, {places_.data(), places_.size()},
-                                   rgb, workspace_, &threads_, counts);
+    return wide::render_lit_pixels(view.effects, map_, view.camera, view.shading, view.scene,
+                                   {places_.data(), places_.size()}, rgb, workspace_, &threads_, counts);
   }
   Status any_hit(Span<const Ray> rays, Span<std::uint8_t> hits) const override {
     return wide::any_hit(map_, rays, hits);
@@ -60,15 +59,17 @@ std::unique_ptr<LitStreams> LitStreams::make(const CompactTree& tree, Arena* are
   const auto start = std::chrono::steady_clock::now();
   const std::size_t least = wide::least_lit_workspace_bytes(effects, scene);
   // Asked before the map is made: what does not fit costs no time.
-  // Layers for what is clear only where there is room for them.
   wide::LitMedia media = wide::lit_media(effects, scene);
-  std::size_t map_bytes = wide::RayMap::bytes(tree, media.span());
-  if (media.count != 0 && (map_bytes > arena->free_bytes() || arena->free_bytes() - map_bytes < least)) {
-    media.count = 0;
-    map_bytes = wide::RayMap::bytes(tree);
+  const auto fits = [&] {
+    const std::size_t map_bytes = wide::RayMap::bytes(tree, media.span());
+    return map_bytes <= arena->free_bytes() && arena->free_bytes() - map_bytes >= least;
+  };
+  bool has_room = fits();
+  if (!has_room && media.count != 0) {
+    media.count = 0;  // layers for what is clear only where there is room for them
+    has_room = fits();
   }
-  if (effects == Effect::kNone || map_bytes > arena->free_bytes() ||
-      arena->free_bytes() - map_bytes < least) {
+  if (effects == Effect::kNone || !has_room) {
     return nullptr;
   }
   const std::size_t mark = arena->used_bytes();

@@ -15,6 +15,15 @@
 
 namespace thimble::tools {
 
+/// What light is drawn of. Effects and lights are at most those of `LitStreams::make`.
+struct LitView {
+  EffectSet effects;
+  const Camera& camera;
+  const Shading& shading;
+  const LitScene& scene;
+  const Ground* ground = nullptr;  ///< behind it, for `shares`
+};
+
 /// Draws one band at a time, and traces rays through the same map.
 class LitStreams {
  public:
@@ -37,16 +46,12 @@ class LitStreams {
   virtual double seconds() const = 0;
   /// Whether `ground` means anything to it.
   virtual bool finds_shares() const { return false; }
-  /// The pixels of `render_lit_band`, and its errors. The effects and lights are at most those of `make`.
-  /// `counts` (may be null) is added to. With `ground`, in kRgb888, `shares` gets what `light_behind`
-  /// (scene/backdrop.h) finds at each pixel.
-  virtual Status render(EffectSet effects, const Camera& camera, const Shading& shading,
-                        const LitScene& scene, const Band& band, LitCounts* counts,
-                        const Ground* ground = nullptr, Bytes shares = {}) = 0;
+  /// The pixels of `render_lit_band`, and its errors. `counts` (may be null) is added to. With a ground, in kRgb888,
+  /// `shares` gets what `light_behind` (scene/backdrop.h) finds at each pixel.
+  virtual Status render(const LitView& view, const Band& band, LitCounts* counts, Bytes shares = {}) = 0;
   /// The same of single pixels, three bytes each. Where it `finds_shares` nothing is counted.
-  virtual Status render_pixels(EffectSet effects, const Camera& camera, const Shading& shading,
-                               const LitScene& scene, Span<const SamplePlace> places, const Ground* ground,
-                               Bytes rgb, Bytes shares, LitCounts* counts) = 0;
+  virtual Status render_pixels(const LitView& view, Span<const SamplePlace> places, Bytes rgb,
+                               LitCounts* counts, Bytes shares = {}) = 0;
   // What an engine does not do is a kBadArgument, and then the core's.
 
   /// Whether each ray meets anything, 1 or 0, as the core's `any_hit`. This and the next: any number of threads at a

@@ -22,6 +22,19 @@ Shading shading_of(const LookCanvas& canvas, const Camera& camera) {
 
 }  // namespace
 
+Camera fine_camera(const Framing& framing, Look* look) {
+  const std::int32_t width_px = framing.camera.width_px() * look->across;
+  const std::int32_t height_px = framing.camera.height_px() * look->across;
+  Camera fine;
+  if (std::max(width_px, height_px) > kMaxPicturePx ||
+      set_camera(framing.kept, width_px, height_px, framing.camera.level(), &fine) != Status::kOk) {
+    look->across = 1;
+    look->at_edges = false;
+    return framing.camera;
+  }
+  return fine;
+}
+
 LookRows::LookRows(const LookCanvas& canvas, const Camera& camera, std::uint32_t exposure)
     : canvas_(canvas),
       camera_(camera),
@@ -31,17 +44,19 @@ LookRows::LookRows(const LookCanvas& canvas, const Camera& camera, std::uint32_t
       finds_shares_(canvas.look->has_backdrop && canvas.streams != nullptr &&
                     canvas.streams->finds_shares()) {}
 
+LitView LookRows::view_of(const Camera& camera) const {
+  return {canvas_.look->effects, camera, shading_, scene_, finds_shares_ ? &canvas_.look->ground : nullptr};
+}
+
 Status LookRows::trace_colors(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
                               Bytes shares, LitCounts* counts) const {
   Band band;
   band.pixels = colors;
   band.first_row = first_row;
   band.rows = rows;
-  const EffectSet effects = canvas_.look->effects;
   return canvas_.streams != nullptr
-             ? canvas_.streams->render(effects, camera, shading_, scene_, band, counts,
-                                       finds_shares_ ? &canvas_.look->ground : nullptr, shares)
-             : render_lit_band(effects, *canvas_.tree, camera, shading_, scene_, band, counts);
+             ? canvas_.streams->render(view_of(camera), band, counts, shares)
+             : render_lit_band(canvas_.look->effects, *canvas_.tree, camera, shading_, scene_, band, counts);
 }
 
 void LookRows::find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows,
@@ -100,27 +115,19 @@ Status LookRows::draw(std::int32_t y, std::int32_t rows, Bytes work, Image* imag
 }
 
 Status LookRows::draw_run(const SampleRun& run, Bytes samples, LitCounts* counts) const {
-  constexpr std::int32_t kMost = kEdgeSegmentPx;
-  std::array<std::uint8_t, std::size_t{4} * kMost> traced{};
-  const Camera& whole = canvas_.framing->camera;
-  for (std::int32_t first = 0; first < run.count; first += kMost) {
-    const std::int32_t count = std::min(kMost, run.count - first);
-    const Bytes colors(traced.data(), 3 * static_cast<std::size_t>(count));
-    const Bytes shares(traced.data() + colors.size, static_cast<std::size_t>(count));
-    const Status status = trace(run.camera.window(first, run.row, count, 1), 0, 1, colors, shares, counts);
-    if (status != Status::kOk) {
-      return status;
-    }
-    std::uint8_t* to = samples.data + std::size_t{4} * static_cast<std::size_t>(first);
-    for (std::int32_t x = 0; x < count; ++x, to += 4) {
-      const std::uint8_t* color = colors.data + std::size_t{3} * static_cast<std::size_t>(x);
-      const Rgb8 behind = backdrop_color(canvas_.look->background, run.py, whole.height_px());
-      const Sample sample =
-          sample_of({color[0], color[1], color[2]}, shares[static_cast<std::size_t>(x)], behind);
-      std::copy(sample.begin(), sample.end(), to);
-    }
+  thread_local std::vector<std::uint8_t> traced;
+  const auto count = static_cast<std::size_t>(run.count);
+  traced.resize(4 * count);
+  const Bytes colors(traced.data(), 3 * count);
+  const Bytes shares(traced.data() + 3 * count, count);
+  const Status status = trace(run.camera, run.row, 1, colors, shares, counts);
+  const Rgb8 behind = backdrop_color(canvas_.look->background, run.py, canvas_.framing->camera.height_px());
+  for (std::size_t x = 0; x < count && status == Status::kOk; ++x) {
+    const std::uint8_t* color = colors.data + 3 * x;
+    const Sample sample = sample_of({color[0], color[1], color[2]}, shares[x], behind);
+    std::copy(sample.begin(), sample.end(), samples.data + 4 * x);
   }
-  return Status::kOk;
+  return status;
 }
 
 Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
@@ -184,9 +191,7 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
 Status LookRows::trace_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
                               Bytes shares, LitCounts* counts) const {
   if (canvas_.streams != nullptr) {
-    return canvas_.streams->render_pixels(canvas_.look->effects, camera, shading_, scene_, places,
-                                          finds_shares_ ? &canvas_.look->ground : nullptr, colors, shares,
-                                          counts);
+    return canvas_.streams->render_pixels(view_of(camera), places, colors, counts, shares);
   }
   return each_until_error(static_cast<std::int32_t>(places.size), canvas_.threads,
                           [&](std::int32_t place, std::size_t /*thread*/) {
@@ -255,7 +260,7 @@ LookMeasure measure_look(const LookCanvas& canvas) {
   for (std::int32_t y = 0; y < coarse.height_px(); ++y) {
     const Bytes colors(work.data(), 3 * width);
     const Bytes shares(work.data() + 3 * width, width);
-    if (rows.trace(y, 1, colors, shares, &traced) != Status::kOk) {
+    if (rows.trace(coarse, y, 1, colors, shares, &traced) != Status::kOk) {
       return {};  // painting will say why
     }
     for (std::size_t x = 0; x < width; ++x) {
@@ -288,7 +293,7 @@ Status paint_rows(std::int32_t at_once, const std::vector<LitCounts>& counts, co
     }
   }
   for (const LitCounts& part : counts) {
-    add_counts(part, &painting->counts.lit);
+    lit::add_counts(part, &painting->counts.lit);
   }
   painting->counts.all = totals_of(painting->counts.lit);
   return status;

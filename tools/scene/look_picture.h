@@ -38,12 +38,16 @@ struct LookCanvas {
   const CompactTree* tree = nullptr;
   const Look* look = nullptr;
   const Framing* framing = nullptr;  ///< of the picture
-  Camera fine;                       ///< the same view `look->across` times as wide and high
+  Camera fine;                       ///< fine_camera
   Bytes work;                        ///< look_work_bytes for at least one row
   int threads = 1;
   RowRange rows{};                ///< what is painted of the picture; a count of 0: all
   LitStreams* streams = nullptr;  ///< made for the look's effects; null: the core draws
 };
+
+/// The view of a picture's samples: `look->across` times as wide and high. Where that is too large, or a camera without rays
+/// between the pixels', the look gets one sample a pixel.
+Camera fine_camera(const Framing& framing, Look* look);
 
 /// A picture of a look by rows, for whoever shows it as it grows: those of `paint_look`. `camera` is
 /// `canvas.fine`, or a thinned one of a look with one sample a pixel. Not for stars, which shine over rows.
@@ -66,16 +70,13 @@ class LookRows {
   static void finish_sums(std::int32_t x, std::int32_t y, const std::uint32_t* sums, std::uint32_t count,
                           Image* image);
 
-  /// The samples of rows of the camera, and what light is behind each (kFullShare of backdrop.h, or
+  /// The samples of rows of a camera, and what light is behind each (kFullShare of backdrop.h, or
   /// kNothingBehind), from `first_row` on.
-  Status trace(std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
-               LitCounts* counts) const {
-    return trace(camera_, first_row, rows, colors, shares, counts);
-  }
-
- private:
   Status trace(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors, Bytes shares,
                LitCounts* counts) const;
+
+ private:
+  LitView view_of(const Camera& camera) const;
   // Also the shares, if `finds_shares_`.
   Status trace_colors(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes colors,
                       Bytes shares, LitCounts* counts) const;

@@ -1,13 +1,14 @@
 /// Ways to draw a scene's picture. `thimble render` picks one and asks it for bands, row by row from the top.
 ///
-///   ray painter      the core, ray by ray
-///   quality painter  the same with several samples a pixel, a cut-off or a depth
-///   edge painter     samples where edges are, of rays or of light
 ///   wide painter     object order, with vectors and threads (platform/wide)
 ///   gpu painter      a GPU (platform/gpu)
-///   lit painter      light, shadows, glass, water: the core's light/render.h, or the same by streams of rays
+///   square painter   one or more samples a pixel in a square, by a sampler
+///   edge painter     samples where edges are, by a sampler
 ///
-/// The first three give the same picture where their options are the same.
+///   ray sampler      the core, ray by ray, with a cut-off or a depth
+///   lit sampler      light, shadows, glass, water: the core's light/render.h, or the same by streams of rays
+///
+/// Without a cut-off, the first two give the picture of rays.
 #pragma once
 
 #include <cstdint>
@@ -31,9 +32,9 @@ namespace thimble::tools {
 class GpuEngine;
 
 struct PaintCounts {
-  RenderCounts all;   ///< rays of every kind
+  RenderCounts all;   ///< rays of every kind; of a lit picture once it is painted
   wide::Counts wide;  ///< of the wide painter, else 0
-  LitCounts lit;      ///< of the lit painter by kind of ray, else 0
+  LitCounts lit;      ///< of a lit picture by kind of ray, else 0
 };
 
 /// What a picture's bands are drawn with.
@@ -43,23 +44,11 @@ struct BandPainter {
   std::int32_t most_rows;  ///< of a band
   Bytes work;  ///< where bands are drawn: in the scene's budget. Empty: straight into the picture.
   /// Draws `band`, whose pixels are the front of `work` if there is one; `counts` is added to. Errors, with
-  /// nothing counted: kBadArgument for a camera that it does not take, kTooFine for one that it leaves to the
-  /// ray painter.
+  /// nothing counted: kBadArgument for a camera that it does not take, kTooFine for one that it leaves to rays.
   std::function<Status(const Band& band, PaintCounts* counts)> draw;
 };
 
-// What a painter is made with must live as long as it does.
-
-/// Bands as high as the scene's own has room for.
-BandPainter ray_painter(const BuiltScene& built, const Camera& camera, const Shading& shading,
-                        PixelFormat format, const TraceOptions& options);
-
-/// A row at a time.
-BandPainter quality_painter(const BuiltScene& built, const QualityFrame& frame, const TraceOptions& options);
-
-/// The same with samples where edges are.
-BandPainter ray_edge_painter(const BuiltScene& built, const QualityFrame& frame, const Camera& camera,
-                             const Camera& fine, PixelFormat format, const TraceOptions& options);
+// What a painter or a sampler is made with must live as long as it does.
 
 /// For pictures of the size that `renderer` was made for.
 BandPainter wide_painter(WideRenderer* renderer, const Camera& camera, const Shading& shading);
@@ -67,27 +56,38 @@ BandPainter wide_painter(WideRenderer* renderer, const Camera& camera, const Sha
 /// Of the scene that `engine` was made for.
 BandPainter gpu_painter(GpuEngine* engine, const Camera& camera, const Shading& shading);
 
+/// What draws samples, whichever camera has them.
+struct Sampler {
+  const char* name;
+  int threads;  ///< that may draw at a time, each with counts of its own; those of `draw_places` where there is one
+  /// Draws rows of the picture's camera or of a finer one.
+  std::function<Status(const Camera& camera, bool is_fine, const Band& band, PaintCounts* counts)> draw;
+  /// Draws single pixels, three bytes each, by threads of its own, as `draw` then has.
+  std::function<Status(const Camera& camera, Span<const SamplePlace> places, Bytes samples,
+                       PaintCounts* counts)>
+      draw_places = nullptr;
+};
+
+Sampler ray_sampler(const QualityFrame& frame, const TraceOptions& options);
+
 /// What a lit picture is made of beside tree, camera and shading.
 struct LitPicture {
   LitScene scene;
   EffectSet effects = Effect::kNone;
-  /// Samples a pixel are its square; the band then has room for them (quality_band_bytes), and the camera is
-  /// that of a picture so many times as wide and high.
-  int across = 1;
-  int threads = 1;  ///< that draw rows of a band, each with a state of its own (lit_render_bytes)
+  int threads = 1;                ///< that draw, each with a state of its own (lit_render_bytes)
   LitStreams* streams = nullptr;  ///< made for these effects; null: the core draws, and those threads with it
 };
-
-/// Bytes of a band in which an edge painter draws `rows` rows at a time.
-std::uint64_t edge_band_bytes(PixelFormat format, std::int32_t width_px, std::int32_t rows, int threads);
-
-/// As lit_painter, with samples where edges are; `picture.across` is not looked at.
-BandPainter lit_edge_painter(const BuiltScene& built, const Camera& camera, const Camera& fine,
-                             const Shading& shading, PixelFormat format, const LitPicture& picture);
-
 /// For compact trees. Formats with fewer than 8 bits a channel are dithered.
-BandPainter lit_painter(const BuiltScene& built, const Camera& camera, const Shading& shading,
-                        PixelFormat format, const LitPicture& picture);
+Sampler lit_sampler(const BuiltScene& built, const Shading& shading, const LitPicture& picture);
+
+/// `fine` has `across` x `across` samples for each pixel. Bands are as high as `work` has room for
+/// (quality_band_bytes); one sample a pixel needs no work.
+BandPainter square_painter(const Sampler& sampler, const Camera& fine, int across, PixelFormat format,
+                           Bytes work);
+
+/// Samples where edges are; `fine` has kEdgeGrid times the pixels of `camera` each way.
+BandPainter edge_painter(const Sampler& sampler, const Camera& camera, const Camera& fine, PixelFormat format,
+                         Bytes work);
 
 // A whole picture by a painter, band by band.
 

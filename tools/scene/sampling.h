@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "scene/built_scene.h"
-#include "scene/edge_rows.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/cutoff.h"
 #include "thimble/picture/render.h"
@@ -29,9 +28,13 @@ struct Quality {
   int samples_key() const { return at_edges ? 0 : across; }
 };
 
-/// Bytes of a band that `QualityFrame::draw_row` works in, for pictures of `width_px`; with samples at edges
-/// those of an edge painter for a row.
-std::uint64_t quality_band_bytes(const Quality& quality, PixelFormat format, std::int32_t width_px);
+/// Bytes a sample of those that are added up.
+inline constexpr int kSampleBytes = 3;
+
+/// Bytes in which a square painter or, with samples at edges, an edge painter draws `rows` rows of pictures of `width_px` at
+/// a time.
+std::uint64_t quality_band_bytes(const Quality& quality, PixelFormat format, std::int32_t width_px,
+                                 std::int32_t rows = 1, int threads = 1);
 
 /// Draws pictures of a scene with a quality. The scene, and a colour table where one is needed, stay the
 /// caller's.
@@ -41,23 +44,15 @@ class QualityFrame {
   QualityFrame(const BuiltScene& built, const Quality& quality, const Camera& camera, const Camera& fine,
                const Shading& shading, const NodeColors& colors);
 
-  /// Draws row `y` of the picture into the front of `work` (quality_band_bytes); `counts` is added to. Not for
-  /// samples at edges, whose rows want their neighbours: draw_run draws those.
-  Status draw_row(std::int32_t y, PixelFormat format, Bytes work, RenderCounts* counts,
-                  const TraceOptions& options) const;
-  /// Draws samples of an edge painter, in kRgb888, cut off as `camera` or `fine` are.
-  Status draw_run(const SampleRun& run, Bytes samples, RenderCounts* counts,
-                  const TraceOptions& options) const;
-  /// What a ray of `camera` meets with this quality's cut-off.
+  /// Draws rows of a part of the picture's camera, or of the finer one, cut off as that is; `counts` is added to.
+  Status draw(const Camera& camera, bool is_fine, const Band& band, RenderCounts* counts,
+              const TraceOptions& options) const;
+  /// What a ray of the picture's camera meets with this quality's cut-off.
   Status closest_hit(const Ray& ray, Hit* hit, const TraceOptions& options) const;
 
  private:
-  Status draw_band(const Camera& camera, const Cutoff& cutoff, const Band& band, RenderCounts* counts,
-                   const TraceOptions& options) const;
-
   const BuiltScene& built_;
   Quality quality_;
-  Camera fine_;
   Shading shading_;
   NodeColors colors_;
   Cutoff fine_cutoff_;

@@ -30,15 +30,9 @@ VoxelSink metered(const VoxelSink& sink, const Progress& progress, std::uint64_t
   };
 }
 
-void check_depth(int depth) {
-  if (depth < kMinLevel || depth > kMaxLevel) {
-    throw InputError("--depth must be ", kMinLevel, " to ", kMaxLevel);
-  }
-}
-
 std::unique_ptr<SceneSource> generated_scene(const GeneratorSpec& spec) {
   constexpr std::array kNames{"points", "cluster", "spheres", "water", "demo"};  // by GeneratorKind
-  const bool is_points = spec.kind == GeneratorKind::kPoints || spec.kind == GeneratorKind::kCluster;
+  const bool is_points = is_counted(spec.kind);
   SourceFacts facts;
   facts.kind = std::string("generator ") + kNames[static_cast<std::size_t>(spec.kind)];
   facts.level = spec.depth;
@@ -57,18 +51,13 @@ std::unique_ptr<SceneSource> generated_scene(const GeneratorSpec& spec) {
 
 // The level of a world for voxels that lie where they lie: the smallest, or `depth` where that is enough.
 int level_for(const std::array<std::int32_t, 3>& size, std::optional<int> depth) {
-  const std::int32_t largest = std::max({size[0], size[1], size[2]});
-  int needed = kMinLevel;
-  while (needed <= kMaxLevel && (std::int32_t{1} << needed) < largest) {
-    ++needed;
-  }
-  if (needed > kMaxLevel) {
-    throw InputError("the scene is ", largest, " voxels long; the largest world has ", 1 << kMaxLevel);
-  }
+  const std::int32_t largest = std::max({size[0], size[1], size[2], 1});
+  const int needed =
+      std::max(kMinLevel, static_cast<int>(std::bit_width(static_cast<unsigned>(largest - 1))));
+  fail_if(needed > kMaxLevel, "the scene is ", largest, " voxels long; the largest world has ",
+          1 << kMaxLevel);
   const int level = depth.value_or(needed);
-  if (level < needed) {
-    throw InputError("the scene is ", largest, " voxels long and needs --depth ", needed);
-  }
+  fail_if(level < needed, "the scene is ", largest, " voxels long and needs --depth ", needed);
   return level;
 }
 
@@ -194,16 +183,6 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
       });
 }
 
-FitWishes fit_wishes(const SceneArguments& arguments) {
-  FitWishes wishes;
-  wishes.percent = arguments.fit_percent.value_or(wishes.percent);
-  if (arguments.clip) {
-    const auto& [x0, y0, z0, x1, y1, z1] = *arguments.clip;
-    wishes.clip = Bounds{{x0, y0, z0}, {x1, y1, z1}, false};
-  }
-  return wishes;
-}
-
 std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const SceneArguments& arguments) {
   constexpr int kDefaultDepth = 9;
   constexpr double kColumnSides = 16;  // a column so many times as high as wide is no place that was scanned
@@ -223,7 +202,12 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
   if (as_voxels && (arguments.fit_percent || arguments.clip)) {
     throw UsageError("--fit and --clip choose what fills the world, and --as-voxels leaves all as it is");
   }
-  const FitWishes wishes = fit_wishes(arguments);
+  FitWishes wishes;
+  wishes.percent = arguments.fit_percent.value_or(wishes.percent);
+  if (arguments.clip) {
+    const auto& [x0, y0, z0, x1, y1, z1] = *arguments.clip;
+    wishes.clip = Bounds{{x0, y0, z0}, {x1, y1, z1}, false};
+  }
   const auto points = std::make_shared<const Points>(std::move(read), as_voxels ? nullptr : &wishes);
   SourceFacts facts;
   facts.kind = as_voxels ? "points as voxels" : "point cloud, fitted to the world";
@@ -271,9 +255,7 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
 std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments& arguments) {
   const auto mesh = std::make_shared<const TriangleMesh>(std::move(read));
   const bool z_up = arguments.z_up || mesh->is_z_up;
-  if (mesh->triangles.empty()) {
-    throw InputError("no triangles");
-  }
+  fail_if(mesh->triangles.empty(), "no triangles");
   SourceFacts facts;
   facts.kind = "triangle mesh, voxelised";
   facts.level = arguments.depth.value_or(arguments.mesh_depth);
@@ -306,12 +288,8 @@ std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& argum
   if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
     return point_scene(std::move(*cloud), arguments);
   }
-  if (arguments.as_voxels) {
-    throw InputError("--as-voxels is for point files");
-  }
-  if (arguments.fit_percent || arguments.clip) {
-    throw InputError("--fit and --clip are for point files");
-  }
+  fail_if(arguments.as_voxels, "--as-voxels is for point files");
+  fail_if(arguments.fit_percent || arguments.clip, "--fit and --clip are for point files");
   if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
     return open_text_scene(**text, arguments, opening, progress);
   }
@@ -333,9 +311,8 @@ std::unique_ptr<SceneSource> baked_scene(BakedFile read, std::optional<int> dept
   const auto file = std::make_shared<const BakedFile>(std::move(read));
   const BakedScene& scene = file->scene;
   const CompactTree& tree = scene.tree();
-  if (depth && *depth != tree.level()) {
-    throw InputError("was baked with depth ", tree.level(), "; --depth cannot change that");
-  }
+  fail_if(depth && *depth != tree.level(), "was baked with depth ", tree.level(),
+          "; --depth cannot change that");
   SourceFacts facts;
   facts.kind = "baked scene";
   facts.level = tree.level();
@@ -426,25 +403,19 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, const P
 
 std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOpening* opening,
                                         const Progress& progress) {
-  if (arguments.depth) {
-    check_depth(*arguments.depth);
-  }
+  fail_if(arguments.depth && (*arguments.depth < kMinLevel || *arguments.depth > kMaxLevel),
+          "--depth must be ", kMinLevel, " to ", kMaxLevel);
   if (auto spec = parse_generator(arguments.scene); spec && !arguments.content) {
-    if (arguments.as_voxels) {
-      throw UsageError("--as-voxels is for point files, and this is a generator");
-    }
-    if (arguments.fit_percent || arguments.clip) {
-      throw UsageError("--fit and --clip are for point files, and this is a generator");
-    }
-    if (arguments.as_points || arguments.as_heights) {
-      throw UsageError("--as-points and --as-heights are for .npy and .npz, and this is a generator");
-    }
-    if (arguments.full_color != 0) {
-      throw UsageError("--colors is for files, and this is a generator");
-    }
-    if (arguments.frame) {
-      throw UsageError("--frame and --frames are for .vox files with frames, and this is a generator");
-    }
+    const auto refuse = [](bool is_given, const char* sentence) {
+      if (is_given) {
+        throw UsageError(sentence, ", and this is a generator");
+      }
+    };
+    refuse(arguments.as_voxels, "--as-voxels is for point files");
+    refuse(arguments.fit_percent || arguments.clip, "--fit and --clip are for point files");
+    refuse(arguments.as_points || arguments.as_heights, "--as-points and --as-heights are for .npy and .npz");
+    refuse(arguments.full_color != 0, "--colors is for files");
+    refuse(arguments.frame.has_value(), "--frame and --frames are for .vox files with frames");
     if (arguments.depth) {
       spec->depth = *arguments.depth;
     }

@@ -230,6 +230,9 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
     below += counts[++step];
   }
   const std::uint64_t half_way = std::max<std::uint64_t>(64, std::uint64_t{step % 16} << (step / 16));
+  const Background& own = canvas.look->background;
+  const Rgb8 back = own.kind == BackgroundKind::kColor ? own.color : kNight;
+  const std::array<std::uint32_t, 3> behind{back.r, back.g, back.b};
   const std::int32_t end = image.first_row + image.height_px;
   for (std::int32_t y = image.first_row; y < end; y += at_once) {
     const std::int32_t rows = std::min(at_once, end - y);
@@ -238,9 +241,6 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
     }
     const auto first = static_cast<std::size_t>(y - image.first_row) * static_cast<std::size_t>(width);
     for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
-      const std::array<std::uint8_t, 3> night{kNight.r, kNight.g, kNight.b};
-      const Rgb8 own = canvas.look->background.color;
-      const std::array<std::uint8_t, 3> chosen{own.r, own.g, own.b};
       std::uint32_t most = 0;
       std::array<std::uint32_t, 3> shown{};
       for (std::size_t c = 0; c < 3; ++c) {
@@ -253,9 +253,7 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
         if (!image.alpha.empty()) {
           pixel[c] = static_cast<std::uint8_t>(most == 0 ? 0 : shown[c] * 255 / most);
         } else {
-          const std::uint32_t back =
-              canvas.look->background.kind == BackgroundKind::kColor ? chosen[c] : night[c];
-          pixel[c] = static_cast<std::uint8_t>(shown[c] + back * (255 - shown[c]) / 255);
+          pixel[c] = static_cast<std::uint8_t>(shown[c] + behind[c] * (255 - shown[c]) / 255);
         }
       }
       if (!image.alpha.empty()) {

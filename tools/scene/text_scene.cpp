@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 #include <utility>
 
@@ -71,6 +72,13 @@ VoxelBox cut(const VoxelBox& box, std::int32_t side) {
 
 std::string corner_text(const Vec3i& corner) {
   return concat(corner.x, " ", corner.y, " ", corner.z);
+}
+
+template <class... Pieces>
+void fail_at_if(bool is_wrong, const TextPlace& place, const Pieces&... pieces) {
+  if (is_wrong) {
+    fail_at(place, pieces...);
+  }
 }
 
 // What a scene text puts together, and how it streams.
@@ -236,16 +244,14 @@ class TextScene {
       const std::string key = concat(arguments.scene, '\n', part.depth.value_or(0), part.as_voxels ? "v" : "",
                                      part.z_up ? "z" : "");
       std::shared_ptr<const OpenedModel>& kept = opening->opened[key];
-      if (opening->opened.size() > kMostSceneModels) {
-        throw InputError("the scene opens more than the limit of ", grouped(kMostSceneModels), " models");
-      }
+      fail_if(opening->opened.size() > kMostSceneModels, "the scene opens more than the limit of ",
+              grouped(kMostSceneModels), " models");
       if (kept == nullptr) {
         std::unique_ptr<SceneSource> opened = open_scene(arguments, opening, progress);
         opening->generated += is_generated ? opened->points() : 0;
-        if (opening->generated > kMostGenerated) {
-          throw InputError("with this the scene's generators make more than the limit of ",
-                           grouped(kMostGenerated), " points");
-        }
+        fail_if(opening->generated > kMostGenerated,
+                "with this the scene's generators make more than the limit of ", grouped(kMostGenerated),
+                " points");
         kept = survey(std::move(opened), progress);
       }
       model.model = kept;
@@ -254,15 +260,12 @@ class TextScene {
     }
     // Scenes within scenes multiply.
     facts_.placements += model.model->source->placements();
-    if (facts_.placements > kMostPlacements) {
-      fail_at(part.place, "with this the scene places more than the limit of ", grouped(kMostPlacements),
-              " models, boxes and balls");
-    }
+    fail_at_if(facts_.placements > kMostPlacements, part.place,
+               "with this the scene places more than the limit of ", grouped(kMostPlacements),
+               " models, boxes and balls");
     surveyed_ += model.model->voxels;
-    if (surveyed_ > kMostSceneVoxels) {
-      fail_at(part.place, "with this the scene places more than the limit of ", grouped(kMostSceneVoxels),
-              " voxels");
-    }
+    fail_at_if(surveyed_ > kMostSceneVoxels, part.place, "with this the scene places more than the limit of ",
+               grouped(kMostSceneVoxels), " voxels");
     model.size = model.model->source->extent();
     const VoxelBox& solid = model.model->solid;
     if (!solid.empty()) {
@@ -308,13 +311,10 @@ class TextScene {
     int& level = facts_.level;
     level = asked ? *asked : text_.depth.value_or(0);
     if (level == 0) {
-      level = kMinLevel;
-      while (level < kMaxLevel && side() < largest) {
-        ++level;
-      }
-      if (side() < largest) {
-        fail_at(largest_place, "this reaches to ", largest, "; the largest world ends at ", side());
-      }
+      level = std::clamp(static_cast<int>(std::bit_width(static_cast<unsigned>(largest - 1))), kMinLevel,
+                         kMaxLevel);
+      fail_at_if(side() < largest, largest_place, "this reaches to ", largest, "; the largest world ends at ",
+                 side());
     }
   }
 
@@ -322,11 +322,9 @@ class TextScene {
     for (const Placement& model : models_) {
       const VoxelBox& box = model.solid;
       const VoxelBox kept = cut(box, side());
-      if (!model.part->crop && !(kept == box)) {
-        fail_at(model.part->place, "the model's voxels from ", corner_text(box.low), " to ",
-                corner_text(box.high), " leave the world of ", side(), " voxels a side (depth ", facts_.level,
-                "); crop cuts them off");
-      }
+      fail_at_if(!model.part->crop && !(kept == box), model.part->place, "the model's voxels from ",
+                 corner_text(box.low), " to ", corner_text(box.high), " leave the world of ", side(),
+                 " voxels a side (depth ", facts_.level, "); crop cuts them off");
       take(kept, model.model->voxels);
     }
     std::uint64_t primitive_voxels = 0;
@@ -335,18 +333,14 @@ class TextScene {
         continue;
       }
       const VoxelBox box = cut(box_of(part), side());
-      if (box.empty()) {
-        fail_at(part.place, "all of this lies outside the world of ", side(), " voxels a side (depth ",
-                facts_.level, ")");
-      }
+      fail_at_if(box.empty(), part.place, "all of this lies outside the world of ", side(),
+                 " voxels a side (depth ", facts_.level, ")");
       const std::uint64_t volume = std::uint64_t{1} * static_cast<std::uint64_t>(box.high.x - box.low.x) *
                                    static_cast<std::uint64_t>(box.high.y - box.low.y) *
                                    static_cast<std::uint64_t>(box.high.z - box.low.z);
       primitive_voxels += volume;
-      if (primitive_voxels > kMostPrimitiveVoxels) {
-        fail_at(part.place, "boxes and balls up to here hold ", grouped(primitive_voxels),
-                " voxels, the limit is ", grouped(kMostPrimitiveVoxels));
-      }
+      fail_at_if(primitive_voxels > kMostPrimitiveVoxels, part.place, "boxes and balls up to here hold ",
+                 grouped(primitive_voxels), " voxels, the limit is ", grouped(kMostPrimitiveVoxels));
       take(box, volume);
     }
   }
@@ -369,27 +363,22 @@ class TextScene {
         concat(kMinOriginWorlds * side(), " to ", kMaxOriginWorlds * side(), " (-4 to 5 world sizes)");
     for (const SceneText::PlacedLight& each : text_.lights) {
       const Vec3i at = each.light.place;
-      if (each.light.is_point && !(in_reach(at.x) && in_reach(at.y) && in_reach(at.z))) {
-        fail_at(each.place, "the lamp is outside the accepted ", limits);
-      }
+      fail_at_if(each.light.is_point && !(in_reach(at.x) && in_reach(at.y) && in_reach(at.z)), each.place,
+                 "the lamp is outside the accepted ", limits);
     }
     if (text_.camera) {
       const Vec3Q8& eye = text_.camera->eye;
-      if (!(in_reach(eye.x.raw) && in_reach(eye.y.raw) && in_reach(eye.z.raw))) {
-        fail_at(text_.camera_place, "the eye of the camera is outside the accepted ", limits);
-      }
+      fail_at_if(!(in_reach(eye.x.raw) && in_reach(eye.y.raw) && in_reach(eye.z.raw)), text_.camera_place,
+                 "the eye of the camera is outside the accepted ", limits);
       Camera camera;
-      if (set_camera(*text_.camera, 1, 1, facts_.level, &camera) == Status::kBadArgument) {
-        fail_at(text_.camera_place, "up of the camera is parallel to the direction of view");
-      }
+      fail_at_if(set_camera(*text_.camera, 1, 1, facts_.level, &camera) == Status::kBadArgument,
+                 text_.camera_place, "up of the camera is parallel to the direction of view");
     }
     if (text_.water) {
       const SceneText::WaterArea& water = *text_.water;
       const bool fits = !water.from_to || ((*water.from_to)[2] <= side() && (*water.from_to)[3] <= side());
-      if (!fits || water.level_q8 > side() * Q8::kOne) {
-        fail_at(water.place, "the water leaves the world of ", side(), " voxels a side (depth ", facts_.level,
-                ")");
-      }
+      fail_at_if(!fits || water.level_q8 > side() * Q8::kOne, water.place, "the water leaves the world of ",
+                 side(), " voxels a side (depth ", facts_.level, ")");
     }
   }
 
@@ -406,10 +395,8 @@ class TextScene {
     const auto end = begin + static_cast<std::ptrdiff_t>(materials_);
     const auto found = std::find(begin, end, surface);
     if (found == end) {
-      if (materials_ == kMaxSurfaces) {
-        fail_at(place, "with this the scene has more than the limit of ", kMaxSurfaces,
-                " different materials");
-      }
+      fail_at_if(materials_ == kMaxSurfaces, place, "with this the scene has more than the limit of ",
+                 kMaxSurfaces, " different materials");
       facts_.lighting->surfaces[materials_] = surface;
       facts_.palette[materials_] = material_of(surface);
       return static_cast<std::uint8_t>(materials_++);
@@ -480,12 +467,10 @@ std::unique_ptr<SceneSource> open_text_scene(const SceneText& text, const SceneA
   SceneOpening outermost;
   SceneOpening* const all = opening != nullptr ? opening : &outermost;
   const std::string path = canonical_path(arguments.scene);
-  if (std::find(all->path.begin(), all->path.end(), path) != all->path.end()) {
-    throw InputError("this scene is a model of itself");
-  }
-  if (all->path.size() == kMostNestedScenes) {
-    throw InputError("scenes stand within scenes deeper than the limit of ", kMostNestedScenes);
-  }
+  fail_if(std::find(all->path.begin(), all->path.end(), path) != all->path.end(),
+          "this scene is a model of itself");
+  fail_if(all->path.size() == kMostNestedScenes, "scenes stand within scenes deeper than the limit of ",
+          kMostNestedScenes);
   all->path.push_back(path);
   const auto scene = std::make_shared<const TextScene>(text, arguments, all, progress);
   all->path.pop_back();

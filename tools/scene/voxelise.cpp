@@ -216,9 +216,7 @@ bool meets_block(const TriangleBoxTest& test, const TriangleBlock& block) {
 }
 
 std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bool z_up) {
-  if (mesh.triangles.empty()) {
-    throw InputError("no triangles");
-  }
+  fail_if(mesh.triangles.empty(), "no triangles");
   Bounds bounds;
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {

@@ -19,11 +19,6 @@ std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& /*tree*/, Ar
   return nullptr;
 }
 
-std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* /*built*/, std::int32_t /*width_px*/,
-                                                 std::int32_t /*height_px*/, int /*threads*/) {
-  return nullptr;
-}
-
 FirstHits wide_first_hits(BuiltScene* /*built*/) {
   return nullptr;
 }

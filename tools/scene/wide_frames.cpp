@@ -22,9 +22,7 @@ bool WideFrames::prepare(const CompactTree& tree, const Camera& camera) {
 }
 
 bool WideFrames::leave(const char* why) {
-  if (insists_) {
-    throw InputError(why);
-  }
+  fail_if(insists_, why);
   ++left_;
   return false;
 }

@@ -117,13 +117,6 @@ std::unique_ptr<WideRenderer> WideRenderer::make(const CompactTree& tree, Arena*
   return renderer;
 }
 
-std::unique_ptr<WideRenderer> WideRenderer::make(BuiltScene* built, std::int32_t width_px,
-                                                 std::int32_t height_px, int threads) {
-  return built->structure() == StructureKind::kCompact
-             ? make(built->compact(), &built->arena(), width_px, height_px, threads)
-             : nullptr;
-}
-
 FirstHits wide_first_hits(BuiltScene* built) {
   wide::RayMap map;
   if (built->structure() != StructureKind::kCompact || built->draws_from_file() ||

@@ -40,9 +40,6 @@ class WideRenderer {
   /// for kLeastRows. Null, and nothing taken, when there is room for fewer than these with one.
   static std::unique_ptr<WideRenderer> make(const CompactTree& tree, Arena* arena, std::int32_t width_px,
                                             std::int32_t height_px, int threads);
-  /// The same within a scene's budget; null also when the scene is no compact tree.
-  static std::unique_ptr<WideRenderer> make(BuiltScene* built, std::int32_t width_px, std::int32_t height_px,
-                                            int threads);
 
   /// Most rows in a band for `render`.
   virtual std::int32_t rows() const = 0;

@@ -1,6 +1,7 @@
 #include "scene/world_fit.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -67,31 +68,7 @@ std::array<std::int32_t, 3> WorldFit::units(const std::array<double, 3>& positio
   return result;
 }
 
-std::array<std::int32_t, 3> WorldFit::voxel(const std::array<double, 3>& position) const {
-  std::array<std::int32_t, 3> result = units(position);
-  for (std::int32_t& component : result) {
-    component >>= kUnitBits;
-  }
-  return result;
-}
-
 namespace {
-
-constexpr int kLargestLevel = 12;
-
-/// The voxel of a point taken as it is, or nothing when it is outside 0 .. side - 1.
-std::optional<std::array<std::int32_t, 3>> voxel_at(const CloudPoint& point, std::int32_t side) {
-  const std::array<double, 3> position{point.x, point.y, point.z};
-  std::array<std::int32_t, 3> voxel{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    // Written so that a NaN is outside too. -0.0 is 0. Of what is not negative the whole part is the floor.
-    if (!(position[axis] >= 0 && position[axis] < side)) {
-      return std::nullopt;
-    }
-    voxel[axis] = static_cast<std::int32_t>(position[axis]);
-  }
-  return voxel;
-}
 
 [[noreturn]] void refuse(const char* counts_in, const CloudPoint& point, std::int32_t side) {
   char text[256];
@@ -125,9 +102,7 @@ PointSurvey survey_points(const PointCloud& cloud) {
       survey.colors.add(point.color);
     }
   });
-  if (survey.points == 0) {
-    throw InputError("no points");
-  }
+  fail_if(survey.points == 0, "no points");
   survey.world = survey.bounds;
   return survey;
 }
@@ -175,24 +150,18 @@ void choose_world(const PointCloud& cloud, const FitWishes& wishes, PointSurvey*
       ++inside;
     }
   });
-  if (inside == 0) {
-    throw InputError("no point is in the box of --clip");
-  }
+  fail_if(inside == 0, "no point is in the box of --clip");
   survey->left_out = survey->points - inside;
 }
 
 int smallest_level(const PointCloud& cloud, const PointSurvey& survey) {
-  const std::array<double, 3>& min = survey.bounds.low;
-  const std::array<double, 3>& max = survey.bounds.high;
-  if (std::min({min[0], min[1], min[2]}) < 0 || std::max({max[0], max[1], max[2]}) >= 1 << kLargestLevel) {
-    place_points(cloud, kLargestLevel, nullptr,
+  const auto& [low, high, is_empty] = survey.bounds;
+  const double most = *std::max_element(high.begin(), high.end());
+  if (*std::min_element(low.begin(), low.end()) < 0 || most >= 1 << kMaxLevel) {
+    place_points(cloud, kMaxLevel, nullptr,
                  [](auto, auto, auto, auto) {});  // refuses the first that lies outside
   }
-  int level = 1;
-  while (level < kLargestLevel && (max[0] >= 1 << level || max[1] >= 1 << level || max[2] >= 1 << level)) {
-    ++level;
-  }
-  return level;
+  return std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(most))));
 }
 
 void fit_points(const PointCloud& cloud, const PointSurvey& survey, int level, const PaletteMap* colors,
@@ -204,8 +173,9 @@ void fit_points(const PointCloud& cloud, const PointSurvey& survey, int level, c
     if (survey.left_out != 0 && !survey.world.holds(position)) {
       return;
     }
-    const auto voxel = fit.voxel(position);
-    sink(voxel[0], voxel[1], voxel[2], used != nullptr ? used->index(point.color) : std::uint8_t{0});
+    const auto [x, y, z] = fit.units(position);
+    sink(x >> kUnitBits, y >> kUnitBits, z >> kUnitBits,
+         used != nullptr ? used->index(point.color) : std::uint8_t{0});
   });
 }
 
@@ -213,11 +183,13 @@ void place_points(const PointCloud& cloud, int level, const PaletteMap* colors, 
   const std::int32_t side = std::int32_t{1} << level;
   const PaletteMap* const used = cloud.has_color() ? colors : nullptr;
   cloud.for_each([&](const CloudPoint& point) {
-    const auto voxel = voxel_at(point, side);
-    if (!voxel) {
+    // Written so that a NaN is outside too. -0.0 is 0. Of what is not negative the whole part is the floor.
+    const auto lies_within = [side](double at) { return at >= 0 && at < side; };
+    if (!(lies_within(point.x) && lies_within(point.y) && lies_within(point.z))) {
       refuse(cloud.counts_in(), point, side);
     }
-    sink((*voxel)[0], (*voxel)[1], (*voxel)[2], used != nullptr ? used->index(point.color) : std::uint8_t{0});
+    sink(static_cast<std::int32_t>(point.x), static_cast<std::int32_t>(point.y),
+         static_cast<std::int32_t>(point.z), used != nullptr ? used->index(point.color) : std::uint8_t{0});
   });
 }
 

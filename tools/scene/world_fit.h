@@ -45,8 +45,6 @@ class WorldFit {
   /// `position` (within the bounds) in 1/256 voxel, each 1 .. 2^(level + 8) - 1. Equal positions give equal
   /// units.
   std::array<std::int32_t, 3> units(const std::array<double, 3>& position) const;
-  /// The voxel that holds `position`, each 0 .. 2^level - 1.
-  std::array<std::int32_t, 3> voxel(const std::array<double, 3>& position) const;
 
  private:
   std::array<double, 3> center_;

@@ -88,16 +88,16 @@ Action Controls::take_key(const host::Event& event, double seconds) {
 }
 
 Action Controls::take(const host::Event& event, double seconds, std::int32_t height_px) {
+  Action action = Action::kNone;
   switch (event.kind) {
     case host::EventKind::kClose:
       return Action::kEnd;
     case host::EventKind::kKeyDown:
     case host::EventKind::kKeyUp:
       return take_key(event, seconds);
-    case host::EventKind::kText: {
-      const Action action = action_of(event.character);
+    case host::EventKind::kText:
+      action = action_of(event.character);
       return action == Action::kSave ? Action::kNone : action;  // that goes by the key
-    }
     case host::EventKind::kWheel:
       motion_.factor *= std::pow(kWheelFactor, event.steps);
       break;
@@ -110,19 +110,15 @@ Action Controls::take(const host::Event& event, double seconds, std::int32_t hei
     case host::EventKind::kMouseUp:
       buttons_ = event.buttons;
       break;
-    default:
+    case host::EventKind::kMouseDown:
+      action = press(event, seconds);
       break;
+    default:
+      return Action::kNone;
   }
-  Action action = Action::kNone;
-  if (event.kind == host::EventKind::kMouseDown) {
-    action = press(event, seconds);
-  }
-  if (event.kind == host::EventKind::kMouseDown || event.kind == host::EventKind::kMouseUp ||
-      event.kind == host::EventKind::kMouseMove || event.kind == host::EventKind::kWheel) {
-    x_px_ = event.x_px;
-    y_px_ = event.y_px;
-    has_pointer_ = true;
-  }
+  x_px_ = event.x_px;
+  y_px_ = event.y_px;
+  has_pointer_ = true;
   return action;
 }
 

@@ -15,9 +15,7 @@ namespace thimble::tools::viewer {
 namespace {
 
 void check(Status status) {
-  if (status != Status::kOk) {
-    throw InputError("its lights or surfaces are beyond the limits of a lit picture");
-  }
+  fail_if(status != Status::kOk, "its lights or surfaces are beyond the limits of a lit picture");
 }
 
 }  // namespace
@@ -34,10 +32,9 @@ FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWis
   empty_bytes_.resize(4096);
   Arena arena(Bytes(empty_bytes_.data(), empty_bytes_.size()));
   Octree octree;
-  if (Octree::make(scene_->level(), 16, arena, &octree) != Status::kOk ||
-      CompactTree::make(octree, arena, &empty_) != Status::kOk) {
-    throw InputError("internal error: there is no empty world");
-  }
+  fail_if(Octree::make(scene_->level(), 16, arena, &octree) != Status::kOk ||
+              CompactTree::make(octree, arena, &empty_) != Status::kOk,
+          "internal error: there is no empty world");
 }
 
 void FinishedLook::choose(const LookWishes& wishes) {
@@ -92,7 +89,7 @@ void FinishedLook::try_gpu(const Look& look, const Camera& camera, const Shading
     const Band band{Bytes(pixels[by_gpu].data(), pixels[by_gpu].size()), PixelFormat::kRgb888, 0, 0,
                     thin.height_px()};
     const LitScene scene = look.lit_scene();
-    check(by_gpu != 0 ? gpu->render(look.effects, thin, shading, scene, band, nullptr)
+    check(by_gpu != 0 ? gpu->render({look.effects, thin, shading, scene}, band, nullptr)
                       : render_lit_band(look.effects, scene_->tree(), thin, shading, scene, band));
   }
   if (pixels[0] == pixels[1]) {
@@ -169,19 +166,11 @@ FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const
 void FinishedPicture::take_own_look() {
   own_ = default_look(*look_->own_, look_->own_wishes_, framing_);
   const EffectSet missing = own_->effects & ~GpuEngine::effects();
-  if (look_->engine_ == "gpu" && (own_->kind == LookKind::kStars || missing != Effect::kNone)) {
-    throw InputError("--engine gpu does not draw " + (own_->kind == LookKind::kStars
-                                                          ? std::string("points as stars")
-                                                          : "the effects " + effects_text(missing)));
-  }
-  const std::int32_t across = own_->across;
-  fine_ = framing_.camera;
-  if (width_px() * across > kMaxPicturePx || height_px() * across > kMaxPicturePx ||
-      set_camera(framing_.kept, width_px() * across, height_px() * across, camera().level(), &fine_) !=
-          Status::kOk) {
-    own_->across = 1;  // such a camera has no rays between the pixels'
-    own_->at_edges = false;
-  }
+  fail_if(look_->engine_ == "gpu" && (own_->kind == LookKind::kStars || missing != Effect::kNone),
+          "--engine gpu does not draw " + (own_->kind == LookKind::kStars
+                                               ? std::string("points as stars")
+                                               : "the effects " + effects_text(missing)));
+  fine_ = fine_camera(framing_, &*own_);
   constexpr std::uint32_t kFirstExposure = 320;
   const std::uint32_t measured = look_->exposure_.load();
   quick_tone_ = quick_tone(*own_, measured != 0 ? measured : kFirstExposure);
@@ -229,28 +218,36 @@ Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
 
 }  // namespace
 
-Status FinishedPicture::draw_band(const Camera& camera, const Band& band) const {
-  const CompactTree& tree = look_->scene_->tree();
-  return look_->effects_ == Effect::kNone
-             ? render_band(tree, camera, shading_, band)
-             : render_lit_band(look_->effects_, tree, camera, shading_, look_->lit_, band);
+namespace {
+
+// A picture by `paint`, of which `rgb` gets rows as they come where there `are_rows`. False where `goes_on` ended it.
+template <class Paint>
+bool paint_into(std::int32_t width_px, std::int32_t height_px, bool are_rows, std::vector<std::uint8_t>* rgb,
+                const FinishedPicture::GoesOn& goes_on, const Paint& paint) {
+  struct Ended {};
+  const std::size_t line = 3 * static_cast<std::size_t>(width_px);
+  rgb->resize(line * static_cast<std::size_t>(height_px));
+  Painting painting;
+  std::size_t shown = 0;
+  const auto show = [&](double done) {
+    const auto rows = are_rows ? static_cast<std::int32_t>(std::lround(done * height_px)) : 0;
+    const std::size_t end = line * static_cast<std::size_t>(rows);
+    std::copy(painting.image.pixels.data() + shown, painting.image.pixels.data() + end, rgb->data() + shown);
+    shown = end;
+    if (!goes_on(rows)) {
+      throw Ended();
+    }
+  };
+  try {
+    check(paint(show, &painting));
+  } catch (const Ended&) {
+    return false;
+  }
+  rgb->swap(painting.image.pixels);
+  return goes_on(height_px);
 }
 
-// Of the picture of every `step`-th pixel, 0: of the finished one.
-void FinishedPicture::draw_row(int step, std::int32_t y, std::uint8_t* rgb) const {
-  const int many = across();
-  if (step != 0 || many == 1) {
-    const Camera thin = camera().thinned(std::max(step, 1));
-    check(draw_band(thin, row_of(thin, y, rgb)));
-    return;
-  }
-  thread_local std::vector<std::uint8_t> samples;
-  samples.resize(samples_bytes(width_px(), many));
-  const Bytes fine(samples.data(), samples.size());
-  check(draw_band(fine_, {fine, PixelFormat::kRgb888, 0, y * many, many}));
-  check(average_samples(fine, many, width_px(), y, PixelFormat::kRgb888,
-                        Bytes(rgb, row_bytes(PixelFormat::kRgb888, width_px()))));
-}
+}  // namespace
 
 bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
                            const GoesOn& goes_on, KeptSamples* kept) const {
@@ -261,53 +258,29 @@ bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::ui
   if (own_ && step == 0) {
     return paint_own(threads->count(), rgb, goes_on);
   }
-  if (step == 0 && at_edges()) {
-    return draw_at_edges(threads->count(), rgb, goes_on);
-  }
-  const int every = std::max(step, 1);
-  const std::int32_t rows = thinned_px(height_px(), every);
-  const std::size_t line = 3 * static_cast<std::size_t>(thinned_px(width_px(), every));
-  rgb->resize(line * static_cast<std::size_t>(rows));
-  const std::int32_t chunk = kRowsAThread * threads->count();
-  for (std::int32_t first = 0; first < rows; first += chunk) {
-    const std::int32_t count = std::min(chunk, rows - first);
-    threads->each(count, [&](int i) {
-      draw_row(step, first + i, rgb->data() + line * static_cast<std::size_t>(first + i));
-    });
-    if (!goes_on(first + count)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-bool FinishedPicture::draw_at_edges(int threads, std::vector<std::uint8_t>* rgb,
-                                    const GoesOn& goes_on) const {
-  constexpr int kChannels = 3;
-  const std::int32_t width = width_px();
-  const std::int32_t height = height_px();
-  rgb->resize(row_bytes(PixelFormat::kRgb888, width) * static_cast<std::size_t>(height));
-  const auto draw = [&](const SampleRun& run, Bytes samples, std::size_t /*worker*/) {
-    return draw_band(run.camera, {samples, PixelFormat::kRgb888, 0, run.row, 1});
-  };
-  const auto finish = [&](std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count) {
-    std::uint8_t* pixel =
-        rgb->data() + kChannels * (static_cast<std::size_t>(py) * static_cast<std::size_t>(width) +
-                                   static_cast<std::size_t>(px));
-    std::transform(sums, sums + kChannels, pixel,
-                   [count](std::uint32_t sum) { return mean_of_samples(sum, count); });
-  };
-  EdgeRows rows(camera(), fine_, kChannels, threads, {draw, finish});
-  const std::int32_t chunk = kEdgeRowsAThread * threads;
-  std::vector<std::uint8_t> work(EdgeRows::work_bytes(kChannels, width, chunk, threads));
-  for (std::int32_t first = 0; first < height; first += chunk) {
-    const std::int32_t count = std::min(chunk, height - first);
-    check(rows.draw(first, count, Bytes(work.data(), work.size())));
-    if (!goes_on(first + count)) {
-      return false;
-    }
-  }
-  return true;
+  // What --effects and --shade say.
+  const Camera thin = camera().thinned(std::max(step, 1));
+  const int many = step == 0 ? across() : 1;
+  const Sampler sampler{
+      "", threads->count(),
+      [this](const Camera& view, bool /*is_fine*/, const Band& band, PaintCounts* /*counts*/) {
+        return render_lit_band(look_->effects_, look_->scene_->tree(), view, shading_, look_->lit_, band);
+      }};
+  Quality quality;
+  quality.across = many;
+  quality.at_edges = step == 0 && at_edges();
+  const std::int32_t rows = (quality.at_edges ? kEdgeRowsAThread : kRowsAThread) * threads->count();
+  std::vector<std::uint8_t> work(static_cast<std::size_t>(
+      quality_band_bytes(quality, PixelFormat::kRgb888, thin.width_px(), rows, threads->count())));
+  const Bytes place(work.data(), work.size());
+  const BandPainter painter =
+      quality.at_edges ? edge_painter(sampler, camera(), fine_, PixelFormat::kRgb888, place)
+                       : square_painter(sampler, many == 1 ? thin : fine_, many, PixelFormat::kRgb888, place);
+  return paint_into(thin.width_px(), thin.height_px(), true, rgb, goes_on,
+                    [&](const Progress& progress, Painting* painting) {
+                      return paint(painter, thin.width_px(), {0, thin.height_px()}, PixelFormat::kRgb888,
+                                   progress, painting);
+                    });
 }
 
 // Also how many samples there are, as in render_look.cpp.
@@ -330,6 +303,64 @@ void FinishedPicture::keep_exposure() {
   }
 }
 
+namespace {
+
+// Rows of a pass into `image`, which holds all of it: every `step`-th pixel with its first sample, or with step 0 all
+// samples of all pixels. `fine` has `across` x `across` pixels for each of the picture's. What is in `kept` is of the
+// same picture; a pass with a step leaves its own samples there.
+Status draw_pass(const LookRows& look, const Camera& fine, int across, int step, std::int32_t first,
+                 std::int32_t rows, KeptSamples* kept, Image* image) {
+  constexpr std::size_t kChannels = 4;
+  constexpr std::int32_t kColumns = 8;  // so that what lies side by side is drawn together
+  // Of the pass's picture; (px, py) in the finished one. `is_known`: its first sample was drawn before.
+  struct Pixel {
+    std::int32_t x, y, px, py;
+    bool is_known;
+  };
+  std::vector<Pixel> pixels;
+  std::vector<SamplePlace> places;
+  const std::int32_t every = std::max(step, 1);
+  const std::int32_t count = step == 0 ? across * across : 1;  // of the samples that a pixel gets
+  for (std::int32_t left = 0; left < image->width_px; left += kColumns) {
+    for (std::int32_t y = first; y < first + rows; ++y) {
+      for (std::int32_t x = left; x < std::min(left + kColumns, image->width_px); ++x) {
+        const std::int32_t px = x * every;
+        const std::int32_t py = y * every;
+        const bool is_known = kept->step != 0 && px % kept->step == 0 && py % kept->step == 0;
+        pixels.push_back({x, y, px, py, is_known});
+        for (std::int32_t i = is_known ? 1 : 0; i < count; ++i) {
+          places.push_back({px * across + i % across, py * across + i / across, px, py});
+        }
+      }
+    }
+  }
+  std::vector<std::uint8_t> colors(3 * places.size());
+  std::vector<std::uint8_t> samples(kChannels * places.size());
+  const Status status =
+      look.draw_places(fine, {places.data(), places.size()}, Bytes(colors.data(), colors.size()),
+                       Bytes(samples.data(), samples.size()), nullptr);
+  const std::uint8_t* next = samples.data();
+  const auto width = static_cast<std::size_t>(fine.width_px() / across);
+  for (const Pixel& pixel : pixels) {
+    std::array<std::uint8_t, kChannels>& own =
+        kept->drawn[static_cast<std::size_t>(pixel.py) * width + static_cast<std::size_t>(pixel.px)];
+    if (!pixel.is_known) {
+      std::copy_n(next, kChannels, own.begin());
+      next += kChannels;
+    }
+    std::array<std::uint32_t, kChannels> sums{own[0], own[1], own[2], own[3]};
+    for (std::int32_t i = 1; i < count; ++i, next += kChannels) {
+      for (std::size_t channel = 0; channel < kChannels; ++channel) {
+        sums[channel] += next[channel];
+      }
+    }
+    LookRows::finish_sums(pixel.x, pixel.y, sums.data(), static_cast<std::uint32_t>(count), image);
+  }
+  return status;
+}
+
+}  // namespace
+
 bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
                                const GoesOn& goes_on, KeptSamples* kept) const {
   LookCanvas canvas{&look_->scene_->tree(), &*own_, &framing_, fine_, {}, threads->count()};
@@ -339,7 +370,7 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
   }
   expose(&canvas);
   const LookRows rows(canvas, fine_, exposure_);
-  SamplePass pass(rows, fine_, own_->across, step, kept);
+  kept->drawn.resize(static_cast<std::size_t>(width_px()) * static_cast<std::size_t>(height_px()));
   Image image;
   image.width_px = thinned_px(width_px(), std::max(step, 1));
   image.height_px = thinned_px(height_px(), std::max(step, 1));
@@ -350,7 +381,7 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
   for (std::int32_t first = 0; first < image.height_px;) {
     const auto start = std::chrono::steady_clock::now();
     const std::int32_t count = std::min(chunk, image.height_px - first);
-    check(pass.draw(first, count, &image));
+    check(draw_pass(rows, fine_, own_->across, step, first, count, kept, &image));
     std::memcpy(rgb->data() + line * static_cast<std::size_t>(first),
                 image.pixels.data() + line * static_cast<std::size_t>(first),
                 line * static_cast<std::size_t>(count));
@@ -363,13 +394,12 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
             : took > kChunkTime   ? std::max(chunk / 2, 1)
                                   : chunk;
   }
-  pass.end();
+  kept->step = std::max(step, 1);
   return true;
 }
 
 // The whole picture of the scene's own look at once: stars, or samples where edges are.
 bool FinishedPicture::paint_own(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const {
-  struct Ended {};
   const bool has_rows = at_edges();  // which are finished one after the other
   std::vector<std::uint8_t> work(has_rows ? look_edge_bytes(width_px(), kEdgeRowsAThread * threads, threads)
                                           : look_work_bytes(width_px(), 1) *
@@ -383,23 +413,10 @@ bool FinishedPicture::paint_own(int threads, std::vector<std::uint8_t>* rgb, con
       canvas.streams = look_->streams_for(*own_, camera(), shading_, threads);
     }
   }
-  const std::size_t line = 3 * static_cast<std::size_t>(width_px());
-  rgb->resize(line * static_cast<std::size_t>(height_px()));
-  Painting painting;
-  const auto show = [&](double done) {
-    const auto rows = has_rows ? static_cast<std::int32_t>(std::lround(done * height_px())) : 0;
-    std::copy_n(painting.image.pixels.data(), line * static_cast<std::size_t>(rows), rgb->data());
-    if (!goes_on(rows)) {
-      throw Ended();
-    }
-  };
-  try {
-    check(paint_look(canvas, has_rows ? exposure_ : 256, show, &painting));
-  } catch (const Ended&) {
-    return false;
-  }
-  rgb->swap(painting.image.pixels);
-  return goes_on(height_px());
+  return paint_into(width_px(), height_px(), has_rows, rgb, goes_on,
+                    [&](const Progress& progress, Painting* painting) {
+                      return paint_look(canvas, has_rows ? exposure_ : 256, progress, painting);
+                    });
 }
 
 bool FinishedPicture::is_plain() const {
@@ -461,71 +478,6 @@ void FinishedPicture::draw_behind_row(int step, std::int32_t row, std::uint8_t* 
     std::transform(rgb, rgb + 3 * static_cast<std::size_t>(thin.width_px()), rgb,
                    [this](std::uint8_t channel) { return quick_tone_[channel]; });
   }
-}
-
-namespace {
-
-constexpr std::size_t kChannels = 4;
-
-}  // namespace
-
-SamplePass::SamplePass(const LookRows& look, const Camera& fine, int across, int step, KeptSamples* kept)
-    : look_(look),
-      fine_(fine),
-      across_(across),
-      step_(step),
-      width_px_(fine.width_px() / across),
-      kept_(kept) {
-  kept_->drawn.resize(static_cast<std::size_t>(width_px_) *
-                      static_cast<std::size_t>(fine.height_px() / across));
-}
-
-Status SamplePass::draw(std::int32_t first, std::int32_t rows, Image* image) {
-  constexpr std::int32_t kColumns = 8;  // so that what lies side by side is drawn together
-  const std::int32_t every = std::max(step_, 1);
-  const std::int32_t across = step_ == 0 ? across_ : 1;  // of the samples that a pixel gets
-  pixels_.clear();
-  places_.clear();
-  for (std::int32_t left = 0; left < image->width_px; left += kColumns) {
-    for (std::int32_t y = first; y < first + rows; ++y) {
-      for (std::int32_t x = left; x < std::min(left + kColumns, image->width_px); ++x) {
-        const std::int32_t px = x * every;
-        const std::int32_t py = y * every;
-        const bool is_known = kept_->step != 0 && px % kept_->step == 0 && py % kept_->step == 0;
-        pixels_.push_back({x, y, px, py, is_known});
-        for (std::int32_t i = is_known ? 1 : 0; i < across * across; ++i) {
-          places_.push_back({px * across_ + i % across, py * across_ + i / across, px, py});
-        }
-      }
-    }
-  }
-  colors_.resize(3 * places_.size());
-  samples_.resize(kChannels * places_.size());
-  const Status status =
-      look_.draw_places(fine_, {places_.data(), places_.size()}, Bytes(colors_.data(), colors_.size()),
-                        Bytes(samples_.data(), samples_.size()), nullptr);
-  const std::uint8_t* next = samples_.data();
-  for (const Pixel& pixel : pixels_) {
-    std::array<std::uint8_t, kChannels>& kept =
-        kept_->drawn[static_cast<std::size_t>(pixel.py) * static_cast<std::size_t>(width_px_) +
-                     static_cast<std::size_t>(pixel.px)];
-    if (!pixel.is_known) {
-      std::copy_n(next, kChannels, kept.begin());
-      next += kChannels;
-    }
-    std::array<std::uint32_t, kChannels> sums{kept[0], kept[1], kept[2], kept[3]};
-    for (std::int32_t i = 1; i < across * across; ++i, next += kChannels) {
-      for (std::size_t channel = 0; channel < kChannels; ++channel) {
-        sums[channel] += next[channel];
-      }
-    }
-    LookRows::finish_sums(pixel.x, pixel.y, sums.data(), static_cast<std::uint32_t>(across * across), image);
-  }
-  return status;
-}
-
-void SamplePass::end() {
-  kept_->step = std::max(step_, 1);
 }
 
 namespace {

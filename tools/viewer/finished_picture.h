@@ -39,38 +39,6 @@ struct KeptSamples {
   std::vector<std::array<std::uint8_t, 4>> drawn;  ///< a place for each pixel
 };
 
-/// One pass: every `step`-th pixel with its first sample, or with step 0 all samples of all pixels.
-class SamplePass {
- public:
-  /// `fine` has `across` x `across` pixels for each of the picture's. What is in `kept` is of the same picture; a
-  /// pass with a step leaves its own samples there.
-  SamplePass(const LookRows& look, const Camera& fine, int across, int step, KeptSamples* kept);
-
-  /// Some rows of the pass's picture into `image`, which holds all of it.
-  Status draw(std::int32_t first, std::int32_t rows, Image* image);
-  /// After the last row.
-  void end();
-
- private:
-  // Of the pass's picture; (px, py) in the finished one. `is_known`: its first sample was drawn before.
-  struct Pixel {
-    std::int32_t x, y, px, py;
-    bool is_known;
-  };
-
-  const LookRows& look_;
-  const Camera& fine_;
-  int across_;
-  int step_;
-  std::int32_t width_px_;  // of the picture
-  KeptSamples* kept_;
-  // Of the rows that are drawn together:
-  std::vector<Pixel> pixels_;
-  std::vector<SamplePlace> places_;
-  std::vector<std::uint8_t> colors_;
-  std::vector<std::uint8_t> samples_;
-};
-
 /// What the command line says of how pictures look.
 struct LookWishes {
   std::optional<ShadeMode> shade;  ///< --shade
@@ -190,11 +158,8 @@ class FinishedPicture {
 
  private:
   void take_own_look();
-  Status draw_band(const Camera& camera, const Band& band) const;
-  void draw_row(int step, std::int32_t y, std::uint8_t* rgb) const;
   bool draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on,
                 KeptSamples* kept) const;
-  bool draw_at_edges(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
   void expose(LookCanvas* canvas) const;
   bool paint_own(int threads, std::vector<std::uint8_t>* rgb, const GoesOn& goes_on) const;
   EffectSet effects() const { return own_ ? own_->effects : look_->effects_; }

@@ -85,7 +85,7 @@ Contest::Contest(const std::string& kind, std::uint64_t points, int depth, std::
   arguments.depth = depth;
   const auto source = tools::open_scene(arguments);
   built_ = std::make_unique<tools::BuiltScene>(*source, tools::BuildOptions{});
-  renderer_ = tools::WideRenderer::make(built_.get(), kWidthPx, kHeightPx, 1);
+  renderer_ = tools::WideRenderer::make(built_->compact(), &built_->arena(), kWidthPx, kHeightPx, 1);
   const std::uint64_t voxels = built_->voxels();
   // What they keep a voxel, about, while they build; and what a grid of bits takes in any case.
   struct Maker {
