@@ -89,9 +89,8 @@ TEST_CASE("surface_of: absurd parameters -> clamped to what the core takes") {
       CAPTURE(absurd);
       CAPTURE(kind);
       Material material = of_kind(static_cast<tools::SurfaceKind>(kind));
-      material.weight = material.roughness = material.specular = material.ior = material.attenuation =
-          material.flux = material.emission = material.density = material.metalness = material.transparency =
-              absurd;
+      material.weight = material.roughness = material.ior = material.attenuation = material.flux =
+          material.emission = material.density = material.metalness = material.transparency = absurd;
       const Surface surface = surface_of(material);
       CHECK(surface.index_q12 >= kMinIndexQ12);
       CHECK(surface.index_q12 <= kMaxIndexQ12);

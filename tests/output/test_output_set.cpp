@@ -13,7 +13,7 @@
 
 #include "output/held_signals.h"
 #include "output/output_file.h"
-#include "readers/mapped_file.h"
+#include "readers/file_bytes.h"
 #include "support/run_command.h"
 
 using namespace thimble::tools;

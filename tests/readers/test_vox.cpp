@@ -277,7 +277,6 @@ TEST_CASE("vox: MATT -> kind, weight and the values whose bits are set") {
   CHECK(a.kind == SurfaceKind::kGlass);
   CHECK(a.weight == 0.75);
   CHECK(a.roughness == 0.25);
-  CHECK(a.specular == 0.5);
   CHECK(a.ior == 1.125);
   CHECK(a.attenuation == 2);
   CHECK(a.flux == 3);
@@ -320,9 +319,9 @@ TEST_CASE("vox: MATL -> kind and values, newer names before older ones, bad numb
   }
   CHECK(palette[255].kind == SurfaceKind::kDiffuse);
   const auto values = [](const Material& m) {
-    return std::vector<double>{m.weight, m.roughness, m.specular, m.ior, m.attenuation, m.transparency};
+    return std::vector<double>{m.weight, m.roughness, m.ior, m.attenuation, m.transparency};
   };
-  CHECK(values(palette[1]) == std::vector<double>{0.5, 0.1, 0.25, 1.5, 0.125, 0.75});
+  CHECK(values(palette[1]) == std::vector<double>{0.5, 0.1, 1.5, 0.125, 0.75});
   CHECK(palette[2].emission == 0.4);
   CHECK(palette[2].flux == 4);
   CHECK(palette[2].ior == 1.25);
@@ -330,9 +329,8 @@ TEST_CASE("vox: MATL -> kind and values, newer names before older ones, bad numb
   CHECK(palette[3].transparency == 0.25);
   CHECK(palette[4].metalness == 1);
   CHECK(palette[4].density == 0.05);
-  CHECK(values(palette[4]) == std::vector<double>{1, 0, 0.5, 1.3, 0, 0});
+  CHECK(values(palette[4]) == std::vector<double>{1, 0, 1.3, 0, 0});
   CHECK(palette[5].roughness == 0);
-  CHECK(palette[5].specular == 0);
   CHECK(palette[5].weight == 1);
   CHECK(std::isfinite(palette[5].ior));
 }

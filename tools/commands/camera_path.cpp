@@ -138,7 +138,7 @@ const char* const kPathColumns =
     "degrees, or both may follow";
 
 CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
-  const FileBytes bytes = about(printable(path), [&] { return load_file(path, kMostPathBytes); });
+  const SharedBytes bytes = about(printable(path), [&] { return load_file(path, kMostPathBytes); });
   return PathReader(path, view).read(bytes.text());
 }
 

@@ -271,7 +271,7 @@ void run(const TraceCommand& command) {
         refuse_zero_bytes(first, "rays, one a line");
       }
     };
-    return RayFile(share(load_file(command.rays_path, kFileLimitBytes, look)),
+    return RayFile(load_file(command.rays_path, kFileLimitBytes, look),
                    {built.level(), command.direction_bits, command.engine.name == "ray32"});
   });
   Stats stats(command.scene.arguments.scene, *source, built);

@@ -72,7 +72,7 @@ void add_uart_picture(CLI::App& app) {
       ->required();
   sub->group("");
   when_chosen(*sub, [command] {
-    const FileBytes log = load_file(command->log, std::uint64_t{1} << 30);
+    const SharedBytes log = load_file(command->log, std::uint64_t{1} << 30);
     const Image picture = find_picture(log.text());
     OutputSet outputs({command->output}, {command->log});
     write_picture(outputs[0], command->output, picture);

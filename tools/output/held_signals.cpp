@@ -48,7 +48,7 @@ extern "C" void end_unless_held(int number) {
   }
 }
 
-// Reading on in a mapped file (mapped_file.h) that another program cut off would bring the signal again.
+// Reading on in a mapped file (file_bytes.h) that another program cut off would bring the signal again.
 extern "C" void end_cut_off(int) {
   constexpr std::string_view kSentence = "thimble: an input was cut off, or failed, while it was read\n";
   remove_unfinished();

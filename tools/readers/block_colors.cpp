@@ -1,7 +1,8 @@
-#include "readers/block_colors.h"
-
-#include <algorithm>
-#include <array>
+// What blocks of Minecraft and Minetest look like: one plain colour of this project's own a kind of block. A name is
+// stripped of what stands before the first colon and in brackets, and the first entry of a table whose word is part of it
+// gives the colour; a colour's name in front (`light_blue_wool`) gives that. Numbers of blocks from before names (0 to
+// 255) have a table of names.
+#include "readers/formats.h"
 
 namespace thimble::tools {
 namespace {

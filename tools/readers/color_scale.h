@@ -2,14 +2,8 @@
 /// does not pass for another scale.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <string>
-
 #include "readers/formats.h"
 #include "readers/mesh.h"
-#include "readers/source.h"
 
 namespace thimble::tools {
 
@@ -22,9 +16,14 @@ class ColorScale {
     is_whole_ = is_whole_ && component == std::floor(component);
     highest_ = std::max(highest_, component);
   }
-  /// Within what bytes have, unless something else was stated.
-  float clamped(double component) const {
-    return static_cast<float>(std::fmax(0, std::fmin(component, stated_ != 0 ? stated_ : 255)));
+  /// Sees a colour, and what is kept of it until all are seen: within what bytes have, unless something else was stated.
+  std::array<float, 3> keep(std::span<const double> components) {
+    std::array<float, 3> kept{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      kept[i] = static_cast<float>(std::fmax(0, std::fmin(components[i], stated_ != 0 ? stated_ : 255)));
+      see(static_cast<double>(kept[i]));
+    }
+    return kept;
   }
   /// Nothing was below 0, above 65,535 or no number.
   bool is_valid() const { return is_valid_; }
@@ -50,6 +49,17 @@ class ColorScale {
 
   Rgb color(double red, double green, double blue) const {
     return {unit_to_byte(red / full()), unit_to_byte(green / full()), unit_to_byte(blue / full())};
+  }
+  /// What was kept as colours; white where it is below 0.
+  std::vector<Rgb> colors(const std::vector<std::array<float, 3>>& kept) const {
+    std::vector<Rgb> colors;
+    colors.reserve(kept.size());
+    for (const auto& [red, green, blue] : kept) {
+      colors.push_back(
+          red < 0 ? Rgb{}
+                  : color(static_cast<double>(red), static_cast<double>(green), static_cast<double>(blue)));
+    }
+    return colors;
   }
 
  private:

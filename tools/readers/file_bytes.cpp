@@ -1,6 +1,5 @@
 #include "readers/file_bytes.h"
 
-#include <bit>
 #include <cmath>
 
 namespace thimble::tools {

@@ -8,7 +8,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -16,9 +15,9 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "readers/input_error.h"
-#include "readers/shared_bytes.h"
 
 namespace thimble::tools {
 
@@ -32,38 +31,22 @@ using FirstLook = std::function<void(std::span<const std::uint8_t> first)>;
 /// What `load_file` refuses to exceed when the caller names no limit: 4 GiB after decompression.
 inline constexpr std::uint64_t kFileLimitBytes = std::uint64_t{4} << 30;
 
-/// Owned bytes that never change. Moves in constant time, and the bytes stay where they are when it does, so
-/// views into them outlive a move; it does not copy.
-class FileBytes {
- public:
-  FileBytes() = default;
-  FileBytes(FileBytes&& other) noexcept
-      : data_(std::move(other.data_)), size_(std::exchange(other.size_, 0)) {}
-  FileBytes& operator=(FileBytes&& other) noexcept {
-    data_ = std::move(other.data_);
-    size_ = std::exchange(other.size_, 0);
-    return *this;
+/// Bytes as readers take them: a view and whatever keeps it alive. Copies share the bytes, so a reader whose result
+/// streams from the file keeps one. The owner may be anything: a loaded file, a mapped one, or nothing at all when the
+/// bytes outlive the result anyway (a fuzzer's input, a literal).
+struct SharedBytes {
+  std::span<const std::uint8_t> bytes;
+  std::shared_ptr<const void> owner;  ///< keeps `bytes` valid; may be empty
+
+  /// The same bytes as text, not terminated by a zero.
+  std::string_view text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+  /// Takes over `content` (moved, not copied, when it is a temporary).
+  static SharedBytes own(std::string content) {
+    auto kept = std::make_shared<const std::string>(std::move(content));
+    return {{reinterpret_cast<const std::uint8_t*>(kept->data()), kept->size()}, kept};
   }
-  /// A copy of `bytes`: for tests, fuzzers and data that is already in memory.
-  /// @throws InputError when there is no memory for it.
-  static FileBytes copy_of(std::span<const std::uint8_t> bytes);
-
-  std::span<const std::uint8_t> bytes() const { return {data_.get(), size_}; }
-  std::size_t size() const { return size_; }
-  /// The same bytes as text, for readers of text formats. Not terminated by a zero.
-  std::string_view text() const { return {reinterpret_cast<const char*>(data_.get()), size_}; }
-
- private:
-  friend class FileBuffer;
-  struct Free {
-    void operator()(std::uint8_t* data) const { std::free(data); }
-  };
-  std::unique_ptr<std::uint8_t, Free> data_;
-  std::size_t size_ = 0;
 };
-
-/// The same bytes for readers that share them.
-SharedBytes share(FileBytes bytes);
 
 /// All bytes of the file `path`: a regular file, a pipe or a device such as `/dev/stdin`, read to its end
 /// once.
@@ -79,14 +62,22 @@ SharedBytes share(FileBytes bytes);
 ///   damaged or followed by something else; and what `look` throws. ShortageError where the system has no descriptor
 ///   or memory left to open it, OutputError where this run would overwrite it. Zero bytes after the last member are
 ///   padding and ignored, as gzip itself does.
-FileBytes load_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes,
-                    const FirstLook& look = {});
+SharedBytes load_file(const std::string& path, std::uint64_t limit_bytes = kFileLimitBytes,
+                      const FirstLook& look = {});
+
+/// Regular files of so many bytes or more are mapped, unless they are packed: only what is read of them takes memory, and
+/// the system takes that back when it needs it. Their size is not limited. Nothing else may cut them off meanwhile.
+inline constexpr std::uint64_t kMappedBytes = std::uint64_t{64} << 20;
+
+/// What `load_file` gives; mapped where the file is large.
+/// @param is_beside  another file names it: only a regular one is read, as by `load_beside`
+SharedBytes load_shared(const std::string& path, const FirstLook& look, bool is_beside = false);
 
 /// The same of a file that another file names, into `file`: a regular one, since nobody chose to wait for a pipe or a
 /// device there.
 /// @return what is wrong with it ("is empty"), or nothing: a scene is worth having without its pictures
 /// @throws ShortageError, OutputError  as `load_file`
-std::string load_beside(const std::string& path, std::uint64_t limit_bytes, FileBytes& file);
+std::string load_beside(const std::string& path, std::uint64_t limit_bytes, SharedBytes& file);
 
 /// What `inflate_bytes` takes: deflate with zlib's frame around it, with gzip's, or bare as in a .zip.
 enum class Deflated : std::uint8_t { kZlib, kGzip, kBare };
@@ -95,10 +86,27 @@ enum class Deflated : std::uint8_t { kZlib, kGzip, kBare };
 /// @param limit_bytes  the most bytes accepted
 /// @param place        what errors call these bytes
 /// @throws InputError  damaged or truncated data, more bytes than the limit
-FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
-                        const std::string& place);
+SharedBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
+                          const std::string& place);
 /// The first `count` bytes of what `packed` holds, or all where it holds fewer or is damaged behind them.
-FileBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count);
+SharedBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count);
+
+/// A member of a `.zip`, stored or deflated; neither an encrypted one nor one in the form for more than 4 GiB (zip.cpp).
+struct ZipMember {
+  std::string_view name;
+  std::uint64_t size_bytes = 0;  ///< as the directory says; unpacking holds it to that
+  SharedBytes packed;
+  bool is_deflated = false;
+};
+
+/// The directory's members, in its order. They share the bytes of `file`.
+/// @throws InputError  no directory, members that leave the file, a way of packing that is not read
+std::vector<ZipMember> zip_members(const SharedBytes& file);
+
+/// A member's bytes. @throws InputError  damaged data, another size than the directory says
+SharedBytes zip_unpack(const ZipMember& member);
+/// The first `count` of them, or all of a shorter member.
+SharedBytes zip_beginning(const ZipMember& member, std::uint64_t count);
 
 /// How a number is written in binary.
 struct NumberType {
@@ -145,7 +153,6 @@ class ByteReader {
   std::uint8_t u8() { return *take(1).data(); }
   std::int8_t i8() { return static_cast<std::int8_t>(u8()); }
   std::uint16_t u16() { return static_cast<std::uint16_t>(little(2)); }
-  std::int16_t i16() { return static_cast<std::int16_t>(u16()); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(little(4)); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
   std::uint64_t u64() { return little(8); }

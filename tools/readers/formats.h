@@ -2,9 +2,9 @@
 /// there. Which of them reads which file: read_any.h. What readers are made of comes with it: bytes, words, what they return.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
-#include "readers/file_bytes.h"
 #include "readers/source.h"
 #include "readers/text.h"
 
@@ -26,6 +26,12 @@ using HeightAt = std::function<double(std::uint64_t column, std::uint64_t row)>;
 /// @throws InputError  fewer than 2 x 2 points, no height at all
 Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightAt& height);
 
+/// The plain colour of a block of Minecraft or Minetest by its name, such as `minecraft:oak_leaves[persistent=true]`
+/// (block_colors.cpp); nothing for air and what is as invisible. A name that says nothing is grey.
+std::optional<Rgb> block_color(std::string_view name);
+/// The same by its number in files from before 2018. `data` tells the colour of wool, clay and glass.
+std::optional<Rgb> block_color(unsigned number, unsigned data);
+
 /// What a reader needs beside the bytes; most need none of it.
 struct ReadOptions {
   std::string path{};                    ///< of the file, for the other files that it names; may be empty
@@ -44,10 +50,12 @@ FormatReader read_binvox, read_gadget, read_gltf, read_gox, read_height_grid, re
     read_mts, read_npy, read_obj, read_oct, read_octomap, read_off, read_pcd, read_ply, read_qb, read_qbcl,
     read_scene_text, read_schematic, read_stl, read_vox, read_vxl, read_xyz;
 
+/// How Voxlap's own maps begin; those of Ace of Spades have nothing to know them by.
+inline constexpr std::string_view kVoxlapMagic("\x00\x20\x07\x09", 4);
+
 /// Whether a file that begins so is of the format.
 using FormatLook = bool(std::span<const std::uint8_t> bytes);
-FormatLook looks_like_gadget, looks_like_gltf, looks_like_height_grid, looks_like_npy, looks_like_oct,
-    looks_like_octomap, looks_like_off, looks_like_pcd, looks_like_ply, looks_like_schematic, looks_like_stl,
-    looks_like_vxl;
+FormatLook looks_like_gadget, looks_like_gltf, looks_like_height_grid, looks_like_npy, looks_like_octomap,
+    looks_like_off, looks_like_pcd, looks_like_ply, looks_like_schematic, looks_like_stl;
 
 }  // namespace thimble::tools

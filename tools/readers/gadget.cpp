@@ -16,15 +16,6 @@
 // Source of the format: Springel, "User guide for GADGET-2", section 6.
 #include "readers/formats.h"
 
-#include <array>
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <utility>
-
-#include "readers/file_bytes.h"
-#include "readers/text.h"
-
 namespace thimble::tools {
 
 namespace {

@@ -20,21 +20,11 @@
 // Source of the format: Khronos Group, "glTF 2.0 Specification".
 #include "readers/formats.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "output/units.h"
 #include "readers/gltf_file.h"
 #include "readers/mesh.h"
-#include "readers/text.h"
 #include "readers/texture.h"
 
 namespace thimble::tools {
@@ -251,9 +241,8 @@ class Scene {
       return;
     }
     const auto values = [&](const char* name, std::uint32_t components) {
-      const auto number = gltf_number(*attributes, name, place);
-      const GltfAccessor accessor = number ? file_.accessor(*number) : GltfAccessor{};
-      if (number && accessor.components != components) {
+      const GltfAccessor accessor = file_.accessor(*attributes, name, place);
+      if (accessor.components != 0 && accessor.components != components) {
         throw InputError(place, ": ", name, " of its instances has ", accessor.components,
                          " components, not ", components);
       }
@@ -409,9 +398,9 @@ class Scene {
   }
 
   void add_corners(const Part& part, std::uint32_t first) {
-    const auto number = gltf_number(*part.primitive, "indices", part.place);
-    const GltfAccessor indices = number ? file_.accessor(*number) : GltfAccessor{};
-    if (number && indices.components != 1) {
+    const GltfAccessor indices = file_.accessor(*part.primitive, "indices", part.place);
+    const bool has_indices = indices.components != 0;
+    if (has_indices && indices.components != 1) {
       throw InputError(part.place, ": its indices are vectors");
     }
     undrawn_["the last corners, too few for a triangle,"] +=
@@ -420,7 +409,7 @@ class Scene {
     TriangleStrip strip(mesh_);
     std::array<std::uint32_t, 3> corners{};
     for (std::uint64_t i = 0; i < part.corners; ++i) {
-      const std::uint64_t index = number ? indices.index(i) : i;
+      const std::uint64_t index = has_indices ? indices.index(i) : i;
       if (index >= part.vertices) {
         throw InputError(part.place, ": its corner ", i, " has the index ", index,
                          ", which is not one of its ", part.vertices, " vertices");
@@ -441,10 +430,9 @@ class Scene {
 
   /// @return the alpha of each vertex where that counts and vertices have one, else nothing
   std::vector<float> add_colors(const Part& part, const json& attributes, const Look& look) {
-    const auto color = gltf_number(attributes, "COLOR_0", part.place);
-    const GltfAccessor colors = color ? file_.accessor(*color) : GltfAccessor{};
+    const GltfAccessor colors = file_.accessor(attributes, "COLOR_0", part.place);
     const bool has_colors = colors.components >= 3 && colors.count >= part.vertices;
-    undrawn_["the colors, which not all vertices have,"] += color && !has_colors ? 1U : 0U;
+    undrawn_["the colors, which not all vertices have,"] += colors.components != 0 && !has_colors ? 1U : 0U;
     std::vector<float> alphas;
     is_colored_ =
         is_colored_ || has_colors || look.factor[0] != 1 || look.factor[1] != 1 || look.factor[2] != 1;
@@ -463,9 +451,9 @@ class Scene {
 
   /// Vertices of a part that says none are on no picture.
   void add_texcoords(const Part& part, const json& attributes, const Look& look) {
-    const auto texcoord =
-        look.texcoord.empty() ? std::nullopt : gltf_number(attributes, look.texcoord.c_str(), part.place);
-    const GltfAccessor corners = texcoord ? file_.accessor(*texcoord) : GltfAccessor{};
+    const GltfAccessor corners = look.texcoord.empty()
+                                     ? GltfAccessor{}
+                                     : file_.accessor(attributes, look.texcoord.c_str(), part.place);
     if (corners.components != 2 || corners.count < part.vertices) {
       undrawn_["the pictures, on which not all vertices have a place,"] += look.texcoord.empty() ? 0U : 1U;
       return;

@@ -5,8 +5,6 @@
 #include <draco/metadata/metadata_decoder.h>
 
 #include <algorithm>
-#include <memory>
-#include <utility>
 
 #include "readers/text.h"
 

@@ -1,7 +1,5 @@
 #include "readers/gltf_file.h"
 
-#include <algorithm>
-
 #include "readers/formats.h"
 
 namespace thimble::tools {
@@ -286,13 +284,12 @@ std::string GltfFile::link(const std::string& uri, const std::string& place, Sha
     bytes = found->second;
     return {};
   }
-  FileBytes file;
   const std::string fault =
-      load_beside(path_.substr(0, path_.rfind('/') + 1) + *relative, kFileLimitBytes, file);
+      load_beside(path_.substr(0, path_.rfind('/') + 1) + *relative, kFileLimitBytes, bytes);
   if (!fault.empty()) {
     return place + ": the file " + tools::quoted(uri) + " beside this one " + fault;
   }
-  bytes = beside_.emplace(*relative, share(std::move(file))).first->second;
+  beside_.emplace(*relative, bytes);
   bytes_read_ += bytes.bytes.size();
   return {};
 }

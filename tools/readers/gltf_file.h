@@ -1,14 +1,10 @@
 /// The JSON of a glTF file and the bytes that it talks of. Internal to the glTF reader.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "readers/file_bytes.h"
@@ -62,6 +58,11 @@ class GltfFile {
   std::uint64_t count(const char* name) const { return gltf_list(json_, name).size(); }
 
   GltfAccessor accessor(std::uint64_t i);
+  /// That of the member `name` of `object`; without it one of no components.
+  GltfAccessor accessor(const nlohmann::json& object, const char* name, const std::string& place) {
+    const auto number = gltf_number(object, name, place);
+    return number ? accessor(*number) : GltfAccessor{};
+  }
   std::span<const std::uint8_t> buffer_view(std::uint64_t i);
   /// Takes the bytes behind a link: `data:` or a file beside this one, which is read once however often it is named.
   /// @return what is wrong with it, or nothing

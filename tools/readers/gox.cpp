@@ -10,8 +10,6 @@
 // file; but constant ones, which take least there, once.
 //
 // Source of the format: Guillaume Chereau, the head of Goxel's "gox.c".
-#include <algorithm>
-#include <cstring>
 #include <map>
 #include <set>
 #include <tuple>

@@ -13,7 +13,6 @@
 // Source of the format: Esri, "ASCII raster format".
 #include "readers/formats.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace thimble::tools {

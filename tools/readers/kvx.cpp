@@ -1,10 +1,14 @@
-// `.kvx` and `.kv6` models (Ken Silverman's Build and Voxlap engines).
+// `.kvx` and `.kv6` models (Ken Silverman's Build and Voxlap engines), and `.vxl` maps of Voxlap and Ace of Spades.
 //
 // What is read: of a `.kvx` the first, finest of the models in the file, and the palette of six bits a channel at
 // its end; of a `.kv6` its voxels, which have 24 bits of colour each. Both hold the visible voxels only, so the model
-// is hollow. In the file z is down; here it is up, and y turns with it, which keeps the hand.
+// is hollow. Of a `.vxl`: a map of Ace of Spades, which is 512 x 512 columns and nothing else, or one of Voxlap, whose
+// header says how many. Columns are 64 voxels deep, or 256 where one of them reaches below 64. The file has colours for
+// the voxels that can be seen; the others are solid, too, and have the colour of earth. The camera of Voxlap's header is
+// passed over. In the files z is down; here it is up, and y turns with it, which keeps the hand.
 //
-// Source of the formats: Ken Silverman, "SLAB6.TXT".
+// Sources of the formats: Ken Silverman, "SLAB6.TXT" and Voxlap's "VOXLAP5.TXT"; Silver Spaceship, "The AoS map file
+// format".
 #include "readers/formats.h"
 
 namespace thimble::tools {
@@ -16,15 +20,20 @@ constexpr std::size_t kKvxHeaderBytes = 28;  // bytes of the model, three sides,
 constexpr std::size_t kKv6HeaderBytes = 32;  // magic, three sides, three pivots, number of voxels
 constexpr std::size_t kKv6VoxelBytes = 8;    // blue, green, red, 0, two of z, visible sides, slope
 
+constexpr std::uint64_t kVoxlapCameraBytes = 96;
+constexpr std::array<std::uint32_t, 2> kDepths{64, 256};
+constexpr std::size_t kColorBytes = 4;    // blue, green, red, brightness
+constexpr Rgb kHiddenColor{103, 64, 40};  // what Ace of Spades shows where one digs
+
 /// Columns of voxels, z down.
 class ColumnGrid : public VoxelGrid {
  protected:
   explicit ColumnGrid(const SharedBytes& file) : file_(file) {}
-  void read_size(ByteReader& reader) {
-    for (std::uint32_t& side : sides_) {
-      side = reader.u32();
-      if (side < 1 || side > kGridSideLimit) {
-        reader.fail("a side of ", side, " voxels; there are 1 to ", kGridSideLimit);
+  void read_size(ByteReader& reader, std::size_t axes = 3, const char* what = "voxels") {
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      sides_[axis] = reader.u32();
+      if (sides_[axis] < 1 || sides_[axis] > kGridSideLimit) {
+        reader.fail("a side of ", sides_[axis], " ", what, "; there are 1 to ", kGridSideLimit);
       }
     }
     set_size(sides_[0], sides_[1], sides_[2]);
@@ -147,6 +156,90 @@ class Kv6Grid final : public ColumnGrid {
   std::span<const std::uint8_t> voxels_, lengths_;
 };
 
+class VxlGrid final : public ColumnGrid {
+ public:
+  explicit VxlGrid(const SharedBytes& file) : ColumnGrid(file) {
+    sides_ = {512, 512, 0};
+    if (file.text().starts_with("Voxel Animation")) {
+      throw InputError("is a model of Command & Conquer, and only maps of Voxlap are read");
+    }
+    if (file.text().starts_with(kVoxlapMagic)) {
+      ByteReader reader(file.bytes, "the header");
+      reader.skip(4);
+      read_size(reader, 2, "columns");
+      reader.skip(kVoxlapCameraBytes);
+      first_offset_ = static_cast<std::size_t>(reader.offset());
+    }
+    std::uint32_t deepest = 0;
+    sides_[2] = kDepths[1];
+    const std::size_t left =
+        walk([&](auto, auto, std::uint32_t first, std::uint32_t end, const std::uint8_t* colors) {
+          deepest = std::max(deepest, colors == nullptr ? first : end);
+        });
+    sides_[2] = deepest <= kDepths[0] ? kDepths[0] : kDepths[1];
+    set_size(sides_[0], sides_[1], sides_[2]);
+    if (left != 0) {
+      notes.push_back(
+          concat(left, " bytes behind the last of ", sides_[0], " x ", sides_[1], " columns are not read"));
+    }
+    check_solid("the map holds no voxels");
+  }
+
+  void for_each(const Visit& visit) const override {
+    walk([&](std::uint32_t x, std::uint32_t y, std::uint32_t first, std::uint32_t end,
+             const std::uint8_t* color) {
+      for (std::uint32_t z = first; z < end; ++z) {
+        put(visit, x, y, z, color == nullptr ? kHiddenColor : Rgb{color[2], color[1], color[0]});
+        color += color == nullptr ? 0 : kColorBytes;
+      }
+    });
+  }
+
+ private:
+  /// Calls take(x, y, first, end, colors) for runs of solid voxels from the top of each column down; `colors` is null
+  /// where they are hidden. Returns how many bytes are left behind the last column.
+  ///
+  ///     span: words, top, bottom, air | colours of top ... bottom | colours that end where the next air begins
+  ///
+  /// `words` counts the span's groups of four bytes, and is 0 for a column's last span, which has no second colours.
+  template <class Take>
+  std::size_t walk(const Take& take) const {
+    ByteReader reader(file_.bytes.subspan(first_offset_), "the columns", first_offset_);
+    for (std::uint32_t column = 0; column < sides_[0] * sides_[1]; ++column) {
+      const std::uint32_t x = column % sides_[0];
+      const std::uint32_t y = column / sides_[0];
+      std::span<const std::uint8_t> lower;  // second colours of the span before
+      std::uint32_t hidden = 0;             // where the hidden voxels of the span before begin
+      for (bool is_first = true, is_last = false; !is_last; is_first = false) {
+        const std::uint32_t words = reader.u8();
+        const std::uint32_t top = reader.u8();
+        const std::uint32_t end = reader.u8() + 1U;
+        const std::uint32_t air = reader.u8();  // means nothing in a first span
+        const auto below = static_cast<std::uint32_t>(lower.size() / kColorBytes);
+        is_last = words == 0;
+        if (top > end || end > sides_[2] ||
+            (!is_first && (air < hidden || air > top || below > air - hidden)) ||
+            (!is_last && words < 1 + end - top)) {
+          reader.fail("column ", x, ",", y, " has a span from ", top, " to ", end,
+                      " that its neighbours leave no room for, before byte offset ", reader.offset());
+        }
+        if (!is_first) {
+          take(x, y, hidden, air - below, nullptr);
+          take(x, y, air - below, air, lower.data());
+        }
+        const std::uint32_t count = end - top;
+        take(x, y, top, end, reader.take(kColorBytes * count).data());
+        lower = is_last ? lower : reader.take(kColorBytes * (words - 1 - count));
+        hidden = end;
+      }
+      take(x, y, hidden, sides_[2], nullptr);
+    }
+    return reader.remaining();
+  }
+
+  std::size_t first_offset_ = 0;
+};
+
 }  // namespace
 
 /// @throws InputError  a size of 0 or over `kGridSideLimit`, columns or slabs that leave their place, no
@@ -159,6 +252,12 @@ Source read_kvx(const SharedBytes& file, const ReadOptions&, const Progress&) {
 ///   take, columns with more or fewer voxels than there are, a voxel below the model, no voxel
 Source read_kv6(const SharedBytes& file, const ReadOptions&, const Progress&) {
   return std::make_unique<Kv6Grid>(file);
+}
+
+/// @throws InputError  a side of 0 or over `kGridSideLimit`, spans that overlap, go up or leave the column, too few
+///   bytes for the columns
+Source read_vxl(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<VxlGrid>(file);
 }
 
 }  // namespace thimble::tools

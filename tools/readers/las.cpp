@@ -11,14 +11,7 @@
 // Source of the format: ASPRS, "LAS Specification 1.4 - R15", and those of the versions before it.
 #include "readers/formats.h"
 
-#include <algorithm>
-#include <array>
-#include <memory>
-#include <string>
-
-#include "readers/file_bytes.h"
 #include "readers/laz.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {

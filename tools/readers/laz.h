@@ -1,10 +1,8 @@
 /// `.laz`: the points of a `.las` file, compressed as LASzip does it. What is unpacked is what `las.cpp` reads.
 #pragma once
 
-#include <cstdint>
-
+#include "readers/file_bytes.h"
 #include "readers/progress.h"
-#include "readers/shared_bytes.h"
 
 namespace thimble::tools {
 

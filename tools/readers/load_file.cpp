@@ -1,6 +1,5 @@
 // Files and what is packed in them, as bytes: what of file_bytes.h needs a system, zlib, liblzma and libzstd.
 #include "readers/file_bytes.h"
-#include "readers/mapped_file.h"
 
 #include <fcntl.h>
 #include <lzma.h>
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <system_error>
 
 #include "output/file_place.h"
@@ -107,10 +105,10 @@ class FileBuffer {
 
   /// Room for at least one more byte and at most one byte past the limit, which is how an excess shows.
   std::span<std::uint8_t> room() {
-    if (bytes_.size_ == capacity_) {
+    if (size_ == capacity_) {
       grow();
     }
-    return {bytes_.data_.get() + bytes_.size_, capacity_ - bytes_.size_};
+    return {data_.get() + size_, capacity_ - size_};
   }
   void reserve(std::uint64_t capacity) {
     capacity = std::min(capacity, limit_bytes_ + 1);
@@ -120,26 +118,26 @@ class FileBuffer {
   }
   /// `count` bytes of `room()` were written.
   void grew(std::size_t count) {
-    bytes_.size_ += count;
-    if (bytes_.size_ > limit_bytes_) {
+    size_ += count;
+    if (size_ > limit_bytes_) {
       refuse(limit_bytes_);
     }
   }
   /// They were inflated, and all so far from `packed_bytes`.
   void grew_from(std::uint64_t packed_bytes, std::size_t count) {
     grew(count);
-    if (bytes_.size_ > kBelievedBytes && bytes_.size_ / kBelievedRatio > packed_bytes) {
+    if (size_ > kBelievedBytes && size_ / kBelievedRatio > packed_bytes) {
       throw InputError("inflates to more than 256 MiB, more than ", kBelievedRatio,
                        " times what it takes packed");
     }
   }
-  std::size_t size() const { return bytes_.size_; }
-  std::span<const std::uint8_t> bytes() const { return bytes_.bytes(); }
-  FileBytes finish() {
-    if (bytes_.size_ != 0 && bytes_.size_ < capacity_) {
-      static_cast<void>(resize(bytes_.size_));  // what stays larger is as good
+  std::size_t size() const { return size_; }
+  std::span<const std::uint8_t> bytes() const { return {data_.get(), size_}; }
+  SharedBytes finish() {
+    if (size_ != 0 && size_ < capacity_) {
+      static_cast<void>(resize(size_));  // what stays larger is as good
     }
-    return std::move(bytes_);
+    return {bytes(), std::shared_ptr<const void>(std::move(data_))};
   }
   [[noreturn]] static void refuse(std::uint64_t limit_bytes) {
     throw InputError("holds more than the limit of ", limit_bytes, " bytes");
@@ -156,23 +154,25 @@ class FileBuffer {
     refuse_for_memory();
   }
   [[noreturn]] void refuse_for_memory() const {
-    throw InputError("does not fit the memory that is left on this machine: ", bytes_.size_,
-                     " bytes of it did");
+    throw InputError("does not fit the memory that is left on this machine: ", size_, " bytes of it did");
   }
   bool resize(std::uint64_t capacity) {
     void* moved =
-        capacity > SIZE_MAX ? nullptr : std::realloc(bytes_.data_.get(), static_cast<std::size_t>(capacity));
+        capacity > SIZE_MAX ? nullptr : std::realloc(data_.get(), static_cast<std::size_t>(capacity));
     if (moved == nullptr) {
       return false;
     }
-    static_cast<void>(bytes_.data_.release());
-    bytes_.data_.reset(static_cast<std::uint8_t*>(moved));
+    static_cast<void>(data_.release());
+    data_.reset(static_cast<std::uint8_t*>(moved));
     capacity_ = static_cast<std::size_t>(capacity);
     return true;
   }
 
-  FileBytes bytes_;
-  std::size_t capacity_ = 0;
+  struct Free {
+    void operator()(std::uint8_t* data) const { std::free(data); }
+  };
+  std::unique_ptr<std::uint8_t, Free> data_;
+  std::size_t size_ = 0, capacity_ = 0;
   std::uint64_t limit_bytes_;
 };
 
@@ -207,8 +207,6 @@ class Unpacker {
   virtual ~Unpacker() = default;
   /// Takes some of `packed` and writes to `room`.
   virtual Step step(std::span<const std::uint8_t> packed, std::span<std::uint8_t> room) = 0;
-  /// Before the next member.
-  virtual void restart() = 0;
 };
 
 class ZlibUnpacker final : public Unpacker {
@@ -235,7 +233,6 @@ class ZlibUnpacker final : public Unpacker {
             static_cast<std::size_t>(stream_.next_out - room.data()), result == Z_STREAM_END,
             is_good ? nullptr : reason};
   }
-  void restart() override { inflateReset(&stream_); }
 
  private:
   z_stream stream_{};
@@ -249,7 +246,6 @@ class ZstdUnpacker final : public Unpacker {
     const std::size_t result = ZSTD_decompressStream(stream_.get(), &out, &in);
     return {in.pos, out.pos, result == 0, ZSTD_isError(result) != 0 ? ZSTD_getErrorName(result) : nullptr};
   }
-  void restart() override {}  // it begins again by itself
 
  private:
   std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream_{ZSTD_createDStream(),
@@ -258,7 +254,12 @@ class ZstdUnpacker final : public Unpacker {
 
 class XzUnpacker final : public Unpacker {
  public:
-  XzUnpacker() = default;
+  XzUnpacker() {
+    constexpr std::uint64_t kMostBytes = std::uint64_t{128} << 20;  // xz -9 has dictionaries of 64 MiB
+    if (lzma_stream_decoder(&stream_, kMostBytes, 0) != LZMA_OK) {
+      throw InputError("liblzma does not start");
+    }
+  }
   XzUnpacker(const XzUnpacker&) = delete;
   XzUnpacker& operator=(const XzUnpacker&) = delete;
   ~XzUnpacker() override { lzma_end(&stream_); }
@@ -275,12 +276,6 @@ class XzUnpacker final : public Unpacker {
     return {static_cast<std::size_t>(stream_.next_in - packed.data()),
             static_cast<std::size_t>(stream_.next_out - room.data()), result == LZMA_STREAM_END,
             is_good ? nullptr : reason};
-  }
-  void restart() override {
-    constexpr std::uint64_t kMostBytes = std::uint64_t{128} << 20;  // xz -9 has dictionaries of 64 MiB
-    if (lzma_stream_decoder(&stream_, kMostBytes, 0) != LZMA_OK) {
-      throw InputError("liblzma does not start");
-    }
   }
 
  private:
@@ -312,7 +307,7 @@ constexpr std::array<Packing, 3> kPackings{{
 class Members {
  public:
   Members(const Packing& packing, FileBuffer& out, Looker& looker)
-      : packing_(packing), unpacker_(packing.start()), out_(out), looker_(looker) {}
+      : packing_(packing), out_(out), looker_(looker) {}
 
   void feed(std::span<const std::uint8_t> packed) {
     bool has_more = false;  // that found no room
@@ -355,7 +350,7 @@ class Members {
       throw InputError(packing_.name, " data ends at byte offset ", taken_bytes_,
                        " but something else follows it");
     }
-    unpacker_->restart();
+    unpacker_ = packing_.start();
     return true;
   }
 
@@ -367,8 +362,8 @@ class Members {
   bool between_members_ = true;
 };
 
-FileBytes unpack(const Packing& packing, const Descriptor& file, std::span<std::uint8_t> step,
-                 std::size_t got, std::uint64_t limit_bytes, Looker& looker) {
+SharedBytes unpack(const Packing& packing, const Descriptor& file, std::span<std::uint8_t> step,
+                   std::size_t got, std::uint64_t limit_bytes, Looker& looker) {
   FileBuffer out(limit_bytes);
   Members members(packing, out, looker);
   while (got > 0) {
@@ -399,8 +394,8 @@ Unpacker::Step inflate_into(FileBuffer& out, std::span<const std::uint8_t> packe
 
 }  // namespace
 
-FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
-                        const std::string& place) {
+SharedBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
+                          const std::string& place) {
   FileBuffer out(limit_bytes);
   const Unpacker::Step last = inflate_into(out, packed, frame, UINT64_MAX);
   if (!last.is_end) {
@@ -410,20 +405,10 @@ FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, st
   return out.finish();
 }
 
-FileBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count) {
+SharedBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count) {
   FileBuffer out(std::max<std::uint64_t>(count, std::size_t{1} << 20));
   inflate_into(out, packed, frame, count);
   return out.finish();
-}
-
-FileBytes FileBytes::copy_of(std::span<const std::uint8_t> bytes) {
-  FileBuffer buffer(bytes.size());
-  buffer.reserve(bytes.size());
-  if (!bytes.empty()) {
-    std::memcpy(buffer.room().data(), bytes.data(), bytes.size());
-    buffer.grew(bytes.size());
-  }
-  return buffer.finish();
 }
 
 namespace {
@@ -438,12 +423,7 @@ void check_regular(const std::string& path) {
 
 }  // namespace
 
-SharedBytes share(FileBytes bytes) {
-  auto kept = std::make_shared<const FileBytes>(std::move(bytes));
-  return {kept->bytes(), kept};
-}
-
-std::string load_beside(const std::string& path, std::uint64_t limit_bytes, FileBytes& file) {
+std::string load_beside(const std::string& path, std::uint64_t limit_bytes, SharedBytes& file) {
   try {
     check_regular(path);
     file = load_file(path, limit_bytes);
@@ -455,7 +435,7 @@ std::string load_beside(const std::string& path, std::uint64_t limit_bytes, File
   }
 }
 
-FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
+SharedBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
   limit_bytes = std::clamp<std::uint64_t>(limit_bytes, 1, SIZE_MAX - 1);
   const Descriptor file(path);
   const std::uint64_t size_hint_bytes = file.size_hint_bytes();
@@ -515,7 +495,7 @@ SharedBytes load_shared(const std::string& path, const FirstLook& look, bool is_
       return mapped;
     }
   }
-  return share(load_file(path, kFileLimitBytes, look));
+  return load_file(path, kFileLimitBytes, look);
 }
 
 }  // namespace thimble::tools

@@ -1,13 +1,6 @@
 #include "readers/mesh.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "output/units.h"
 
@@ -207,17 +200,16 @@ void TriangleStrip::add(std::uint32_t corner) {
 }
 
 Notes notes_of(const Source& source) {
-  if (const auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
-    return (*model)->notes;
-  }
-  if (const auto* grid = std::get_if<std::unique_ptr<VoxelGrid>>(&source)) {
-    return (*grid)->notes;
-  }
-  if (const auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
-    return (*cloud)->notes;
-  }
-  const auto* mesh = std::get_if<TriangleMesh>(&source);
-  return mesh != nullptr ? mesh->notes : Notes();
+  return std::visit(
+      [](const auto& each) -> Notes {
+        if constexpr (requires { each.notes; }) {
+          return each.notes;
+        } else if constexpr (requires { each->notes; }) {
+          return each->notes;
+        }
+        return {};
+      },
+      source);
 }
 
 void note_left_out(Notes& notes, std::uint64_t points) {

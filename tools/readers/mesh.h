@@ -4,10 +4,6 @@
 /// triangles with the polygon's own border, so that a closed surface stays closed.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "readers/source.h"
 
 namespace thimble::tools {

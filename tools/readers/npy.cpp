@@ -12,12 +12,7 @@
 // arrays of voxels z is up.
 //
 // Source of the format: NumPy, "NEP 1 - A Simple File Format for NumPy Arrays".
-
-#include <cstring>
-
 #include "readers/color_scale.h"
-#include "readers/formats.h"
-#include "readers/zip.h"
 
 namespace thimble::tools {
 namespace {
@@ -150,15 +145,12 @@ class ArrayPoints final : public PointCloud {
     const std::uint64_t columns = array_.header.shape[1];
     first_color_ = columns < 6 ? 0 : (columns == 8 ? 3 : columns - 3);
     std::uint64_t finite = 0;
-    for (std::uint64_t i = 0; i < array_.header.shape[0]; ++i) {
-      if (!is_finite(i)) {
-        continue;
-      }
+    walk([&](const CloudPoint& point) {
       ++finite;
       for (std::uint64_t channel = 0; first_color_ != 0 && channel < 3; ++channel) {
-        scale_.see(number(i, first_color_ + channel));
+        scale_.see(number(point.line - 1, first_color_ + channel));
       }
-    }
+    });
     if (finite == 0) {
       throw InputError(array_.header.shape[0] == 0 ? "the array holds no points"
                                                    : "no point of the array is finite");
@@ -180,21 +172,15 @@ class ArrayPoints final : public PointCloud {
     }
   }
   void for_each(const Visit& visit) const override {
-    CloudPoint point;
-    for (std::uint64_t i = 0; i < array_.header.shape[0]; ++i) {
-      if (!is_finite(i)) {
-        continue;
-      }
-      point.x = number(i, 0);
-      point.y = number(i, 1);
-      point.z = number(i, 2);
+    walk([&](CloudPoint& point) {
       if (has_color_) {
-        point.color =
-            scale_.color(number(i, first_color_), number(i, first_color_ + 1), number(i, first_color_ + 2));
+        const auto part = [&](std::uint64_t channel) {
+          return number(point.line - 1, first_color_ + channel);
+        };
+        point.color = scale_.color(part(0), part(1), part(2));
       }
-      point.line = i + 1;
       visit(point);
-    }
+    });
   }
   bool has_color() const override { return has_color_; }
 
@@ -202,8 +188,15 @@ class ArrayPoints final : public PointCloud {
   double number(std::uint64_t i, std::uint64_t column) const {
     return array_.at(i * array_.strides[0] + column * array_.strides[1]);
   }
-  bool is_finite(std::uint64_t i) const {
-    return std::isfinite(number(i, 0)) && std::isfinite(number(i, 1)) && std::isfinite(number(i, 2));
+  /// Calls take(point) for each point that is finite, without its colour.
+  template <class Take>
+  void walk(const Take& take) const {
+    for (std::uint64_t i = 0; i < array_.header.shape[0]; ++i) {
+      CloudPoint point{number(i, 0), number(i, 1), number(i, 2), {}, i + 1};
+      if (point.is_finite()) {
+        take(point);
+      }
+    }
   }
   Array array_;
   ColorScale scale_;
@@ -301,16 +294,16 @@ Source source_of(Array array, const ReadOptions& options) {
 }
 
 /// The member of an archive that has the most to show, unpacked.
-SharedBytes largest_member(std::span<const std::uint8_t> file) {
+SharedBytes largest_member(const SharedBytes& file) {
   constexpr std::uint64_t kEnoughForHeader = 4096;
   std::optional<ZipMember> best;
   std::uint64_t most = 0;
   for (const ZipMember& member : zip_members(file)) {
-    const FileBytes beginning = zip_beginning(member, kEnoughForHeader);
+    const SharedBytes beginning = zip_beginning(member, kEnoughForHeader);
     if (!beginning.text().starts_with(kNpyMagic)) {
       continue;
     }
-    const NpyHeader header = read_npy_header(beginning.bytes());
+    const NpyHeader header = read_npy_header(beginning.bytes);
     if (header.shape.size() >= 2 && numbers_of(header) > most) {
       most = numbers_of(header);
       best = member;
@@ -319,11 +312,11 @@ SharedBytes largest_member(std::span<const std::uint8_t> file) {
   if (!best) {
     throw InputError("the archive holds no NumPy array of two dimensions or more");
   }
-  return share(zip_unpack(*best));
+  return zip_unpack(*best);
 }
 
 Array array_of(const SharedBytes& file) {
-  const SharedBytes bytes = file.text().starts_with(kZipMagic) ? largest_member(file.bytes) : file;
+  const SharedBytes bytes = file.text().starts_with(kZipMagic) ? largest_member(file) : file;
   return {read_npy_header(bytes.bytes), bytes};
 }
 

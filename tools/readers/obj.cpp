@@ -7,23 +7,10 @@
 // `d`, `Ke` and their pictures are read. A line may continue after a backslash; a # that begins a word begins
 // a comment. Lines, points and curves are noted, all other statements ignored, as normals and groups. Faces
 // of fewer than three corners make no triangle. A file without faces becomes a point cloud.
-#include "readers/formats.h"
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "output/units.h"
 #include "readers/color_scale.h"
-#include "readers/file_bytes.h"
-#include "readers/mesh.h"
-#include "readers/text.h"
 #include "readers/texture.h"
 
 namespace thimble::tools {
@@ -266,7 +253,7 @@ class ObjMaterials {
     const auto read = [&](const std::string& name) {
       std::string slashed = name;
       std::replace(slashed.begin(), slashed.end(), '\\', '/');
-      FileBytes file;
+      SharedBytes file;
       const std::string fault =
           load_beside(slashed.starts_with('/') ? slashed : path.substr(0, path.rfind('/') + 1) + slashed,
                       kFileLimitBytes, file);
@@ -332,7 +319,10 @@ class ObjParser {
     if (highest_index_ >= mesh_.positions.size() && face_count_ != 0) {
       fail_index(highest_line_, static_cast<std::int64_t>(highest_index_) + 1);
     }
-    color_vertices();
+    if (all_colored_) {  // what full is shows at the end
+      scale_.add_note(mesh_.notes);
+      mesh_.colors = scale_.colors(std::exchange(colors_, {}));
+    }
     if (undrawn_ != 0) {
       mesh_.notes.push_back("lines, points, curves and surfaces (l, p, curv, surf; " +
                             std::to_string(undrawn_) + " in all) are not drawn");
@@ -407,26 +397,8 @@ class ObjParser {
     all_colored_ = all_colored_ && colored;
     if (all_colored_) {
       colors_.reserve(mesh_.positions.capacity());
-      auto& kept = colors_.emplace_back();
-      for (std::size_t i = 0; i < 3; ++i) {
-        kept[i] = scale_.clamped(color[i]);
-        scale_.see(static_cast<double>(kept[i]));
-      }
+      colors_.push_back(scale_.keep(color));
     }
-  }
-
-  /// What full is shows at the end.
-  void color_vertices() {
-    if (!all_colored_) {
-      return;
-    }
-    scale_.add_note(mesh_.notes);
-    mesh_.colors.reserve(colors_.size());
-    for (const auto& [red, green, blue] : colors_) {
-      mesh_.colors.push_back(
-          scale_.color(static_cast<double>(red), static_cast<double>(green), static_cast<double>(blue)));
-    }
-    colors_ = {};
   }
 
   void face(std::string_view words) {

@@ -3,22 +3,12 @@
 // walks rely on, so that it opens at once.
 #include "readers/oct.h"
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <string>
-#include <string_view>
-
-#include "readers/file_bytes.h"
 #include "readers/formats.h"
-#include "readers/mapped_file.h"
 #include "thimble/light/scene.h"
 
 namespace thimble::tools {
 namespace {
 
-// "TMS"; the version follows.
-constexpr std::array<std::uint8_t, 3> kOctMagic{0x54, 0x4D, 0x53};
 constexpr std::size_t kVersionOffset = 3;
 constexpr std::size_t kSizeOffset = 4;
 
@@ -78,14 +68,10 @@ const char* fault_of(ConstBytes bytes, std::uint32_t* place) {
 
 }  // namespace
 
-bool looks_like_oct(std::span<const std::uint8_t> bytes) {
-  return bytes.size() >= kOctMagic.size() && std::equal(kOctMagic.begin(), kOctMagic.end(), bytes.begin());
-}
-
 Source read_oct(const SharedBytes& file, const ReadOptions&, const Progress&) {
   const auto bytes = file.bytes;
   // What a person can do something about gets a sentence of its own.
-  if (!looks_like_oct(bytes)) {
+  if (!file.text().starts_with("TMS")) {  // the version follows
     throw InputError("not a scene baked by thimble bake (its first bytes are not TMS)");
   }
   if (bytes.size() > kVersionOffset && bytes[kVersionOffset] != kBakedVersion) {

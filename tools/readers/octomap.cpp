@@ -10,8 +10,6 @@
 // `OccupancyOcTreeBase::writeBinaryNode`.
 #include "readers/formats.h"
 
-#include <algorithm>
-
 namespace thimble::tools {
 namespace {
 

@@ -18,19 +18,7 @@
 // Not read: `OFF BINARY` and the forms of other dimensions (`4OFF`, `nOFF`); both are refused by name.
 //
 // Source of the format: Geomview manual, chapter "OFF Files".
-#include "readers/formats.h"
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "readers/color_scale.h"
-#include "readers/mesh.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 
@@ -166,22 +154,16 @@ class OffParser {
         number("the normal", vertex);
       }
       if (keyword_.has_colors) {
-        std::array<float, 3> color{};
-        for (float& component : color) {
-          const double value = number("the color", vertex);
-          component = scale_.clamped(value);
-          scale_.see(static_cast<double>(component));
+        std::array<double, 3> color{};
+        for (double& component : color) {
+          component = number("the color", vertex);
         }
-        colors.push_back(color);
+        colors.push_back(scale_.keep(color));
       }
       end_item();
       meter_.at(words_.offset());
     }
-    mesh_.colors.reserve(colors.size());
-    for (const auto& [red, green, blue] : colors) {
-      mesh_.colors.push_back(
-          scale_.color(static_cast<double>(red), static_cast<double>(green), static_cast<double>(blue)));
-    }
+    mesh_.colors = scale_.colors(colors);
   }
 
   std::int64_t integer(std::uint64_t face) {
@@ -222,12 +204,7 @@ class OffParser {
       meter_.at(words_.offset());
     }
     polygons_.cut_ears();
-    for (const auto& [red, green, blue] : face_colors_) {
-      mesh_.face_colors.push_back(red < 0 ? Rgb{}
-                                          : face_scale_.color(static_cast<double>(red),
-                                                              static_cast<double>(green),
-                                                              static_cast<double>(blue)));
-    }
+    mesh_.face_colors = face_scale_.colors(face_colors_);
   }
 
   /// Three or four numbers behind the corners are the face's colour; one would be a place in a table that no file
@@ -241,15 +218,7 @@ class OffParser {
       }
       ++count;
     }
-    if (count < 3) {
-      return kNoColor;
-    }
-    std::array<float, 3> color{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      color[i] = face_scale_.clamped(values[i]);
-      face_scale_.see(static_cast<double>(color[i]));
-    }
-    return color;
+    return count < 3 ? kNoColor : face_scale_.keep(values);
   }
 
   static constexpr std::array<float, 3> kNoColor{-1, -1, -1};

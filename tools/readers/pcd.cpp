@@ -7,22 +7,9 @@
 //
 // Source of the format: Point Cloud Library, "The PCD (Point Cloud Data) file format"; of LZF: Marc Lehmann,
 // "LibLZF", whose stream this reads with code of its own.
-#include "readers/formats.h"
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "readers/color_scale.h"
-#include "readers/file_bytes.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {

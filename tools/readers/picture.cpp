@@ -1,7 +1,6 @@
 #include "readers/picture.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdlib>
 #include <limits>
 
@@ -104,15 +103,15 @@ std::shared_ptr<std::uint8_t> decode_picture(std::span<const std::uint8_t> encod
 }
 
 Image read_picture(const std::string& path, std::int32_t width_px, std::int32_t height_px) {
-  const FileBytes file = load_file(path, std::uint64_t{256} << 20);
-  const auto [width, height] = picture_size(file.bytes());
+  const SharedBytes file = load_file(path, std::uint64_t{256} << 20);
+  const auto [width, height] = picture_size(file.bytes);
   if (width < 1 || height < 1) {
     throw InputError("is no PNG, JPEG, PPM or PGM");
   }
   if (width != width_px || height != height_px) {
     throw InputError("is ", width, " x ", height, " pixels, not ", width_px, " x ", height_px);
   }
-  const std::shared_ptr<std::uint8_t> pixels = decode_picture(file.bytes(), 3);
+  const std::shared_ptr<std::uint8_t> pixels = decode_picture(file.bytes, 3);
   Image image{width, height, PixelFormat::kRgb888, {}};
   image.pixels.assign(pixels.get(),
                       pixels.get() + 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

@@ -15,24 +15,10 @@
 // it is passed over. Text behind the last value is noted; bytes after the last binary element are ignored.
 //
 // Source of the format: Greg Turk, "The PLY Polygon File Format", 1994.
-#include "readers/formats.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "readers/color_scale.h"
-#include "readers/mesh.h"
 #include "readers/ply_header.h"
-#include "readers/text.h"
 #include "readers/texture.h"
 
 namespace thimble::tools {
@@ -97,7 +83,6 @@ class AsciiBody {
   [[noreturn]] void fail(const Pieces&... pieces) const {
     fail_at_line(words_.line(), pieces...);
   }
-  static bool skip_fixed(const PlyElement&) { return false; }
   /// Decides whether each of the element's records is a line.
   void begin(const PlyElement& element) {
     WordReader line = words_;
@@ -185,16 +170,6 @@ class BinaryBody {
   [[noreturn]] void fail(const Pieces&... pieces) const {
     throw InputError("before byte offset ", next_, ": ", pieces...);
   }
-  /// Passes over an element without lists at once; its count has been held against the bytes left.
-  bool skip_fixed(const PlyElement& element) {
-    for (const PlyProperty& property : element.properties) {
-      if (property.is_list) {
-        return false;
-      }
-    }
-    next_ += static_cast<std::size_t>(element.count * least_bytes(element));
-    return true;
-  }
   static void begin(const PlyElement&) {}
   static void end_record() {}
   static void finish(Notes&) {}
@@ -239,10 +214,8 @@ template <class Body>
 void skip_element(Body& body, const PlyElement& element, ProgressMeter& meter) {
   begin_element(body, element);
   // Records without properties take no bytes, whatever their count.
-  if (element.properties.empty() || body.skip_fixed(element)) {
-    return;
-  }
-  for (std::uint64_t record = 0; record < element.count; ++record) {
+  const std::uint64_t count = element.properties.empty() ? 0 : element.count;
+  for (std::uint64_t record = 0; record < count; ++record) {
     for (const PlyProperty& property : element.properties) {
       skip_property(body, property);
     }

@@ -1,10 +1,6 @@
 #include "readers/ply_header.h"
 
-#include <optional>
-#include <utility>
-
 #include "readers/formats.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {

@@ -9,8 +9,6 @@
 // Sources of the formats: Minddesk, "Qubicle Binary File Format"; tostc, "Qubicle's proprietary format QBCL v2.0".
 #include "readers/formats.h"
 
-#include <algorithm>
-
 namespace thimble::tools {
 namespace {
 
@@ -185,8 +183,8 @@ class QubicleGrid final : public VoxelGrid {
     const std::string place = "the matrix at byte offset " + std::to_string(reader.offset());
     const std::uint64_t most_bytes = std::min(columns * (2 + kMostVoxelBytes * matrix.size[1]) + 1,
                                               3 * file_.bytes.size() + (std::uint64_t{64} << 20));
-    const FileBytes unpacked = inflate_bytes(reader.take(reader.u32()), Deflated::kZlib, most_bytes, place);
-    ByteReader groups(unpacked.bytes(), place + ", unpacked");
+    const SharedBytes unpacked = inflate_bytes(reader.take(reader.u32()), Deflated::kZlib, most_bytes, place);
+    ByteReader groups(unpacked.bytes, place + ", unpacked");
     for (std::uint64_t column = 0; column < columns; ++column) {
       const auto x = static_cast<std::uint32_t>(column / matrix.size[2]);
       const auto z = static_cast<std::uint32_t>(column % matrix.size[2]);

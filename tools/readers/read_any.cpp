@@ -1,15 +1,6 @@
 #include "readers/read_any.h"
 
-#include <algorithm>
-#include <array>
-#include <span>
-#include <utility>
-#include <vector>
-
-#include "readers/file_bytes.h"
-#include "readers/mapped_file.h"
 #include "readers/text.h"
-#include "readers/zip.h"
 
 namespace thimble::tools {
 
@@ -19,7 +10,7 @@ FormatReader read_zip;
 
 /// The scene in an archive: what a reader knows by name or beginning. Text that may be anything is one only where
 /// nothing else is.
-ZipMember scene_member(std::span<const std::uint8_t> file) {
+ZipMember scene_member(const SharedBytes& file) {
   std::vector<ZipMember> scenes;
   std::vector<ZipMember> texts;
   for (const ZipMember& member : zip_members(file)) {
@@ -27,10 +18,10 @@ ZipMember scene_member(std::span<const std::uint8_t> file) {
     if (name.empty() || name.starts_with('.') || member.name.starts_with("__MACOSX/")) {
       continue;  // folders, and what systems leave
     }
-    const FileBytes beginning = zip_beginning(member, kFirstLookBytes);
-    const ReaderRow* const row = find_reader(name, beginning.bytes());
+    const SharedBytes beginning = zip_beginning(member, kFirstLookBytes);
+    const ReaderRow* const row = find_reader(name, beginning.bytes);
     if (row == nullptr || row->read == read_zip ||
-        (row->beginning == Beginning::kMagic && !row->knows(beginning.bytes()))) {
+        (row->beginning == Beginning::kMagic && !row->knows(beginning.bytes))) {
       continue;
     }
     (name.ends_with(".txt") ? texts : scenes).push_back(member);
@@ -48,11 +39,11 @@ ZipMember scene_member(std::span<const std::uint8_t> file) {
 }
 
 Source read_zip(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
-  const ZipMember member = scene_member(file.bytes);
+  const ZipMember member = scene_member(file);
   ReadOptions inside = options;  // what it names is looked for beside the archive
   inside.path = options.path.substr(0, options.path.rfind('/') + 1) +
                 std::string(member.name.substr(member.name.rfind('/') + 1));
-  return read_any(inside, share(zip_unpack(member)), progress);
+  return read_any(inside, zip_unpack(member), progress);
 }
 
 // The one place that knows all formats. Where two recognise the same bytes, the first one counts.
@@ -68,7 +59,7 @@ constexpr std::array<ReaderRow, 27> kRows{{
     {".las", "LAS laser scan", read_las, nullptr, Beginning::kMagic, "LASF"},
     {".laz", "compressed LAS laser scan", read_las, nullptr, Beginning::kMagic, "LASF"},
     {".dat", "Gadget-1 snapshot", read_gadget, looks_like_gadget, Beginning::kMagic},
-    {".oct", "baked scene", read_oct, looks_like_oct, Beginning::kMagic},
+    {".oct", "baked scene", read_oct, nullptr, Beginning::kMagic, "TMS"},
     {".scene", "scene text", read_scene_text, nullptr, Beginning::kText},
     {".binvox", "binvox grid", read_binvox, nullptr, Beginning::kMagic, "#binvox"},
     {".npy", "NumPy array", read_npy, looks_like_npy, Beginning::kMagic},
@@ -83,7 +74,7 @@ constexpr std::array<ReaderRow, 27> kRows{{
     {".qbcl", "Qubicle project", read_qbcl, nullptr, Beginning::kMagic, "QBCL"},
     {".kvx", "KVX model", read_kvx, nullptr},
     {".kv6", "KV6 model", read_kv6, nullptr, Beginning::kMagic, "Kvxl"},
-    {".vxl", "Voxlap map", read_vxl, looks_like_vxl},
+    {".vxl", "Voxlap map", read_vxl, nullptr, Beginning::kAny, kVoxlapMagic},
     {".gox", "Goxel scene", read_gox, nullptr, Beginning::kMagic, "GOX "},
 }};
 

@@ -3,11 +3,6 @@
 /// A new format is a new file beside this one, its reader in formats.h, and a row in the table of `read_any.cpp`.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-
 #include "readers/formats.h"
 
 namespace thimble::tools {

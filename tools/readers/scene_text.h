@@ -5,12 +5,7 @@
 /// of UTF-8.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "readers/source.h"
 #include "thimble/bake/baked_scene.h"

@@ -1,18 +1,17 @@
 // Minecraft's blocks: `.schematic` (MCEdit), `.schem` (Sponge, versions 1 to 3), `.litematic` (Litematica) and
-// `.nbt` (structures). Their tags tell which of them a file is, not its name.
+// `.nbt` (structures), whose tags tell which of them a file is, not its name; and Minetest's `.mts`, versions 1 to 4.
 //
 // What is read: Width (x), Height (y, up) and Length (z) and the blocks. Of a `.schematic`: Blocks,
 // AddBlocks (four more bits each) and the colour in Data. Of a `.schem`: Palette and BlockData, on the first
 // level or, as version 3 has it, within Schematic and Blocks. Of a `.litematic`: all Regions where they lie, with
 // their palettes; the numbers lie in words of 64 bits and cross them. Of a structure: size, the listed blocks and the
-// palette, or the first of several. Blocks have the colours of block_colors.h and all are whole cubes; entities,
-// biomes and what chests hold are passed over. Here z is up: (x, y, z) -> (x, -z, y).
+// palette, or the first of several. Blocks have the colours of block_colors.cpp and all are whole cubes; entities,
+// biomes and what chests hold are passed over. Of an `.mts`: the size, the names of the nodes, and which node is where;
+// nodes that it leaves to chance are there unless the chance is 0. In the files y is up, here z is: (x, y, z) -> (x, -z, y).
 //
 // Sources of the formats: Markus Persson, "Named Binary Tag specification", 2011; Minecraft Wiki, "Schematic file format", "Structure file"; SpongePowered, "Sponge Schematic
-// Specification" 1 to 3; masa, Litematica, `LitematicaSchematic` and `LitematicaBitArray`.
-#include <algorithm>
-
-#include "readers/block_colors.h"
+// Specification" 1 to 3; masa, Litematica, `LitematicaSchematic` and `LitematicaBitArray`;
+// Minetest, comment of `src/mapgen/mg_schematic.h`.
 #include "readers/formats.h"
 
 namespace thimble::tools {
@@ -48,12 +47,6 @@ std::uint64_t fixed_bytes(NbtKind kind) {
   constexpr std::array<std::uint8_t, 13> kBytes{0, 1, 2, 4, 8, 4, 8, 0, 0, 0, 0, 0, 0};
   return kBytes[static_cast<std::size_t>(kind)];
 }
-
-/// A list or a compound that is being passed over.
-struct Open {
-  NbtKind of;          ///< kEnd: a compound, whose entries say what they are
-  std::uint32_t left;  ///< of a list
-};
 
 /// A kind, and a name; `kEnd` has none.
 NbtKind nbt_head(ByteReader& reader, std::string_view* name) {
@@ -109,47 +102,27 @@ std::int64_t nbt_integer(ByteReader& reader, NbtKind kind) {
 
 /// Passes over a value of `kind`. Nesting is limited to 512, as the format has it; nothing is kept.
 /// @throws InputError  a kind that there is not, values that the bytes do not hold
-void nbt_skip(ByteReader& reader, NbtKind kind) {
-  constexpr std::size_t kDeepest = 512;
-  std::vector<Open> open;
-  const auto skip_one = [&](NbtKind what) {
-    if (fixed_bytes(what) != 0) {
-      reader.skip(fixed_bytes(what));
-    } else if (what == NbtKind::kText) {
-      reader.text(reader.u16_be());
-    } else if (what == NbtKind::kCompound) {
-      open.push_back({NbtKind::kEnd, 0});
-    } else if (what == NbtKind::kList) {
-      NbtKind of = NbtKind::kEnd;
-      const std::uint32_t count = nbt_list(reader, &of);
-      if (fixed_bytes(of) != 0) {
-        reader.skip(fixed_bytes(of) * count);
-      } else if (count > 0) {
-        open.push_back({of, count});
-      }
-    } else {
-      nbt_array(reader, what);
-    }
-    if (open.size() > kDeepest) {
-      reader.fail("tags are nested deeper than the limit of ", kDeepest);
-    }
-  };
-  skip_one(kind);
-  while (!open.empty()) {
-    Open& last = open.back();
-    if (last.of == NbtKind::kEnd) {
-      std::string_view name;
-      const NbtKind next = nbt_head(reader, &name);
-      if (next == NbtKind::kEnd) {
-        open.pop_back();
-      } else {
-        skip_one(next);
-      }
-    } else if (last.left == 0) {
-      open.pop_back();
-    } else {
-      --last.left;
-      skip_one(last.of);
+void nbt_skip(ByteReader& reader, NbtKind kind, int depth = 0) {
+  constexpr int kDeepest = 512;
+  NbtKind of = kind;
+  std::uint64_t count = kind == NbtKind::kList ? nbt_list(reader, &of) : 1;
+  if (fixed_bytes(of) != 0 || count == 0) {
+    reader.skip(fixed_bytes(of) * count);
+    return;
+  }
+  const bool is_compound = kind == NbtKind::kCompound;
+  if ((is_compound || kind == NbtKind::kList) && depth == kDeepest) {
+    reader.fail("tags are nested deeper than the limit of ", kDeepest);
+  }
+  if (is_compound) {
+    nbt_compound(reader, [&](NbtKind inner, std::string_view) { nbt_skip(reader, inner, depth + 1); });
+  } else if (kind == NbtKind::kText) {
+    reader.text(reader.u16_be());
+  } else if (kind != NbtKind::kList) {
+    nbt_array(reader, kind);
+  } else {
+    for (; count > 0; --count) {
+      nbt_skip(reader, of, depth + 1);
     }
   }
 }
@@ -159,7 +132,8 @@ enum class BlockCode : std::uint8_t {
   kBytes,    ///< one each, and no palette
   kVarints,  ///< seven bits a byte, lowest first; the eighth says that more follow
   kWords,    ///< just the bits that the palette takes, in big-endian words from their lowest bits on
-  kList      ///< compounds of pos and state
+  kList,     ///< compounds of pos and state
+  kNodes     ///< two bytes each, and behind them their chances; y runs before z
 };
 
 /// Blocks of a box: x runs fastest, then z, then y.
@@ -230,7 +204,12 @@ std::vector<std::optional<Rgb>> read_palette(ByteReader& reader) {
 
 class SchematicGrid final : public VoxelGrid {
  public:
-  explicit SchematicGrid(const SharedBytes& file) : file_(file) {
+  SchematicGrid(const SharedBytes& file, bool is_minetest) : file_(file) {
+    if (is_minetest) {
+      read_nodes(ByteReader(file.bytes, "the header"));
+      check();
+      return;
+    }
     if (!looks_like_schematic(file.bytes)) {
       throw InputError("is no schematic: it does not begin with a compound tag, nameless or named Schematic");
     }
@@ -257,6 +236,35 @@ class SchematicGrid final : public VoxelGrid {
   }
 
  private:
+  void read_nodes(ByteReader reader) {
+    reader.expect("MTSM", "Minetest schematic");
+    const unsigned version = reader.u16_be();
+    if (version < 1 || version > 4) {
+      throw InputError("version ", version, " at byte offset 4 is not supported, only 1 to 4 are");
+    }
+    for (std::uint32_t& side : box_.size) {
+      side = reader.u16_be();
+      if (side < 1 || side > kGridSideLimit) {
+        reader.fail("a side of ", side, " nodes; there are 1 to ", kGridSideLimit);
+      }
+    }
+    if (version >= 3) {
+      reader.skip(box_.size[1]);  // chances of the layers
+    }
+    for (unsigned left = reader.u16_be(); left > 0; --left) {
+      box_.palette.push_back(block_color(reader.text(reader.u16_be())));
+    }
+    constexpr std::uint64_t kNodeBytes = 4;  // a number, a chance, a turn; each for all nodes together
+    const std::uint64_t bytes = box_.cells() * kNodeBytes;
+    file_ = inflate_bytes(reader.take(reader.remaining()), Deflated::kZlib, bytes, "the nodes");
+    box_.blocks = file_.bytes;
+    if (box_.blocks.size() != bytes) {
+      throw InputError("the nodes take ", box_.blocks.size(), " bytes, not 4 for each of ", box_.cells());
+    }
+    code_ = BlockCode::kNodes;
+    chance_bits_ = version < 2 ? 0 : version < 4 ? 0xFFU : 0x7FU;
+  }
+
   /// The compounds named Schematic and Blocks stand for the one that they are in.
   void read_compound(ByteReader& reader) {
     int depth = 1;
@@ -430,6 +438,12 @@ class SchematicGrid final : public VoxelGrid {
     for (std::uint64_t i = 0; i < cells; ++i) {
       if (code_ == BlockCode::kBytes) {
         take(i, numbered_color(box, static_cast<std::size_t>(i)));
+      } else if (code_ == BlockCode::kNodes) {
+        const auto& color = palette_color(box, i, load_bits(&box.blocks[2 * i], 2, true));
+        const bool is_there = chance_bits_ == 0 || (box.blocks[2 * cells + i] & chance_bits_) != 0;
+        const std::uint64_t y = i / box.size[0] % box.size[1];
+        const std::uint64_t z = i / box.size[0] / box.size[1];
+        take((y * box.size[2] + z) * box.size[0] + i % box.size[0], is_there ? color : std::nullopt);
       } else {
         take(i, palette_color(box, i, code_ == BlockCode::kWords ? packed(box, i) : varint(box, i, &at)));
       }
@@ -514,6 +528,7 @@ class SchematicGrid final : public VoxelGrid {
   std::array<std::int64_t, 3> low_{};  ///< x, y, z of the file
   std::span<const std::uint8_t> data_, add_;
   BlockCode code_ = BlockCode::kBytes;
+  unsigned chance_bits_ = 0;  ///< of a node's byte; none: all nodes are there
 };
 
 }  // namespace
@@ -532,7 +547,14 @@ bool looks_like_schematic(std::span<const std::uint8_t> bytes) {
 /// @throws InputError  broken tags; a size that is missing, 0 or over `kGridSideLimit`, of all regions together, too;
 ///   not as many blocks as the size says; a block outside of it, or that the palette does not have; nothing but air
 Source read_schematic(const SharedBytes& file, const ReadOptions&, const Progress&) {
-  return std::make_unique<SchematicGrid>(file);
+  return std::make_unique<SchematicGrid>(file, false);
+}
+
+/// Memory: 4 bytes a node of the schematic, as many as it unpacks to.
+/// @throws InputError  another version, a side of 0 or over `kGridSideLimit`, damaged deflated data or not as
+///   much of it as the size says, a node without a name, nothing but air
+Source read_mts(const SharedBytes& file, const ReadOptions&, const Progress&) {
+  return std::make_unique<SchematicGrid>(file, true);
 }
 
 }  // namespace thimble::tools

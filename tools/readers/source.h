@@ -10,9 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "readers/input_error.h"
+#include "readers/file_bytes.h"
 #include "readers/progress.h"
-#include "readers/shared_bytes.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
 
@@ -34,7 +33,6 @@ struct Material {
   SurfaceKind kind = SurfaceKind::kDiffuse;
   double weight = 1;        ///< v150 MATT weight or v200 blend weight, 0..1
   double roughness = 0;     ///< 0..1
-  double specular = 0;      ///< 0..1
   double ior = 1.3;         ///< index of refraction, >= 1
   double attenuation = 0;   ///< >= 0
   double flux = 0;          ///< emission power

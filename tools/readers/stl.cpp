@@ -10,12 +10,7 @@
 // Source of the format: 3D Systems, "StereoLithography Interface Specification", 1989.
 #include "readers/formats.h"
 
-#include <cmath>
-#include <string>
-
 #include "output/units.h"
-#include "readers/file_bytes.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {

@@ -1,7 +1,6 @@
 #include "readers/text_line.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "output/units.h"
 #include "readers/text.h"
@@ -134,19 +133,13 @@ std::int32_t TextLine::whole(const std::string& what, std::int32_t low, std::int
 }
 
 std::array<double, 3> TextLine::three_reals(const std::string& what, double low, double high) {
-  std::array<double, 3> result{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    result[axis] = real(std::string(1, "xyz"[axis]) + " of " + what, low, high, axis == 0);
-  }
-  return result;
+  return {real("x of " + what, low, high), real("y of " + what, low, high, false),
+          real("z of " + what, low, high, false)};
 }
 
 Vec3i TextLine::three_wholes(const std::string& what, std::int32_t low, std::int32_t high) {
-  Vec3i result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result[axis] = whole(std::string(1, "xyz"[axis]) + " of " + what, low, high, axis == 0);
-  }
-  return result;
+  return {whole("x of " + what, low, high), whole("y of " + what, low, high, false),
+          whole("z of " + what, low, high, false)};
 }
 
 Rgb8 TextLine::color() {

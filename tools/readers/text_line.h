@@ -1,13 +1,6 @@
 /// The language that `.scene` statements are written in: words, numbers and clauses of one line, each with
-/// the place where it stands. What the statements mean is in scene_things.cpp and scene_lighting.cpp.
+/// the place where it stands. What the statements mean is in scene_text.cpp.
 #pragma once
-
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "readers/real3.h"
 #include "readers/scene_text.h"

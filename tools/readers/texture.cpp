@@ -3,12 +3,9 @@
 #include <webp/decode.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <utility>
 
 #include "output/units.h"
-#include "readers/file_bytes.h"
 #include "readers/mesh.h"
 #include "readers/picture.h"
 #include "readers/text.h"
@@ -214,10 +211,10 @@ std::shared_ptr<const Texture> Textures::beside(const std::string& name, bool is
   const std::string full = slashed.starts_with('/') ? slashed : folder + slashed;
   std::string reason;
   for (const std::string& place : {full, folder + slashed.substr(slashed.rfind('/') + 1)}) {
-    FileBytes file;
+    SharedBytes file;
     const std::string fault = load_beside(place, kMostFileBytes, file);
     if (fault.empty()) {
-      return inside(name, file.bytes(), is_opacity);
+      return inside(name, file.bytes, is_opacity);
     }
     reason = reason.empty() ? fault : reason;
   }

@@ -5,16 +5,7 @@
 /// four bytes a pixel; 5.4 bytes a pixel are kept.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <map>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "readers/source.h"
 

@@ -17,21 +17,11 @@
 // Source of the format: ephtracy, "MagicaVoxel .vox File Format" and its extension.
 #include "readers/formats.h"
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <deque>
 #include <limits>
-#include <optional>
 #include <set>
-#include <span>
-#include <string>
-#include <string_view>
 #include <tuple>
-#include <utility>
-#include <vector>
 
-#include "readers/text.h"
 #include "readers/vox_parts.h"
 
 namespace thimble::tools {
@@ -76,6 +66,103 @@ Instance make_instance(std::uint32_t number, const Model& model, const VoxTransf
     instance.offset[i] += transform.sign[i] > 0 ? -pivot : pivot - 1;
   }
   return instance;
+}
+
+// Colours and materials: RGBA, MATT (version 150) and MATL (version 200).
+
+/// RGBA: 256 times r, g, b, alpha. The first is colour index 1; the last stands for index 0, the empty voxel,
+/// and is ignored. Where there are fewer, the others stay as they are. Changes colours and alpha only, so
+/// that the order of RGBA and MATL does not matter.
+void read_rgba(ByteReader& chunk, Palette& palette) {
+  for (std::size_t index = 1; index < palette.size() && (index == 1 || chunk.remaining() != 0); ++index) {
+    Material& material = palette[index];
+    material.color.r = chunk.u8();
+    material.color.g = chunk.u8();
+    material.color.b = chunk.u8();
+    material.alpha = chunk.u8();
+  }
+}
+
+/// A number of a material: its names in MATL, of which the newer counts before the older, and its bit in MATT.
+struct Property {
+  std::string_view name, old_name;
+  double Material::*value;
+  double least, most;
+  unsigned bit = 7;  ///< means nothing
+};
+constexpr double kUnbounded = std::numeric_limits<double>::max();
+constexpr std::string_view kIorExcess = "_ior";  // what exceeds 1, as in MATT
+constexpr std::array<Property, 9> kProperties{{{"_weight", "", &Material::weight, 0, 1},
+                                               {"_rough", "", &Material::roughness, 0, 1, 1},
+                                               {"_ri", kIorExcess, &Material::ior, 1, kUnbounded, 3},
+                                               {"_att", "", &Material::attenuation, 0, kUnbounded, 4},
+                                               {"_flux", "", &Material::flux, 0, kUnbounded, 5},
+                                               {"_emit", "", &Material::emission, 0, 1, 6},
+                                               {"_density", "_d", &Material::density, 0, kUnbounded},
+                                               {"_metal", "", &Material::metalness, 0, 1},
+                                               {"_trans", "_alpha", &Material::transparency, 0, 1}}};
+
+/// NaN leaves the default.
+void set_property(const Property& property, bool is_newer, double value, Material& material) {
+  value += !is_newer && property.old_name == kIorExcess ? 1 : 0;
+  if (!std::isnan(value)) {
+    material.*property.value = std::clamp(value, property.least, property.most);
+  }
+}
+
+/// Material ids are colour indices; newer files count 1 to 256, older ones 0 to 255, and both ends mean the
+/// unused entry.
+Material& material_of(std::int32_t id, const ByteReader& chunk, Palette& palette) {
+  if (id < 0 || id > 256) {
+    chunk.fail("material ", id, " is outside 0 to 256");
+  }
+  return palette[static_cast<std::size_t>(id) & 0xff];
+}
+
+/// MATT, obsolete since version 0.99: an id, a kind, a weight, a bit mask and one float a bit that is set.
+void read_matt(ByteReader& chunk, Palette& palette) {
+  Material& material = material_of(chunk.i32(), chunk, palette);
+  constexpr std::array kKinds{SurfaceKind::kDiffuse, SurfaceKind::kMetal, SurfaceKind::kGlass,
+                              SurfaceKind::kEmit};
+  const std::uint32_t kind = chunk.u32();
+  if (kind < kKinds.size()) {
+    material.kind = kKinds[kind];
+  }
+  set_property(kProperties[0], true, static_cast<double>(chunk.f32()), material);
+  const std::uint32_t present = chunk.u32();
+  // Bits: 0 plastic, 1 roughness, 2 specular, 3 index of refraction, 4 attenuation, 5 power, 6 glow, 7 "power
+  // is total". Only bit 7 comes with or without a value, and being last it does not move the others.
+  for (unsigned bit = 0; bit < 7; ++bit) {
+    const double value = (present >> bit & 1u) != 0 ? static_cast<double>(chunk.f32()) : std::nan("");
+    for (const Property& property : kProperties) {
+      if (property.bit == bit) {
+        set_property(property, false, value, material);
+      }
+    }
+  }
+}
+
+/// MATL: an id and a dictionary of texts. A value that is no number, or is NaN, leaves the default.
+void read_matl(ByteReader& chunk, Palette& palette) {
+  Material& material = material_of(chunk.i32(), chunk, palette);
+  std::array<bool, kProperties.size()> has_newer{};
+  vox_dictionary(chunk, [&](std::string_view key, std::string_view text) {
+    if (key == "_type") {
+      material.kind = text == "_metal"   ? SurfaceKind::kMetal
+                      : text == "_glass" ? SurfaceKind::kGlass
+                      : text == "_emit"  ? SurfaceKind::kEmit
+                      : text == "_media" ? SurfaceKind::kMedia
+                                         : SurfaceKind::kDiffuse;
+    }
+    const double value = vox_number<double>(text).value_or(std::nan(""));
+    for (std::size_t i = 0; i < kProperties.size() && !key.empty() && !std::isnan(value); ++i) {
+      const bool is_newer = key == kProperties[i].name;
+      if (is_newer || (key == kProperties[i].old_name && !has_newer[i])) {
+        set_property(kProperties[i], is_newer, value, material);
+        has_newer[i] = has_newer[i] || is_newer;
+      }
+    }
+  });
 }
 
 class VoxFile final : public VoxelModel {
@@ -191,17 +278,14 @@ void VoxFile::read_chunks(ProgressMeter& meter) {
     } else if (head.id == "TDCZ") {
       read_packed(chunk, meter);
     } else if (head.id == "RGBA") {
-      vox_read_rgba(chunk, palette_);
+      read_rgba(chunk, palette_);
     } else if (head.id == "MATT") {
-      vox_read_matt(chunk, palette_);
+      read_matt(chunk, palette_);
     } else if (head.id == "MATL") {
-      vox_read_matl(chunk, palette_);
-    } else if (head.id == "nTRN") {
-      scene_.add_transform(chunk, head.offset);
-    } else if (head.id == "nGRP") {
-      scene_.add_group(chunk, head.offset);
-    } else if (head.id == "nSHP") {
-      scene_.add_shape(chunk, head.offset);
+      read_matl(chunk, palette_);
+    } else if (const auto* const node = std::find(kVoxNodes.begin(), kVoxNodes.end(), head.id);
+               node != kVoxNodes.end()) {
+      scene_.add_node(chunk, static_cast<std::size_t>(node - kVoxNodes.begin()), head.offset);
     } else if (head.id == "LAYR") {
       scene_.add_layer(chunk);
     }
@@ -257,16 +341,17 @@ void VoxFile::read_packed(ByteReader& chunk, ProgressMeter& meter) {
   if (unpacked_bytes_ > kAlwaysBytes && unpacked_bytes_ / 100 > file_.bytes.size()) {
     chunk.fail("packed models are more than 100 times what the file has");
   }
-  const FileBytes dense = inflate_bytes(chunk.take(chunk.remaining()), Deflated::kZlib, count, chunk.place());
-  if (dense.bytes().size() != count) {
-    chunk.fail("it unpacks to ", dense.bytes().size(), " voxels, not ", count);
+  const SharedBytes dense =
+      inflate_bytes(chunk.take(chunk.remaining()), Deflated::kZlib, count, chunk.place());
+  if (dense.bytes.size() != count) {
+    chunk.fail("it unpacks to ", dense.bytes.size(), " voxels, not ", count);
   }
   const auto solid =
-      count - static_cast<std::uint64_t>(std::count(dense.bytes().begin(), dense.bytes().end(), 0));
+      count - static_cast<std::uint64_t>(std::count(dense.bytes.begin(), dense.bytes.end(), 0));
   std::vector<std::uint8_t> voxels;
   voxels.reserve(static_cast<std::size_t>(solid * kVoxelBytes));
   for (std::uint64_t i = 0; i < count; ++i) {
-    const std::uint8_t material = dense.bytes()[i];
+    const std::uint8_t material = dense.bytes[i];
     if (material != 0) {
       const std::uint64_t row = i / model.size[0];
       voxels.insert(voxels.end(), {static_cast<std::uint8_t>(i % model.size[0]),
@@ -400,6 +485,33 @@ void VoxFile::set_size() {
 }
 
 }  // namespace
+
+Palette vox_default_palette() {
+  Palette palette{};
+  std::size_t next = 1;
+  // A cube of six levels an axis, white first, blue fastest; its last colour, black, is left to the ramps.
+  const auto level = [](int step) { return static_cast<std::uint8_t>(255 - 51 * step); };
+  for (int red = 0; red < 6; ++red) {
+    for (int green = 0; green < 6; ++green) {
+      for (int blue = 0; blue < 6; ++blue) {
+        palette[next++].color = {level(red), level(green), level(blue)};
+      }
+    }
+  }
+  --next;
+  // Ramps of red, green, blue and grey through the multiples of 17 that the cube does not have.
+  for (int ramp = 0; ramp < 4; ++ramp) {
+    for (int step = 14; step >= 1; --step) {
+      if (step % 3 == 0) {
+        continue;
+      }
+      const auto value = static_cast<std::uint8_t>(17 * step);
+      const auto channel = [&](int own) { return ramp == own || ramp == 3 ? value : std::uint8_t{0}; };
+      palette[next++].color = {channel(0), channel(1), channel(2)};
+    }
+  }
+  return palette;
+}
 
 /// Beyond the file, memory is a small multiple of the chunks in the file (some 100 bytes a node or model) plus 24 bytes
 /// a placed model. Voxels come model by model in the scene graph's order (depth first, children as listed), each in the

@@ -1,16 +1,9 @@
-/// What the `.vox` reader is made of: the pieces of its chunks, its colours and materials, its scene graph.
+/// What the `.vox` reader is made of: the pieces of its chunks, its scene graph.
 #pragma once
 
-#include <array>
 #include <charconv>
-#include <cstdint>
-#include <functional>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "readers/file_bytes.h"
 #include "readers/source.h"
 
 namespace thimble::tools {
@@ -24,19 +17,14 @@ inline std::string vox_place(std::string_view id, std::uint64_t offset) {
   return concat(place, " chunk at byte offset ", offset);
 }
 
-/// A string: its length in bytes as 32 bits, then the bytes.
-inline std::string_view vox_string(ByteReader& reader) {
-  return reader.text(reader.u32());
-}
-
-/// A dictionary: the number of entries, then a key and a value each. Calls `entry(key, value)` for each; the
+/// A dictionary: the number of entries, then a key and a value each, which begin with their lengths. Calls `entry(key, value)` for each; the
 /// count is not trusted, each string must be there.
 template <class Entry>
 void vox_dictionary(ByteReader& reader, const Entry& entry) {
   const std::uint32_t count = reader.u32();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::string_view key = vox_string(reader);
-    const std::string_view value = vox_string(reader);
+    const std::string_view key = reader.text(reader.u32());
+    const std::string_view value = reader.text(reader.u32());
     entry(key, value);
   }
 }
@@ -52,21 +40,8 @@ std::optional<Number> vox_number(std::string_view text) {
   return number;
 }
 
-// Colours and materials: RGBA, MATT (version 150) and MATL (version 200).
-
 /// MagicaVoxel's palette for files without RGBA. Entry 0 is the unused one and stays white.
 Palette vox_default_palette();
-
-/// RGBA: 256 times r, g, b, alpha. The first is colour index 1; the last stands for index 0, the empty voxel,
-/// and is ignored. Where there are fewer, the others stay as they are. Changes colours and alpha only, so
-/// that the order of RGBA and MATL does not matter.
-void vox_read_rgba(ByteReader& chunk, Palette& palette);
-
-/// MATT, obsolete since version 0.99: an id, a kind, a weight, a bit mask and one float a bit that is set.
-void vox_read_matt(ByteReader& chunk, Palette& palette);
-
-/// MATL: an id and a dictionary of texts. A value that is no number, or is NaN, leaves the default.
-void vox_read_matl(ByteReader& chunk, Palette& palette);
 
 // The scene graph: nTRN, nGRP and nSHP nodes, layers, and where they put the models.
 //
@@ -84,13 +59,15 @@ struct VoxTransform {
   VoxTransform after(const VoxTransform& child) const;
 };
 
+/// The chunks of nodes, by `VoxScene::Kind`.
+inline constexpr std::array<std::string_view, 3> kVoxNodes{"nTRN", "nGRP", "nSHP"};
+
 /// Collects nodes while chunks are read, then walks them.
 class VoxScene {
  public:
   /// Each takes the content of one chunk. @throws InputError for what a node alone shows to be wrong.
-  void add_transform(ByteReader& chunk, std::uint64_t offset);
-  void add_group(ByteReader& chunk, std::uint64_t offset);
-  void add_shape(ByteReader& chunk, std::uint64_t offset);
+  /// @param kind  in `kVoxNodes`
+  void add_node(ByteReader& chunk, std::size_t kind, std::uint64_t offset);
   void add_layer(ByteReader& chunk);
 
   bool empty() const { return nodes_.empty(); }
@@ -123,7 +100,6 @@ class VoxScene {
     std::uint32_t key_count = 0;
   };
 
-  Node read_head(ByteReader& chunk, Kind kind, std::uint64_t offset) const;
   /// The keys that come next, held to what `read` says of them.
   template <class Read>
   void take_keys(ByteReader& chunk, const Read& read, Node* node);

@@ -1,17 +1,11 @@
 #include "readers/vox_parts.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 
 namespace thimble::tools {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kChunkNames{"nTRN", "nGRP", "nSHP"};  // by Node::Kind
 /// Largest translation, alone or summed over nested groups, on any axis and in either direction.
 constexpr std::int32_t kVoxTranslationLimit = 1 << 24;
 /// Most scene graph nodes entered while placing them, for shared groups that hold nothing.
@@ -70,25 +64,6 @@ std::int64_t parse_frame(std::string_view text, const ByteReader& chunk) {
   return *frame;
 }
 
-/// Of keys in any order the last one up to a frame, or the first where none comes so early; of equal ones,
-/// the first in the file.
-class KeyAt {
- public:
-  explicit KeyAt(std::int64_t wanted) : wanted_(wanted) {}
-  bool take(std::int64_t frame) {
-    const bool is_better =
-        !any_ || (frame <= wanted_ ? best_ > wanted_ || frame > best_ : best_ > wanted_ && frame < best_);
-    best_ = is_better ? frame : best_;
-    any_ = true;
-    return is_better;
-  }
-
- private:
-  std::int64_t wanted_;
-  bool any_ = false;
-  std::int64_t best_ = 0;
-};
-
 /// An nTRN's next key; `frame` is where it begins to hold.
 VoxTransform read_transform(ByteReader& keys, std::int64_t* frame) {
   VoxTransform transform;
@@ -117,18 +92,31 @@ std::uint32_t read_model(ByteReader& keys, std::int64_t* frame) {
   return model;
 }
 
-/// What `read` makes of the key that holds at `frame`; `otherwise` without keys.
+/// What `read` makes of the key that holds at `frame`: of keys in any order the last one up to it, or the first where none
+/// comes so early; of equal ones, the first in the file. `otherwise` without keys.
 template <class Value, class Read>
 Value value_at(ByteReader keys, std::uint32_t count, std::int64_t frame, Value otherwise, const Read& read) {
-  KeyAt at(frame);
+  std::optional<std::int64_t> best;
   for (std::uint32_t i = 0; i < count; ++i) {
-    std::int64_t key_frame = 0;
-    const Value value = read(keys, &key_frame);
-    if (at.take(key_frame)) {
+    std::int64_t key = 0;
+    const Value value = read(keys, &key);
+    if (!best || (key <= frame ? *best > frame || key > *best : *best > frame && key < *best)) {
+      best = key;
       otherwise = value;
     }
   }
   return otherwise;
+}
+
+/// What a node's or a layer's dictionary says of it.
+bool is_hidden(ByteReader& chunk) {
+  bool hidden = false;
+  vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
+    if (key == "_hidden") {
+      hidden = value == "1";
+    }
+  });
+  return hidden;
 }
 
 }  // namespace
@@ -141,22 +129,6 @@ VoxTransform VoxTransform::after(const VoxTransform& child) const {
     both.translation[i] = sign[i] * child.translation[axis[i]] + translation[i];
   }
   return both;
-}
-
-VoxScene::Node VoxScene::read_head(ByteReader& chunk, Kind kind, std::uint64_t offset) const {
-  Node node;
-  node.kind = kind;
-  node.offset = offset;
-  node.id = chunk.i32();
-  if (node.id < 0) {
-    chunk.fail("node id ", node.id, " is negative");
-  }
-  vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
-    if (key == "_hidden") {
-      node.hidden = value == "1";
-    }
-  });
-  return node;
 }
 
 template <class Read>
@@ -172,35 +144,33 @@ void VoxScene::take_keys(ByteReader& chunk, const Read& read, Node* node) {
   }
 }
 
-void VoxScene::add_transform(ByteReader& chunk, std::uint64_t offset) {
-  Node node = read_head(chunk, Kind::kTransform, offset);
-  const std::int32_t child = chunk.i32();
-  chunk.skip(4);  // reserved
-  node.layer = chunk.i32();
-  take_keys(chunk, read_transform, &node);
-  node.first_child = static_cast<std::uint32_t>(children_.size());
-  node.child_count = 1;
-  children_.push_back(child);
-  nodes_.push_back(node);
-}
-
-void VoxScene::add_group(ByteReader& chunk, std::uint64_t offset) {
-  Node node = read_head(chunk, Kind::kGroup, offset);
-  const std::uint32_t count = chunk.u32();
-  if (chunk.remaining() / 4 < count) {
-    chunk.fail(count, " children do not fit the ", chunk.remaining(), " bytes that are left");
+void VoxScene::add_node(ByteReader& chunk, std::size_t kind, std::uint64_t offset) {
+  Node node;
+  node.kind = static_cast<Kind>(kind);
+  node.offset = offset;
+  node.id = chunk.i32();
+  if (node.id < 0) {
+    chunk.fail("node id ", node.id, " is negative");
   }
+  node.hidden = is_hidden(chunk);
   node.first_child = static_cast<std::uint32_t>(children_.size());
-  node.child_count = count;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  if (node.kind == Kind::kTransform) {
     children_.push_back(chunk.i32());
+    chunk.skip(4);  // reserved
+    node.layer = chunk.i32();
+    take_keys(chunk, read_transform, &node);
+  } else if (node.kind == Kind::kShape) {
+    take_keys(chunk, read_model, &node);
+  } else {
+    const std::uint32_t count = chunk.u32();
+    if (chunk.remaining() / 4 < count) {
+      chunk.fail(count, " children do not fit the ", chunk.remaining(), " bytes that are left");
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      children_.push_back(chunk.i32());
+    }
   }
-  nodes_.push_back(node);
-}
-
-void VoxScene::add_shape(ByteReader& chunk, std::uint64_t offset) {
-  Node node = read_head(chunk, Kind::kShape, offset);
-  take_keys(chunk, read_model, &node);
+  node.child_count = static_cast<std::uint32_t>(children_.size()) - node.first_child;
   nodes_.push_back(node);
 }
 
@@ -212,13 +182,7 @@ const std::vector<std::int64_t>& VoxScene::frames() {
 
 void VoxScene::add_layer(ByteReader& chunk) {
   const std::int32_t id = chunk.i32();
-  bool hidden = false;
-  vox_dictionary(chunk, [&](std::string_view key, std::string_view value) {
-    if (key == "_hidden") {
-      hidden = value == "1";
-    }
-  });
-  if (hidden && id >= 0) {  // -1 stands for no layer
+  if (is_hidden(chunk) && id >= 0) {  // -1 stands for no layer
     hidden_layers_.push_back(id);
   }
 }
@@ -239,7 +203,7 @@ void VoxScene::sort_nodes() {
   std::stable_sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) { return a.id < b.id; });
   for (std::size_t i = 1; i < nodes_.size(); ++i) {
     if (nodes_[i].id == nodes_[i - 1].id) {
-      throw InputError(vox_place(kChunkNames[static_cast<std::size_t>(nodes_[i].kind)], nodes_[i].offset),
+      throw InputError(vox_place(kVoxNodes[static_cast<std::size_t>(nodes_[i].kind)], nodes_[i].offset),
                        ": node id ", nodes_[i].id, " is already that of the node at byte offset ",
                        nodes_[i - 1].offset);
     }
@@ -258,7 +222,7 @@ std::uint32_t VoxScene::place_models(std::int64_t frame, const Place& place) {
   std::uint32_t visits = 0;
 
   const auto fail = [](const Node& node, const auto&... sentence) {
-    throw InputError(vox_place(kChunkNames[static_cast<std::size_t>(node.kind)], node.offset), ": ",
+    throw InputError(vox_place(kVoxNodes[static_cast<std::size_t>(node.kind)], node.offset), ": ",
                      sentence...);
   };
   const auto enter = [&](std::uint32_t index, const VoxTransform& parent) {

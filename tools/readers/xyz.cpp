@@ -28,20 +28,8 @@
 //
 // A count, a comment and lines that begin with an element's symbol are a molecule: its atoms are points.
 // Points that are not finite are left out.
-#include "readers/formats.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <utility>
-
 #include "output/units.h"
 #include "readers/color_scale.h"
-#include "readers/text.h"
 
 namespace thimble::tools {
 
@@ -123,6 +111,14 @@ class ColumnReader {
   bool ends_open_ = false;
 };
 
+std::size_t count_columns(ColumnReader& columns) {
+  std::size_t count = 0;
+  for (std::string_view column; columns.next(column);) {
+    ++count;
+  }
+  return count;
+}
+
 /// Whether a line cut at commas could be numbers with decimal commas and a comma and a blank between them, as
 /// in "1,5, 2,5, 3,5": at least three pieces, none with more than one comma between bare digits, one with.
 bool could_be_decimal_commas(std::string_view line) {
@@ -177,31 +173,16 @@ struct Layout {
   bool is_catalogue() const { return distance != Distance::kNoCatalogue; }
   /// A line of words before the points that names no x, y and z; 0 when there is none.
   std::uint64_t title_line = 0;
+  bool has_header = false;
+  std::int64_t announced = -1;  ///< number of points, or -1
+  /// Of the first line of points, where no header stands before it.
+  std::size_t unnamed_columns = 0;
   /// Columns that the header names and nothing is taken from, and the first of them.
   std::size_t unread_columns = 0;
   std::string unread;
 };
 
 constexpr std::array<const char*, kFields> kFieldNames{"x", "y", "z", "red", "green", "blue"};
-
-/// Looks at colour columns without trusting them to be colours.
-struct ColorSurvey {
-  ColorScale scale;
-  explicit ColorSurvey(const ReadOptions& options) : scale(options) {}
-  bool all_numbers = true;
-  std::uint64_t bad_line = 0;
-
-  void see(std::string_view word, std::uint64_t line) {
-    double value = 0;
-    if (parse_number(word, value) != NumberKind::kFinite || value < 0) {
-      bad_line = all_numbers ? line : bad_line;
-      all_numbers = false;
-      return;
-    }
-    scale.see(value);
-  }
-  bool looks_like_colors() const { return all_numbers && scale.looks_like_colors(); }
-};
 
 /// Degrees or hours, minutes and seconds: "-12:34:56.7".
 bool parse_sexagesimal(std::string_view word, double& value) {
@@ -413,12 +394,6 @@ bool read_header(std::string_view line, Layout& layout) {
   return names_position;
 }
 
-/// What stands before the points.
-struct Preamble {
-  bool has_header = false;
-  std::int64_t announced = -1;  ///< number of points, or -1
-};
-
 /// An element's symbol and three numbers, as a line of a molecule is.
 bool is_atom(std::string_view line) {
   ColumnReader columns(line, Separator::kBlanks);
@@ -436,8 +411,8 @@ bool is_atom(std::string_view line) {
   return true;
 }
 
-Preamble read_preamble(std::string_view text, Layout& layout) {
-  Preamble preamble;
+/// Reads what stands before the points.
+void read_preamble(std::string_view text, Layout& layout) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   const std::size_t begin = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   layout.first_point_offset = begin;
@@ -453,8 +428,8 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
     }
     double value = 0;
     const bool is_single = !columns.next(second);
-    if (preamble.announced < 0 && !preamble.has_header && is_single &&
-        parse_integer(first, preamble.announced) && preamble.announced >= 0) {
+    if (layout.announced < 0 && !layout.has_header && is_single && parse_integer(first, layout.announced) &&
+        layout.announced >= 0) {
       layout.first_point_offset = begin + lines.offset();
       layout.first_point_line = lines.line_number() + 1;
       LineReader after = lines;
@@ -462,7 +437,7 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
         LineReader ahead = after;
         std::string_view atom;
         if (ahead.next(atom) && is_atom(atom)) {
-          preamble.has_header = true;
+          layout.has_header = true;
           layout.has_elements = true;
           layout.columns = {1, 2, 3, kNoColumn, kNoColumn, kNoColumn};
           layout.first_point_offset = begin + after.offset();
@@ -472,14 +447,14 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
       }
       continue;
     }
-    preamble.announced = std::max<std::int64_t>(preamble.announced, -1);
+    layout.announced = std::max<std::int64_t>(layout.announced, -1);
     // "nan" in the first column is a bad coordinate rather than a name.
     if (parse_number(first, value) == NumberKind::kGarbage && !first.empty()) {
       const char c = without_quotes(first).empty() ? first.front() : without_quotes(first).front();
       const bool is_name = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '/';
       // Of a second one, reading it as a point says what is wrong.
-      if (is_name && !preamble.has_header) {
-        preamble.has_header = true;
+      if (is_name && !layout.has_header) {
+        layout.has_header = true;
         layout.first_point_offset = begin + lines.offset();
         layout.first_point_line = lines.line_number() + 1;
         if (read_header(line, layout)) {
@@ -491,19 +466,15 @@ Preamble read_preamble(std::string_view text, Layout& layout) {
       }
     }
     layout.separator = separator;
+    layout.unnamed_columns = layout.has_header ? 0 : count_columns(columns) + (is_single ? 1 : 2);
     break;
   }
-  return preamble;
 }
 
 /// Refuses a line that is cut otherwise than the model line: what it means would be a guess.
 void check_columns(std::string_view line, std::uint64_t number, Layout& layout) {
   ColumnReader columns(line, layout.separator);
-  std::string_view column;
-  std::size_t count = 0;
-  while (columns.next(column)) {
-    ++count;
-  }
+  const std::size_t count = count_columns(columns);
   if (layout.model_line == 0) {
     layout.model_line = number;
     layout.model_columns = count;
@@ -526,19 +497,6 @@ void check_columns(std::string_view line, std::uint64_t number, Layout& layout) 
   }
 }
 
-std::size_t columns_of_first(std::string_view text, const Layout& layout) {
-  LineReader lines(text.substr(layout.first_point_offset));
-  std::string_view line;
-  std::size_t count = 0;
-  while (count == 0 && lines.next(line)) {
-    ColumnReader columns(line, layout.separator);
-    for (std::string_view column; columns.next(column);) {
-      ++count;
-    }
-  }
-  return count;
-}
-
 }  // namespace
 
 /// No memory depends on the number of points. `CloudPoint::line` is the line in the file.
@@ -547,16 +505,16 @@ std::size_t columns_of_first(std::string_view text, const Layout& layout) {
 ///   is wrong; no point that is finite
 Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
   Layout layout(options);
-  const Preamble preamble = read_preamble(file.text(), layout);
+  read_preamble(file.text(), layout);
   const bool names_color = layout.columns[3] != kNoColumn;
-  const std::size_t columns = preamble.has_header ? 0 : columns_of_first(file.text(), layout);
-  if (!preamble.has_header) {
+  const std::size_t columns = layout.unnamed_columns;
+  if (!layout.has_header) {
     // Of x y z intensity r g b, and of x y z nx ny nz r g b.
     const std::size_t color = columns == 7 || columns == 9 ? columns - 3 : 3;
     layout.columns = {0, 1, 2, color, color + 1, color + 2};
   }
   ProgressMeter meter(progress, file.bytes.size());
-  ColorSurvey survey(options);
+  std::uint64_t bad_line = 0;  // whose colour is no colour
   std::uint64_t count = 0;
   std::uint64_t finite = 0;
   double last_ascension = 0;
@@ -575,28 +533,30 @@ Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progr
         }
         ++finite;
         // Without a header, one line that does not look like a colour settles the matter.
-        for (std::size_t i = 3; i < kFields && (names_color || survey.all_numbers); ++i) {
-          survey.see(words[i], point.line);
+        for (std::size_t i = 3; i < kFields && bad_line == 0; ++i) {
+          double value = 0;
+          const bool is_good = parse_number(words[i], value) == NumberKind::kFinite && value >= 0;
+          bad_line = is_good ? 0 : point.line;
+          layout.scale.see(is_good ? value : 0);
         }
       });
   if (finite == 0) {
     throw InputError(count == 0 ? "the file holds no points" : "no point of the file is finite");
   }
-  if (preamble.announced >= 0 && static_cast<std::uint64_t>(preamble.announced) != count) {
-    throw InputError("the first line announces ", preamble.announced, " points, but the file holds ", count);
+  if (layout.announced >= 0 && static_cast<std::uint64_t>(layout.announced) != count) {
+    throw InputError("the first line announces ", layout.announced, " points, but the file holds ", count);
   }
   if (names_color) {
-    if (!survey.all_numbers) {
-      fail_at_line(survey.bad_line, "the color is missing, negative or not a number");
+    if (bad_line != 0) {
+      fail_at_line(bad_line, "the color is missing, negative or not a number");
     }
-    if (!survey.scale.is_valid()) {
+    if (!layout.scale.is_valid()) {
       throw InputError("the columns of the color hold values above 65535");
     }
     layout.has_color = true;
   } else {
-    layout.has_color = columns >= 6 && survey.looks_like_colors();
+    layout.has_color = columns >= 6 && bad_line == 0 && layout.scale.looks_like_colors();
   }
-  layout.scale = survey.scale;
   if (!layout.has_color) {
     std::fill(layout.columns.begin() + 3, layout.columns.end(), kNoColumn);
   }

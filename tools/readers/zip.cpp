@@ -1,8 +1,7 @@
-#include "readers/zip.h"
-
+// Source of the format: PKWARE, "APPNOTE.TXT - .ZIP File Format Specification".
 #include <algorithm>
-#include <string>
 
+#include "readers/file_bytes.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -27,7 +26,8 @@ std::size_t find_end(std::span<const std::uint8_t> file) {
 
 }  // namespace
 
-std::vector<ZipMember> zip_members(std::span<const std::uint8_t> file) {
+std::vector<ZipMember> zip_members(const SharedBytes& archive) {
+  const std::span<const std::uint8_t> file = archive.bytes;
   const std::size_t end_offset = find_end(file);
   ByteReader end(file.subspan(end_offset), "the end of the archive", end_offset);
   end.skip(10);
@@ -69,28 +69,31 @@ std::vector<ZipMember> zip_members(std::span<const std::uint8_t> file) {
     local.skip(22);
     const std::uint64_t before = std::uint64_t{local.u16()} + local.u16();
     local.skip(before);
-    member.packed = local.take(packed_bytes);
+    member.packed = {local.take(packed_bytes), archive.owner};
     members.push_back(member);
   }
   return members;
 }
 
-FileBytes zip_unpack(const ZipMember& member) {
+SharedBytes zip_unpack(const ZipMember& member) {
   const std::string place = "the member " + quoted(member.name);
-  FileBytes bytes = member.is_deflated ? inflate_bytes(member.packed, Deflated::kBare,
-                                                       std::max<std::uint64_t>(1, member.size_bytes), place)
-                                       : FileBytes::copy_of(member.packed);
-  if (bytes.size() != member.size_bytes) {
-    throw InputError(place, " has ", bytes.size(), " bytes, not the ", member.size_bytes,
+  SharedBytes file = member.packed;
+  if (member.is_deflated) {
+    const auto most = std::max<std::uint64_t>(1, member.size_bytes);
+    file = inflate_bytes(member.packed.bytes, Deflated::kBare, most, place);
+  }
+  if (file.bytes.size() != member.size_bytes) {
+    throw InputError(place, " has ", file.bytes.size(), " bytes, not the ", member.size_bytes,
                      " of the directory");
   }
-  return bytes;
+  return file;
 }
 
-FileBytes zip_beginning(const ZipMember& member, std::uint64_t count) {
-  return member.is_deflated ? inflate_beginning(member.packed, Deflated::kBare, count)
-                            : FileBytes::copy_of(member.packed.first(static_cast<std::size_t>(
-                                  std::min<std::uint64_t>(count, member.packed.size()))));
+SharedBytes zip_beginning(const ZipMember& member, std::uint64_t count) {
+  const auto packed = member.packed.bytes;
+  return member.is_deflated
+             ? inflate_beginning(packed, Deflated::kBare, count)
+             : SharedBytes{packed.first(std::min(static_cast<std::size_t>(count), packed.size())), nullptr};
 }
 
 }  // namespace thimble::tools

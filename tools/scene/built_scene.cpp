@@ -7,7 +7,7 @@
 #include <new>
 
 #include "output/units.h"
-#include "readers/mapped_file.h"
+#include "readers/file_bytes.h"
 #include "readers/oct.h"
 #include "scene/key_sort.h"
 #include "scene/point_tree.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "readers/shared_bytes.h"
+#include "readers/file_bytes.h"
 
 namespace thimble::tools {
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "readers/file_bytes.h"
-#include "readers/mapped_file.h"
 #include "scene/host_memory.h"
 #include "scene/named_scenes.h"
 #include "scene/point_tree.h"
@@ -44,7 +43,7 @@ void add_file(const std::string& name, std::span<const std::uint8_t> bytes) {
 
 // ---- readers/file_bytes.h
 
-std::string load_beside(const std::string& path, std::uint64_t limit_bytes, FileBytes& file) {
+std::string load_beside(const std::string& path, std::uint64_t limit_bytes, SharedBytes& file) {
   const auto found = files().find(file_name(path));
   if (found == files().end()) {
     return "is not here: drop it together with the file that names it";
@@ -55,53 +54,29 @@ std::string load_beside(const std::string& path, std::uint64_t limit_bytes, File
   if (found->second.size() > limit_bytes) {
     return "holds more than the limit of " + std::to_string(limit_bytes) + " bytes";
   }
-  file = FileBytes::copy_of(found->second);
+  file = {found->second, nullptr};
   return {};
 }
 
-FileBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
+SharedBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
   const std::string name = file_name(path);
   if (own_file.empty()) {
     own_file = name;
   } else if (name != own_file) {
     model = name;
   }
-  FileBytes file;
+  SharedBytes file;
   if (const std::string fault = load_beside(path, limit_bytes, file); !fault.empty()) {
     throw InputError(fault);
   }
   if (look) {
-    look(file.bytes().first(std::min(file.size(), kFirstLookBytes)));
+    look(file.bytes.first(std::min(file.bytes.size(), kFirstLookBytes)));
   }
   return file;
 }
 
-class FileBuffer {
- public:
-  static FileBytes of(std::span<const std::uint8_t> bytes) {
-    FileBytes result;
-    auto* const copy = static_cast<std::uint8_t*>(std::malloc(std::max<std::size_t>(bytes.size(), 1)));
-    if (copy == nullptr) {
-      throw InputError("does not fit the memory that the browser gives");
-    }
-    std::copy(bytes.begin(), bytes.end(), copy);
-    result.data_.reset(copy);
-    result.size_ = bytes.size();
-    return result;
-  }
-};
-
 SharedBytes load_shared(const std::string& path, const FirstLook& look, bool /*is_beside*/) {
-  return share(load_file(path, kFileLimitBytes, look));
-}
-
-FileBytes FileBytes::copy_of(std::span<const std::uint8_t> bytes) {
-  return FileBuffer::of(bytes);
-}
-
-SharedBytes share(FileBytes bytes) {
-  auto kept = std::make_shared<const FileBytes>(std::move(bytes));
-  return {kept->bytes(), kept};
+  return load_file(path, kFileLimitBytes, look);
 }
 
 // ---- scene/named_scenes.h

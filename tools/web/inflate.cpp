@@ -32,16 +32,14 @@ namespace thimble::tools {
 namespace {
 
 struct Inflated {
-  std::unique_ptr<char, void (*)(void*)> bytes{nullptr, std::free};
-  std::size_t size = 0;
+  SharedBytes file;
   bool is_whole = false;
 };
 
 /// Into `room` bytes, and more where they may `grow`.
 Inflated inflate(std::span<const std::uint8_t> packed, Deflated frame, std::size_t room, bool grow) {
-  Inflated out;
-  out.bytes.reset(static_cast<char*>(std::malloc(room)));
-  if (out.bytes == nullptr || packed.size() > INT32_MAX) {
+  auto* const first = static_cast<char*>(std::malloc(room));
+  if (first == nullptr || packed.size() > INT32_MAX) {
     throw InputError("does not fit the memory that the browser gives");
   }
   // The decoder looks two bytes past the last code; zlib's frame has four there.
@@ -55,33 +53,31 @@ Inflated inflate(std::span<const std::uint8_t> packed, Deflated frame, std::size
   stbi__zbuf buffer{};
   buffer.zbuffer = const_cast<stbi_uc*>(packed.data());
   buffer.zbuffer_end = buffer.zbuffer + packed.size();
-  out.is_whole = stbi__do_zlib(&buffer, out.bytes.release(), static_cast<int>(room), grow ? 1 : 0,
-                               frame == Deflated::kZlib ? 1 : 0) != 0;
-  out.bytes.reset(buffer.zout_start);
-  out.size = static_cast<std::size_t>(buffer.zout - buffer.zout_start);
-  return out;
-}
-
-FileBytes file_of(const Inflated& inflated) {
-  return FileBytes::copy_of({reinterpret_cast<const std::uint8_t*>(inflated.bytes.get()), inflated.size});
+  const bool is_whole = stbi__do_zlib(&buffer, first, static_cast<int>(room), grow ? 1 : 0,
+                                      frame == Deflated::kZlib ? 1 : 0) != 0;
+  const std::shared_ptr<const char> made(buffer.zout_start, std::free);
+  return {{{reinterpret_cast<const std::uint8_t*>(made.get()),
+            static_cast<std::size_t>(buffer.zout - buffer.zout_start)},
+           made},
+          is_whole};
 }
 
 }  // namespace
 
-FileBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
-                        const std::string& place) {
-  const Inflated inflated = inflate(packed, frame, std::size_t{1} << 16, true);
-  if (!inflated.is_whole) {
+SharedBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t limit_bytes,
+                          const std::string& place) {
+  const auto [file, is_whole] = inflate(packed, frame, std::size_t{1} << 16, true);
+  if (!is_whole) {
     throw InputError(place + ": the deflated data is damaged or truncated");
   }
-  if (inflated.size > limit_bytes) {
+  if (file.bytes.size() > limit_bytes) {
     throw InputError("holds more than the limit of " + std::to_string(limit_bytes) + " bytes");
   }
-  return file_of(inflated);
+  return file;
 }
 
-FileBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count) {
-  return file_of(inflate(packed, frame, static_cast<std::size_t>(count), false));
+SharedBytes inflate_beginning(std::span<const std::uint8_t> packed, Deflated frame, std::uint64_t count) {
+  return inflate(packed, frame, static_cast<std::size_t>(count), false).file;
 }
 
 std::array<int, 2> picture_size(std::span<const std::uint8_t> encoded) {
