@@ -28,8 +28,9 @@ uint64_t cube_value(const uint32_t (&corner)[3], uint32_t down) {
 // upper plane of axis b, and that of b before that of a, exactly when |c_a d_b - c_b d_a| < half (|d_a| + |d_b|). Where
 // both sides are equal, the ray touches an edge. Along an axis with d = 0 the ray must lie between the planes, or in
 // the lower one. Centres are below 2^25 in 1/512 voxel, directions have 20 bits.
-Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key,
-                     uint32_t* down) {
+Meeting meet_exactly(const WideFrame& frame, int32_t x, int32_t y, uint32_t entry, const uint32_t (&cube)[3],
+                     uint32_t* key, uint32_t* down) {
+  const Ray ray = frame.camera->ray(x, y);
   const int32_t level = level_of(entry);
   const uint32_t corner[3] = {x_of(entry), entry >> 10 & 1023U, entry >> 20 & 1023U};
   const int64_t half = int64_t{256} << level;
@@ -69,11 +70,6 @@ Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], 
   }
   *key = mirrored_key(corner, level, *down);
   return meeting;
-}
-
-Meeting meet_exactly(const WideFrame& frame, int32_t x, int32_t y, uint32_t entry, const uint32_t (&cube)[3],
-                     uint32_t* key, uint32_t* down) {
-  return meet_exactly(frame.camera->ray(x, y), entry, cube, key, down);
 }
 
 }  // namespace thimble::wide

@@ -3,10 +3,6 @@
 
 #include <stdint.h>
 
-namespace thimble {
-struct Ray;
-}
-
 namespace thimble::wide {
 
 struct WideFrame;
@@ -45,11 +41,8 @@ enum class Meeting : uint8_t {
   kHit,    ///< a positive length, at t >= 0
 };
 
-/// Decides how the ray meets the entry of the cube at `cube` (voxels). Unless the ray misses, `down` gets the axes
-/// along which it runs downwards, and `key` the entry's key mirrored in them.
-Meeting meet_exactly(const Ray& ray, uint32_t entry, const uint32_t (&cube)[3], uint32_t* key,
-                     uint32_t* down);
-/// The same for the ray of pixel (x, y).
+/// Decides how the ray of pixel (x, y) meets the entry of the cube at `cube` (voxels). Unless the ray misses, `down` gets
+/// the axes along which it runs downwards, and `key` the entry's key mirrored in them.
 Meeting meet_exactly(const WideFrame& frame, int32_t x, int32_t y, uint32_t entry, const uint32_t (&cube)[3],
                      uint32_t* key, uint32_t* down);
 

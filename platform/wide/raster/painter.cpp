@@ -109,29 +109,9 @@ void TilePainter::fill_background(const WideFrame& frame, const Depths& depths) 
   }
 }
 
-// Stores pixels of a format known when this is compiled: two or three moves each.
-template <PixelFormat kFormat>
-void TilePainter::store_as(const Pixels& pixels, const Rgb8* colors) const {
-  for (uint32_t i = 0; i < pixels.count; ++i) {
-    store_pixel(line(pixels.y[i]), pixels.x[i], pixels.y[i], kFormat, colors[i]);
-  }
-}
-
 void TilePainter::store_colors(const Pixels& pixels, const Rgb8* colors) const {
-  switch (band_.format) {
-    case PixelFormat::kRgb888:
-      store_as<PixelFormat::kRgb888>(pixels, colors);
-      return;
-    case PixelFormat::kRgb565:
-      store_as<PixelFormat::kRgb565>(pixels, colors);
-      return;
-    case PixelFormat::kGray8:
-      store_as<PixelFormat::kGray8>(pixels, colors);
-      return;
-    default:
-      for (uint32_t i = 0; i < pixels.count; ++i) {
-        store_pixel(line(pixels.y[i]), pixels.x[i], pixels.y[i], band_.format, colors[i]);
-      }
+  for (uint32_t i = 0; i < pixels.count; ++i) {
+    store_pixel(line(pixels.y[i]), pixels.x[i], pixels.y[i], band_.format, colors[i]);
   }
 }
 

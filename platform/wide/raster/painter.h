@@ -27,8 +27,6 @@ class TilePainter {
   Rgb8 color_of_code(unsigned code) const;
   void fill_piece(uint8_t* to, size_t size) const;
   void fill_background(const WideFrame& frame, const Depths& depths) const;
-  template <PixelFormat kFormat>
-  void store_as(const Pixels& pixels, const Rgb8* colors) const;
   void store_colors(const Pixels& pixels, const Rgb8* colors) const;
   void paint_grays(const WideFrame& frame, const Pixels& pixels) const;
   void find_colors(const WideFrame& frame, const Pixels& pixels, Rgb8* colors) const;

@@ -90,11 +90,6 @@ int choose_block_level(int world_level, const uint32_t* level_begin, uint64_t bo
   return level;
 }
 
-template <class T>
-T* array(Arena* arena, uint64_t count) {
-  return reinterpret_cast<T*>(arena->take(static_cast<size_t>(count) * sizeof(T), 64).data);
-}
-
 // Walks the tree down and across, in Morton order, and writes entries and block nodes.
 class ListWriter {
  public:
@@ -107,8 +102,6 @@ class ListWriter {
 
   // Writes the lists of a tree that is not empty.
   void write() { write(tree_.level(), {0, 0, 0}); }
-
-  uint32_t written() const { return written_; }
 
  private:
   // Writes the next node of this level, and what it holds. Nodes of one level are visited in the order in which they
@@ -187,11 +180,13 @@ struct Plan {
   SurfaceCount surface;
   bool has_surface = false;  // else boxes
   bool is_short = false;     // whether the entries of the boxes are short
-  int box_level = 0;         // the block level of either list
-  int surface_level = 0;     // the same
+  int block_level = 0;
 
-  uint64_t box_nodes() const { return census.boxes == 0 ? 0 : census.level_begin[box_level - 1]; }
-  uint64_t surface_nodes() const { return surface.level_begin[surface_level - 1]; }
+  uint64_t entries() const { return has_surface ? surface.entries : census.boxes; }
+  const uint32_t* level_begin() const { return has_surface ? surface.level_begin : census.level_begin; }
+  uint64_t nodes() const { return entries() == 0 ? 0 : level_begin()[block_level - 1]; }
+  // Materials that follow those of the entries, so that a hidden voxel has a number too.
+  size_t materials_behind() const { return has_surface ? 256 : 0; }
 };
 
 bool make_plan(const CompactTree& tree, ListKind kind, Plan* plan) {
@@ -205,23 +200,21 @@ bool make_plan(const CompactTree& tree, ListKind kind, Plan* plan) {
     plan->surface = count_surface(tree, census.level_begin);
     plan->has_surface = plan->surface.entries < kMostSurface;
   }
-  if (plan->has_surface) {
-    plan->surface_level =
-        choose_block_level(tree.level(), plan->surface.level_begin, plan->surface.entries, 2);
-  } else {
+  if (!plan->has_surface) {
     split_blocks(tree, may_be_surface && !is_solid, &census);
   }
-  plan->box_level = choose_block_level(tree.level(), census.level_begin, census.boxes, 1);
+  plan->block_level =
+      choose_block_level(tree.level(), plan->level_begin(), plan->entries(), plan->has_surface ? 2 : 1);
   plan->is_short = tree.level() > kCubeLevel && !plan->has_surface && !census.has_blocks &&
-                   !tree.many_materials() && plan->box_level < kShortLevel &&
+                   !tree.many_materials() && plan->block_level < kShortLevel &&
                    census.boxes / kVoxelsPerShortCube >=
                        census.level_begin[kShortLevel - 1] - census.level_begin[kShortLevel];
   return true;
 }
 
-size_t bytes_of(uint64_t entries, size_t entry_bytes, uint64_t nodes, bool has_materials, bool has_merged) {
-  return static_cast<size_t>(entries * (entry_bytes + (has_materials ? 1 : 0) + (has_merged ? 1 : 0)) +
-                             kEntriesAhead * sizeof(uint32_t) + nodes * sizeof(BlockNode) + 4 * 64);
+template <class T>
+T* array(Arena* arena, uint64_t count) {
+  return reinterpret_cast<T*>(arena->take(static_cast<size_t>(count) * sizeof(T), 64).data);
 }
 
 // Takes room for the entries, with zeros behind them.
@@ -235,86 +228,47 @@ T* take_entries(uint64_t entries, Arena* arena) {
 }
 
 // Takes room for a list. Returns whether there was enough.
-bool take_list(uint64_t entries, bool is_short, uint64_t nodes, bool has_materials, uint64_t materials_behind,
-               bool has_merged, Arena* arena, ListTo* to) {
-  to->entries = is_short ? nullptr : take_entries<uint32_t>(entries, arena);
-  to->short_entries = is_short ? take_entries<uint16_t>(entries, arena) : nullptr;
-  to->nodes = array<BlockNode>(arena, nodes);
-  to->materials = has_materials ? array<uint8_t>(arena, entries + materials_behind) : nullptr;
-  to->merged = has_merged ? array<uint8_t>(arena, entries) : nullptr;
-  return (to->entries != nullptr || to->short_entries != nullptr) && (to->nodes != nullptr || nodes == 0) &&
-         (to->materials != nullptr || !has_materials || entries == 0) &&
-         (to->merged != nullptr || !has_merged || entries == 0);
+bool take_list(const CompactTree& tree, const Plan& plan, Arena* arena, ListTo* to) {
+  const uint64_t entries = plan.entries();
+  to->entries = plan.is_short ? nullptr : take_entries<uint32_t>(entries, arena);
+  to->short_entries = plan.is_short ? take_entries<uint16_t>(entries, arena) : nullptr;
+  to->nodes = array<BlockNode>(arena, plan.nodes());
+  to->materials = tree.many_materials() ? array<uint8_t>(arena, entries + plan.materials_behind()) : nullptr;
+  to->merged = tree.merged() ? array<uint8_t>(arena, entries) : nullptr;
+  return (to->entries != nullptr || to->short_entries != nullptr) &&
+         (to->nodes != nullptr || plan.nodes() == 0) &&
+         (to->materials != nullptr || !tree.many_materials() || entries == 0) &&
+         (to->merged != nullptr || !tree.merged() || entries == 0);
+}
+
+void write_list(const CompactTree& tree, const Plan& plan, const ListTo& to) {
+  if (plan.has_surface) {
+    write_surface(tree, plan.census.level_begin, plan.surface, plan.block_level, to);
+    for (size_t material = 0; to.materials != nullptr && material < plan.materials_behind(); ++material) {
+      to.materials[plan.entries() + material] = static_cast<uint8_t>(material);
+    }
+  } else if (!tree.empty()) {
+    ListWriter(tree, plan.census, plan.block_level, to).write();
+  }
+}
+
+template <class T>
+Span<const T> span_of(const T* data, uint64_t size) {
+  return {data, data == nullptr ? 0 : static_cast<size_t>(size)};
 }
 
 }  // namespace
-
-class ListMaker {
- public:
-  ListMaker(const CompactTree& tree, const Plan& plan) : tree_(tree), plan_(plan) {}
-
-  bool make_boxes(Arena* arena, VoxelLists::List* list) const {
-    const Census& census = plan_.census;
-    ListTo to{};
-    if (!take_list(census.boxes, plan_.is_short, plan_.box_nodes(), tree_.many_materials(), 0, tree_.merged(),
-                   arena, &to)) {
-      return false;
-    }
-    ListWriter writer(tree_, census, plan_.box_level, to);
-    if (!tree_.empty()) {
-      writer.write();
-    }
-    fill(to, writer.written(), plan_.box_nodes(), 0, list);
-    list->block_level = plan_.box_level;
-    list->has_blocks = census.has_blocks;
-    return true;
-  }
-
-  bool make_surface(Arena* arena, VoxelLists::List* list) const {
-    const uint64_t entries = plan_.surface.entries;
-    ListTo to{};
-    if (!take_list(entries, false, plan_.surface_nodes(), tree_.many_materials(), kMaterials, false, arena,
-                   &to)) {
-      return false;
-    }
-    write_surface(tree_, plan_.census.level_begin, plan_.surface, plan_.surface_level, to);
-    for (uint32_t material = 0; to.materials != nullptr && material < kMaterials; ++material) {
-      to.materials[entries + material] = static_cast<uint8_t>(material);
-    }
-    fill(to, entries, plan_.surface_nodes(), kMaterials, list);
-    list->block_level = plan_.surface_level;
-    list->is_surface = true;
-    return true;
-  }
-
- private:
-  static constexpr uint32_t kMaterials = 256;
-
-  static void fill(const ListTo& to, uint64_t entries, uint64_t nodes, uint64_t materials_behind,
-                   VoxelLists::List* list) {
-    const size_t size = static_cast<size_t>(entries);
-    list->entries = Span<const uint32_t>(to.entries, to.entries == nullptr ? 0 : size);
-    list->short_entries = Span<const uint16_t>(to.short_entries, to.short_entries == nullptr ? 0 : size);
-    list->nodes = Span<const BlockNode>(to.nodes, static_cast<size_t>(nodes));
-    list->merged = Span<const uint8_t>(to.merged, to.merged == nullptr ? 0 : size);
-    list->materials = Span<const uint8_t>(
-        to.materials, to.materials == nullptr ? 0 : size + static_cast<size_t>(materials_behind));
-  }
-
-  const CompactTree& tree_;
-  const Plan& plan_;
-};
 
 size_t VoxelLists::bytes(const CompactTree& tree, ListKind kind) {
   Plan plan;
   if (!make_plan(tree, kind, &plan)) {
     return 0;
   }
-  const bool many = tree.many_materials();
-  const size_t entry_bytes = plan.is_short ? sizeof(uint16_t) : sizeof(uint32_t);
-  return plan.has_surface
-             ? bytes_of(plan.surface.entries, sizeof(uint32_t), plan.surface_nodes(), many, false) + 256
-             : bytes_of(plan.census.boxes, entry_bytes, plan.box_nodes(), many, tree.merged());
+  const size_t entry_bytes = (plan.is_short ? sizeof(uint16_t) : sizeof(uint32_t)) +
+                             (tree.many_materials() ? 1 : 0) + (tree.merged() ? 1 : 0);
+  return static_cast<size_t>(plan.entries() * entry_bytes + kEntriesAhead * sizeof(uint32_t) +
+                             plan.nodes() * sizeof(BlockNode) + 4 * 64) +
+         plan.materials_behind();
 }
 
 Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists, ListKind kind) {
@@ -322,15 +276,23 @@ Status VoxelLists::make(const CompactTree& tree, Arena* arena, VoxelLists* lists
   if (!make_plan(tree, kind, &plan)) {
     return Status::kDamaged;
   }
-  VoxelLists made;
-  made.tree_ = tree;
   Arena taken = *arena;
-  const ListMaker maker(tree, plan);
-  if (!(plan.has_surface ? maker.make_surface(&taken, &made.list_) : maker.make_boxes(&taken, &made.list_))) {
+  ListTo to{};
+  if (!take_list(tree, plan, &taken, &to)) {
     return Status::kOutOfMemory;
   }
+  write_list(tree, plan, to);
+  const uint64_t entries = plan.entries();
+  lists->tree_ = tree;
+  lists->entries_ = span_of(to.entries, entries);
+  lists->short_entries_ = span_of(to.short_entries, entries);
+  lists->materials_ = span_of(to.materials, entries + plan.materials_behind());
+  lists->merged_ = span_of(to.merged, entries);
+  lists->nodes_ = span_of(to.nodes, plan.nodes());
+  lists->block_level_ = plan.block_level;
+  lists->has_blocks_ = !plan.has_surface && plan.census.has_blocks;
+  lists->is_surface_ = plan.has_surface;
   *arena = taken;
-  *lists = made;
   return Status::kOk;
 }
 

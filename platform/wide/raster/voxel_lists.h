@@ -78,51 +78,45 @@ class VoxelLists {
 
   const CompactTree& tree() const { return tree_; }
   /// How many boxes there are.
-  size_t size() const { return list_.entries.size + list_.short_entries.size; }
+  size_t size() const { return entries_.size + short_entries_.size; }
   /// One of these is empty.
-  Span<const uint32_t> entries() const { return list_.entries; }
-  Span<const uint16_t> short_entries() const { return list_.short_entries; }
+  Span<const uint32_t> entries() const { return entries_; }
+  Span<const uint16_t> short_entries() const { return short_entries_; }
   /// Materials of the entries; empty where the tree has one material. In a list of a surface all 256 materials follow,
   /// in order.
-  Span<const uint8_t> materials() const { return list_.materials; }
+  Span<const uint8_t> materials() const { return materials_; }
   /// 1 for entries that coarsening made: a hit on such an entry is a hit on the block, not on a voxel of it. Empty
   /// where the tree has no such block.
-  Span<const uint8_t> merged() const { return list_.merged; }
-  Span<const BlockNode> nodes() const { return list_.nodes; }
-  int block_level() const { return list_.block_level; }
+  Span<const uint8_t> merged() const { return merged_; }
+  Span<const BlockNode> nodes() const { return nodes_; }
+  int block_level() const { return block_level_; }
   /// Whether any entry is larger than one voxel.
-  bool has_blocks() const { return list_.has_blocks; }
+  bool has_blocks() const { return has_blocks_; }
   /// Whether voxels with six solid neighbours are left out. A hidden voxel that a ray hits all the same is numbered
   /// size() + its material.
-  bool is_surface() const { return list_.is_surface; }
+  bool is_surface() const { return is_surface_; }
 
   /// The mask of a node's children that have entries; at the block level the children themselves are not kept.
   unsigned children(uint32_t node) const {
-    return list_.has_blocks ? tree_.mask(node) : list_.nodes[node].area_or_mask & 0xFFU;
+    return has_blocks_ ? tree_.mask(node) : nodes_[node].area_or_mask & 0xFFU;
   }
   /// The ways, out of eight, in which rays must run so that a voxel of the node may be the first that they hit
   /// (BlockNode).
   unsigned facing(const BlockNode& node) const {
-    return list_.has_blocks ? 0xFFU : node.area_or_mask >> 8 & 0xFFU;
+    return has_blocks_ ? 0xFFU : node.area_or_mask >> 8 & 0xFFU;
   }
-  uint32_t face_area(const BlockNode& node) const {
-    return list_.has_blocks ? node.area_or_mask : node.entries;
-  }
+  uint32_t face_area(const BlockNode& node) const { return has_blocks_ ? node.area_or_mask : node.entries; }
 
  private:
-  friend class ListMaker;
-  struct List {
-    Span<const uint32_t> entries;
-    Span<const uint16_t> short_entries;
-    Span<const uint8_t> materials;
-    Span<const uint8_t> merged;
-    Span<const BlockNode> nodes;
-    int block_level = 0;
-    bool has_blocks = false;
-    bool is_surface = false;
-  };
   CompactTree tree_;
-  List list_;
+  Span<const uint32_t> entries_;
+  Span<const uint16_t> short_entries_;
+  Span<const uint8_t> materials_;
+  Span<const uint8_t> merged_;
+  Span<const BlockNode> nodes_;
+  int block_level_ = 0;
+  bool has_blocks_ = false;
+  bool is_surface_ = false;
 };
 
 }  // namespace thimble::wide
