@@ -122,12 +122,10 @@ void check_lit_frames(std::uint64_t seed, int frames,
       }
     }
     use_random_instruction_set(random);
-    wide::LitMedia media = wide::lit_media(lit.effects, lit.scene);
-    media.count = pick(random, 0, 3) == 0 ? media.count / 2 : media.count;
-    const HeapBytes map_bytes(wide::RayMap::bytes(scene.tree, media.span()));
+    const HeapBytes map_bytes(wide::RayMap::bytes(scene.tree));
     Arena arena(map_bytes.span());
     wide::RayMap map;
-    REQUIRE(wide::RayMap::make(scene.tree, &arena, &map, media.span()) == Status::kOk);
+    REQUIRE(wide::RayMap::make(scene.tree, &arena, &map) == Status::kOk);
     const int threads = pick_int(random, 1, 3);
     const std::size_t workspace = pick(random, 0, 1) == 0
                                       ? wide::least_lit_workspace_bytes(lit.effects, lit.scene)

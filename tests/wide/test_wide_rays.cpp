@@ -17,20 +17,11 @@ struct MapUnderTest {
   wide::RayMap map;
 };
 
-// With layers for some of the materials.
-MapUnderTest make_map(std::mt19937_64& random, const CompactTree& tree) {
-  std::vector<std::uint8_t> media;
-  const std::int64_t one_of = pick(random, 1, 4);
-  for (int material = 0; material < 256 && pick(random, 0, 40) != 0; ++material) {
-    if (pick(random, 1, one_of) == 1) {
-      media.push_back(static_cast<std::uint8_t>(material));
-    }
-  }
-  const Span<const std::uint8_t> of_media{media.data(), media.size()};
+MapUnderTest make_map(const CompactTree& tree) {
   MapUnderTest made;
-  made.bytes = std::make_unique<HeapBytes>(wide::RayMap::bytes(tree, of_media));
+  made.bytes = std::make_unique<HeapBytes>(wide::RayMap::bytes(tree));
   Arena arena(made.bytes->span());
-  REQUIRE(wide::RayMap::make(tree, &arena, &made.map, of_media) == Status::kOk);
+  REQUIRE(wide::RayMap::make(tree, &arena, &made.map) == Status::kOk);
   return made;
 }
 
@@ -41,8 +32,6 @@ struct RayBatch {
   std::vector<RayPoint> from;
   std::vector<Hit> first;
   std::vector<Hit> first_from;
-  std::vector<std::uint16_t> in;
-  std::vector<MediumExit> change;
   std::uint8_t classes[256] = {};  // by material; few, 0 among them
 };
 
@@ -97,20 +86,6 @@ void add_ray(std::mt19937_64& random, const CompactTree& tree, const Ray& ray, R
   batch->from.push_back(from);
   REQUIRE(closest_hit_from(tree, ray, from, &hit) == Status::kOk);
   batch->first_from.push_back(hit);
-  // Mostly in what it is in.
-  MediumExit change;
-  std::uint16_t in = wide::kInAir;
-  if (pick(random, 0, 3) != 0) {
-    in = hit.kind == HitKind::kHit && pick(random, 0, 7) != 0
-             ? hit.material
-             : static_cast<std::uint16_t>(pick(random, 0, 12));
-    REQUIRE(leave_medium(tree, ray, static_cast<std::uint8_t>(in), &change, from) == Status::kOk);
-  } else {
-    change.hit = hit;
-    change.into_solid = hit.kind == HitKind::kHit;
-  }
-  batch->in.push_back(in);
-  batch->change.push_back(change);
 }
 
 // Hard rays, and secondary ones: in a third of the batches all go into one octant, mostly at one speed along an
@@ -163,13 +138,6 @@ RayBatch make_batch(std::mt19937_64& random, const CompactTree& tree, std::size_
   return batch;
 }
 
-bool same(const MediumExit& a, const MediumExit& b) {
-  if (a.left_world && b.left_world && b.hit.axis < 0) {
-    return a.hit.axis == b.hit.axis;
-  }
-  return a.into_solid == b.into_solid && a.left_world == b.left_world && same_hit(a.hit, b.hit);
-}
-
 template <class Same>
 void check_each(const char* what, const RayBatch& batch, const Same& is_same) {
   std::size_t wrong = 0;
@@ -204,15 +172,8 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
   check_each("any_hit_before", batch, [&](std::size_t i) { return any[i] == hit_before(i); });
   CHECK(wide::first_hit(map, rays, to_hits) == Status::kOk);
   check_each("first_hit", batch, [&](std::size_t i) { return same_hit(hits[i], batch.first[i]); });
-  std::vector<RayPoint> no_later = batch.from;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Hit& hit = batch.first[i];
-    if (hit.kind == HitKind::kHit && is_before(hit, no_later[i])) {
-      no_later[i] = {};
-    }
-  }
-  CHECK(wide::first_hit_from(map, rays, {no_later.data(), count}, to_hits) == Status::kOk);
-  check_each("first_hit_from", batch, [&](std::size_t i) { return same_hit(hits[i], batch.first[i]); });
+  CHECK(wide::first_hit_from(map, rays, from, to_hits) == Status::kOk);
+  check_each("first_hit_from", batch, [&](std::size_t i) { return same_hit(hits[i], batch.first_from[i]); });
   // One bound for all rays; of a merged block the t counts, not how it is written.
   const RayPoint reach = batch.before.front();
   for (const std::uint8_t* classes : {static_cast<const std::uint8_t*>(nullptr), batch.classes}) {
@@ -230,24 +191,17 @@ void check_answers(const wide::RayMap& map, const RayBatch& batch) {
   }
   const auto class_of = [&](std::size_t i) { return batch.classes[batch.first[i].material]; };
   std::fill(any.begin(), any.end(), std::uint8_t{7});
-  CHECK(wide::first_class(map, rays, batch.classes, to_any) == Status::kOk);
-  check_each("first_class", batch, [&](std::size_t i) {
+  CHECK(wide::any_hit(map, rays, to_any, batch.classes) == Status::kOk);
+  check_each("any_hit by class", batch, [&](std::size_t i) {
     return any[i] == (batch.first[i].kind == HitKind::kHit ? class_of(i) : 0);
   });
   std::fill(any.begin(), any.end(), std::uint8_t{7});
-  CHECK(wide::first_class_before(map, rays, before, batch.classes, to_any) == Status::kOk);
-  check_each("first_class_before", batch,
+  CHECK(wide::any_hit_before(map, rays, before, to_any, batch.classes) == Status::kOk);
+  check_each("any_hit_before by class", batch,
              [&](std::size_t i) { return any[i] == (hit_before(i) ? class_of(i) : 0); });
   CHECK(wide::first_hit_before(map, rays, before, to_hits) == Status::kOk);
   check_each("first_hit_before", batch,
              [&](std::size_t i) { return same_hit(hits[i], hit_before(i) ? batch.first[i] : Hit{}); });
-  std::vector<MediumExit> exits(count);
-  const std::vector<std::uint16_t> air(count, wide::kInAir);
-  CHECK(wide::first_change(map, rays, from, {air.data(), count}, {exits.data(), count}) == Status::kOk);
-  check_each("first_change in air", batch,
-             [&](std::size_t i) { return same_hit(exits[i].hit, batch.first_from[i]); });
-  CHECK(wide::first_change(map, rays, from, {batch.in.data(), count}, {exits.data(), count}) == Status::kOk);
-  check_each("first_change", batch, [&](std::size_t i) { return same(exits[i], batch.change[i]); });
 }
 
 // Scenes of random_scene, and so many rays through each by each of the instruction sets: counts the rays.
@@ -262,7 +216,7 @@ std::uint64_t check_random_scenes(std::uint64_t first_seed, int scenes, std::siz
     CAPTURE(seed);
     CAPTURE(scene.what);
     CAPTURE(scene.level);
-    const MapUnderTest made = make_map(random, scene.tree);
+    const MapUnderTest made = make_map(scene.tree);
     const RayBatch batch = make_batch(random, scene.tree, rays);
     for (int set = 0; set < sets; ++set) {
       wide::use_instruction_set(set);
@@ -299,7 +253,7 @@ TEST_CASE("rays: boxes -> empty where nothing solid is in them") {
           REQUIRE(octree->insert(solid.back(), 1) == Status::kOk);
         }
       });
-      const MapUnderTest made = make_map(random, scene.tree);
+      const MapUnderTest made = make_map(scene.tree);
       const auto holds = [&](const VoxelBox& box) {
         return std::any_of(solid.begin(), solid.end(), [&](const Vec3i& voxel) {
           return voxel.x >= box.low.x && voxel.x < box.high.x && voxel.y >= box.low.y &&

@@ -50,7 +50,7 @@ class WideLitStreams final : public LitStreams {
 
 std::size_t LitStreams::bytes(const CompactTree& tree, EffectSet effects, const LitScene& scene,
                               int threads) {
-  return wide::RayMap::bytes(tree, wide::lit_media(effects, scene).span()) +
+  return wide::RayMap::bytes(tree) +
          wide::lit_workspace_bytes(effects, scene) * static_cast<std::size_t>(threads);
 }
 
@@ -59,22 +59,14 @@ std::unique_ptr<LitStreams> LitStreams::make(const CompactTree& tree, Arena* are
   const auto start = std::chrono::steady_clock::now();
   const std::size_t least = wide::least_lit_workspace_bytes(effects, scene);
   // Asked before the map is made: what does not fit costs no time.
-  wide::LitMedia media = wide::lit_media(effects, scene);
-  const auto fits = [&] {
-    const std::size_t map_bytes = wide::RayMap::bytes(tree, media.span());
-    return map_bytes <= arena->free_bytes() && arena->free_bytes() - map_bytes >= least;
-  };
-  bool has_room = fits();
-  if (!has_room && media.count != 0) {
-    media.count = 0;  // layers for what is clear only where there is room for them
-    has_room = fits();
-  }
-  if (effects == Effect::kNone || !has_room) {
+  const std::size_t map_bytes = wide::RayMap::bytes(tree);
+  if (effects == Effect::kNone || map_bytes > arena->free_bytes() ||
+      arena->free_bytes() - map_bytes < least) {
     return nullptr;
   }
   const std::size_t mark = arena->used_bytes();
   wide::RayMap map;
-  if (wide::RayMap::make(tree, arena, &map, media.span()) != Status::kOk) {
+  if (wide::RayMap::make(tree, arena, &map) != Status::kOk) {
     return nullptr;
   }
   const std::size_t wanted = wide::lit_workspace_bytes(effects, scene) * static_cast<std::size_t>(threads);

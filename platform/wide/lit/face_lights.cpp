@@ -77,7 +77,6 @@ void FaceLightsParts::lay_out(const FaceLightsShape& shape, ArrayArena* arena) {
     asked.in = question == lit::Question::kOn ? arena->take<uint16_t>(of_ways) : nullptr;
   }
   hits = arena->take<Hit>(of_ways);
-  exits = arena->take<MediumExit>(of_ways);
 }
 
 void put_hits(const Hit* hits, lit::Asked* asked, lit::Answer* answers) {
@@ -89,7 +88,7 @@ void put_hits(const Hit* hits, lit::Asked* asked, lit::Answer* answers) {
 }
 
 // Rays were checked when they were queued, so none is refused.
-void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits, MediumExit* exits,
+void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits,
                  lit::Answer* answers) {
   lit::Asked& closest = questions[static_cast<int>(lit::Question::kClosest)];
   const Span<const Ray> rays{closest.rays, closest.count};
@@ -101,11 +100,26 @@ void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hi
   (void)first_hit_before(map, {before.rays, before.count}, {before.before, before.count},
                          {hits, before.count});
   put_hits(hits, &before, answers);
-  static_assert(lit::kInNothing == kInAir);
+  // The core follows rays through a medium; those through the air are traced together.
   lit::Asked& on = questions[static_cast<int>(lit::Question::kOn)];
-  (void)first_change(map, {on.rays, on.count}, {on.before, on.count}, {on.in, on.count}, {exits, on.count});
+  uint32_t in_air = 0;
   for (uint32_t i = 0; i < on.count; ++i) {
-    answers[on.answer[i]] = exits[i];
+    if (on.in[i] != lit::kInNothing) {
+      answers[on.answer[i]] = {};
+      (void)leave_medium(map.tree(), on.rays[i], static_cast<uint8_t>(on.in[i]), &answers[on.answer[i]],
+                         on.before[i]);
+      continue;
+    }
+    on.rays[in_air] = on.rays[i];
+    on.before[in_air] = on.before[i];
+    on.answer[in_air++] = on.answer[i];
+  }
+  (void)first_hit_from(map, {on.rays, in_air}, {on.before, in_air}, {hits, in_air});
+  for (uint32_t i = 0; i < in_air; ++i) {
+    lit::Answer& answer = answers[on.answer[i]];
+    answer = {};
+    answer.hit = hits[i];
+    answer.into_solid = hits[i].kind == HitKind::kHit;
   }
   on.count = 0;
 }
@@ -294,10 +308,9 @@ void FaceLights::find_shadows(const Light& light, uint32_t asking) {
   const Span<uint8_t> found{parts_.any, asking};
   if (light.is_point) {
     const Span<const RayPoint> points{parts_.points, asking};
-    (void)(has_clear_ || has_shining_ ? first_class_before(map_, rays, points, of_lamps_, found)
-                                      : any_hit_before(map_, rays, points, found));
+    (void)any_hit_before(map_, rays, points, found, has_clear_ || has_shining_ ? of_lamps_ : nullptr);
   } else {
-    (void)(has_clear_ ? first_class(map_, rays, of_suns_, found) : any_hit(map_, rays, found));
+    (void)any_hit(map_, rays, found, has_clear_ ? of_suns_ : nullptr);
   }
   frame_.counts.rays[kKind] += asking;
   for (uint32_t i = 0; i < asking; ++i) {
@@ -344,7 +357,7 @@ void FaceLights::go_through(const Light& light, uint32_t asking) {
       std::copy_n(ray.brightness, 3, parts_.bright[i].c);
     }
     count = left;
-    answer_ways(map_, parts_.questions, parts_.hits, parts_.exits, parts_.answers);
+    answer_ways(map_, parts_.questions, parts_.hits, parts_.answers);
   }
 }
 

@@ -54,15 +54,14 @@ struct FaceLightsParts {
   lit::Answer* answers;
   lit::Asked questions[lit::kQuestions];
   Hit* hits;
-  MediumExit* exits;
 };
 
 /// Answers questions of one kind by the hits of their rays; then none is left of these.
 void put_hits(const Hit* hits, lit::Asked* asked, lit::Answer* answers);
 
 /// Answers the questions of rays' ways, which are of the kinds kClosest, kBefore and kOn; then none is left of these.
-/// `hits` and `exits` have room for as many as there are questions of a kind.
-void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits, MediumExit* exits,
+/// `hits` has room for as many as there are questions of a kind.
+void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits,
                  lit::Answer* answers);
 
 /// Where rays of occlusion can meet nothing, so that none needs to be sent: before wide floors and walls, and on the

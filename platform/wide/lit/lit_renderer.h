@@ -14,12 +14,10 @@
 
 namespace thimble::wide {
 
-/// The materials that rays go through with these effects of the scene. `RayMap::make` takes them, so that vectors find
-/// the ways out of them.
+/// The materials that rays go through with these effects of the scene.
 struct LitMedia {
   uint8_t materials[256];
   size_t count = 0;
-  Span<const uint8_t> span() const { return {materials, count}; }
 };
 LitMedia lit_media(EffectSet effects, const LitScene& scene);
 

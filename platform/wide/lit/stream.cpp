@@ -20,9 +20,7 @@ void StreamParts::lay_out(const StreamShape& shape, ArrayArena* arena) {
   waiting = arena->take<uint32_t>(shape.slots);
   uint32_t most_hits = 0;
   for (int i = 0; i < lit::kQuestions; ++i) {
-    const bool names =
-        i != static_cast<int>(lit::Question::kAny) && i != static_cast<int>(lit::Question::kOn);
-    most_hits = names ? std::max(most_hits, shape.most[i]) : most_hits;
+    most_hits = i != static_cast<int>(lit::Question::kAny) ? std::max(most_hits, shape.most[i]) : most_hits;
     questions[i].rays = arena->take<Ray>(shape.most[i]);
     questions[i].answer = arena->take<uint32_t>(shape.most[i]);
     const bool is_on = i == static_cast<int>(lit::Question::kOn);
@@ -34,7 +32,6 @@ void StreamParts::lay_out(const StreamShape& shape, ArrayArena* arena) {
   slopes = arena->take<lit::AskedSlope>(shape.most_slopes);
   known_slopes = arena->take<KnownSlope>(shape.known_slopes);
   known_windows = arena->take<KnownWindow>(shape.known_slopes / 4);
-  exits = arena->take<MediumExit>(shape.most[static_cast<int>(lit::Question::kOn)]);
   any = arena->take<uint8_t>(shape.most[static_cast<int>(lit::Question::kAny)]);
   hits = arena->take<Hit>(most_hits);
   shown = arena->take<ShownFace>(shape.of_faces.faces);
@@ -292,7 +289,7 @@ void Stream::answer_slopes() {
 
 void Stream::answer() {
   answer_slopes();
-  answer_ways(map_, parts_.questions, parts_.hits, parts_.exits, parts_.answers);
+  answer_ways(map_, parts_.questions, parts_.hits, parts_.answers);
   // What is clear hides nothing. Where nothing is clear, materials do not matter.
   const Occlusion& occlusion = frame_.scene.occlusion;
   const auto find_within = [&](lit::Question question, const RayPoint& end) {

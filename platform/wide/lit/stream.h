@@ -67,7 +67,6 @@ struct StreamParts {
   KnownWindow* known_windows;
   uint8_t* any;
   Hit* hits;
-  MediumExit* exits;
   ShownFace* shown;
   uint32_t* done;  ///< slots whose pixels wait only for light
   SkyColumns sky;  ///< of rays that left the world

@@ -22,9 +22,7 @@ struct Job {
   uint8_t* any = nullptr;
   Hit* hits = nullptr;
   RayPoint* entries = nullptr;
-  MediumExit* exits = nullptr;
-  bool names = true;             ///< whether hits want materials
-  const uint16_t* in = nullptr;  ///< only with `exits`
+  bool names = true;  ///< whether hits want materials
   /// By material: with `any`, the value that `any` gets; with `entries`, 0 where the voxel counts as a miss.
   const uint8_t* classes = nullptr;
   Status status = Status::kOk;  ///< the first error
@@ -39,8 +37,5 @@ void trace_by_core(Job* job, size_t ray);
 /// Stores the hit of ray number `ray`, after `visits` steps. `cell` is the voxel of the map's world, mirrored along the
 /// ray's negative components.
 void put_hit(Job* job, size_t ray, const Vec3i& cell, uint32_t visits);
-
-/// Notes that a ray of `exits` met nothing.
-void put_no_exit(Job* job, size_t ray, uint32_t visits);
 
 }  // namespace thimble::wide

@@ -1,6 +1,4 @@
-// Makes the map of a compact tree: chunks and leaves in one walk over the nodes, then how far the empty cubes reach; and
-// its layers. The layer of a material that rays go through says where that material is not: a cube that it fills is
-// empty there, a cube that holds nothing of it is solid.
+// Makes the map of a compact tree: chunks and leaves in one walk over the nodes, then how far the empty cubes reach.
 #include <algorithm>
 
 #include "wide/rays/leaf_tag.h"
@@ -149,13 +147,6 @@ class TreeWalk {
   uint32_t next_voxel_;
 };
 
-// The media of a map. Each has a numbering of cubes of its own, in which everything but the medium is solid.
-struct MediaShape {
-  uint8_t layers = 0;
-  uint8_t materials[kMostMedia];  // the layers' materials, in order
-  uint64_t words = 0;             // of their chunks
-};
-
 bool has_nodes(const CompactTree& tree) {
   return tree.many_materials() || tree.merged();
 }
@@ -217,42 +208,6 @@ bool measure(const CompactTree& tree, MapShape* shape) {
   return tree.nodes_in_order() && begin == tree.node_count();
 }
 
-// The words of all numberings, and one more.
-uint64_t top_words(const MapShape& shape, const MediaShape& media) {
-  return shape.top * (1 + media.layers) + 1;
-}
-size_t map_bytes(const MapShape& shape, const MediaShape& media) {
-  constexpr uint64_t kPadding = 2 * 64;
-  return static_cast<size_t>(top_words(shape, media) * sizeof(uint32_t) +
-                             (shape.words + media.words) * sizeof(uint64_t) + kPadding);
-}
-
-// Writes a chunk from word `next` on: the mask of its leaves, `second` if chunks have such a word, and the leaves.
-// Without a place to write it only counts words. Returns the mask.
-uint64_t put_leaves(const uint64_t (&leaves)[kLeaves], bool has_second, uint64_t second, uint64_t* chunks,
-                    uint64_t* next) {
-  const uint64_t begin = *next;
-  *next += has_second ? 2 : 1;
-  uint64_t mask = 0;
-  for (unsigned leaf = 0; leaf < kLeaves; ++leaf) {
-    if (leaves[leaf] == 0) {
-      continue;
-    }
-    mask |= uint64_t{1} << leaf;
-    if (chunks != nullptr) {
-      chunks[*next] = leaves[leaf];
-    }
-    ++*next;
-  }
-  if (chunks != nullptr) {
-    chunks[begin] = mask;
-  }
-  if (chunks != nullptr && has_second) {
-    chunks[begin + 1] = second;
-  }
-  return mask;
-}
-
 // Writes what a walk over the tree hands it.
 class MapWriter {
  public:
@@ -285,7 +240,6 @@ class MapWriter {
     *cubes_.at(corner) = static_cast<uint32_t>(next_word_) << 4;
     put_chunk(node);
   }
-  uint64_t words() const { return next_word_; }
 
  private:
   // Returns where the chunk begins that is solid through in a material; writes it first if need be.
@@ -304,7 +258,18 @@ class MapWriter {
 
   // Writes what was collected of a chunk, and begins the next.
   void put_chunk(uint64_t node) {
-    put_leaves(chunk_, has_nodes_, node, chunks_, &next_word_);
+    const uint64_t begin = next_word_;
+    next_word_ += has_nodes_ ? 2 : 1;
+    chunks_[begin] = 0;
+    for (unsigned leaf = 0; leaf < kLeaves; ++leaf) {
+      if (chunk_[leaf] != 0) {
+        chunks_[begin] |= uint64_t{1} << leaf;
+        chunks_[next_word_++] = chunk_[leaf];
+      }
+    }
+    if (has_nodes_) {
+      chunks_[begin + 1] = node;
+    }
     for (unsigned leaf = 0; has_tags_ && node < kSolidChunk && leaf < kLeaves; ++leaf) {
       if (chunk_[leaf] != 0) {
         chunks_[next_word_++] = tags_[leaf].is_plain ? tags_[leaf].whole() : tags_[leaf].tag.word();
@@ -367,137 +332,6 @@ class MapWriter {
   uint64_t chunk_[kLeaves];
   Collected tags_[kLeaves];
 };
-
-// Hands single voxels to a taker of leaves, each with its material.
-template <class Taker>
-void take_each(const CompactTree& tree, const Corner& corner, unsigned mask, uint32_t voxel, Taker* taker) {
-  for (; mask != 0; mask &= mask - 1, ++voxel) {
-    taker->take_leaf(corner, spread(mask & (0 - mask)) << bit_of(corner, 0),
-                     tree.many_materials() ? tree.voxel_material(voxel) : tree.uniform_material());
-  }
-}
-
-// Collects which materials the tree holds.
-struct UsedMaterials {
-  const CompactTree& tree;
-  bool of[256] = {};
-  void take_leaf(const Corner& /*corner*/, uint64_t /*voxels*/, uint8_t material) { of[material] = true; }
-  void take_voxels(const Corner& corner, unsigned mask, uint32_t voxel) {
-    take_each(tree, corner, mask, voxel, this);
-  }
-  void take_block(const Corner& /*corner*/, int /*level*/, uint8_t material) { of[material] = true; }
-  void take_chunk(const Corner& /*corner*/, uint32_t /*node*/) {}
-};
-
-// Writes cubes and chunks; without a place to write it only counts words.
-class LayerWriter {
- public:
-  LayerWriter(const CompactTree& tree, const MediaShape& media, uint32_t* top, uint64_t* chunks,
-              uint64_t next_word)
-      : tree_(tree),
-        media_(media),
-        bits_(map_level(tree) - kChunkLevel),
-        has_nodes_(has_nodes(tree)),
-        top_(top),
-        chunks_(chunks),
-        next_word_(next_word) {
-    for (uint8_t layer = 0; layer < media.layers; ++layer) {
-      layer_of_[media.materials[layer]] = layer;
-    }
-  }
-
-  void take_leaf(const Corner& corner, uint64_t voxels, uint8_t material) {
-    const uint8_t layer = layer_of_[material];
-    if (layer != kNone) {
-      inside_[layer][bit_of(corner, kLeafLevel)] |= voxels;
-      holds_[layer] = true;
-    }
-  }
-  void take_voxels(const Corner& corner, unsigned mask, uint32_t voxel) {
-    take_each(tree_, corner, mask, voxel, this);
-  }
-  void take_block(const Corner& corner, int level, uint8_t material) {
-    const uint8_t layer = layer_of_[material];
-    if (layer != kNone && top_ != nullptr) {
-      cubes_of(layer).fill(corner, level, kEmptyCube);
-    }
-  }
-  void take_chunk(const Corner& corner, uint32_t /*node*/) {
-    for (uint8_t layer = 0; layer < media_.layers; ++layer) {
-      if (holds_[layer]) {
-        put(layer, corner);
-        std::fill(inside_[layer], inside_[layer] + kLeaves, 0);
-        holds_[layer] = false;
-      }
-    }
-  }
-  uint64_t words() const { return next_word_; }
-
- private:
-  static constexpr uint8_t kNone = UINT8_MAX;
-  struct Layers {
-    uint8_t of[256];
-    Layers() { std::fill(of, of + 256, kNone); }
-    uint8_t& operator[](uint8_t material) { return of[material]; }
-  };
-
-  Cubes cubes_of(uint8_t layer) const { return {top_ + (uint64_t{layer} << 3 * bits_), bits_}; }
-  void put(uint8_t layer, const Corner& corner) {
-    uint64_t outside[kLeaves];
-    std::transform(inside_[layer], inside_[layer] + kLeaves, outside, [](uint64_t leaf) { return ~leaf; });
-    const uint64_t begin = next_word_;
-    const bool is_empty = put_leaves(outside, has_nodes_, UINT64_MAX, chunks_, &next_word_) == 0;
-    next_word_ = is_empty ? begin : next_word_;
-    if (chunks_ != nullptr) {
-      *cubes_of(layer).at(corner) = is_empty ? kEmptyCube : static_cast<uint32_t>(begin) << 4;
-    }
-  }
-
-  const CompactTree& tree_;
-  const MediaShape& media_;
-  int bits_;
-  bool has_nodes_;
-  uint32_t* top_;
-  uint64_t* chunks_;
-  uint64_t next_word_;
-  Layers layer_of_;
-  uint64_t inside_[kMostMedia][kLeaves] = {};
-  bool holds_[kMostMedia] = {};
-};
-
-// Finds which of `materials` the tree holds, as many as there may be layers.
-MediaShape measure_media(const CompactTree& tree, const MapShape& shape, Span<const uint8_t> materials) {
-  MediaShape media;
-  if (materials.size == 0 || tree.empty() || tree.level() > kMostMediaLevel) {
-    return media;
-  }
-  UsedMaterials used{tree};
-  TreeWalk(tree, shape, &used).run();
-  for (size_t i = 0; i < materials.size && media.layers < kMostMedia; ++i) {
-    if (used.of[materials.data[i]]) {
-      used.of[materials.data[i]] = false;  // each material gets one layer
-      media.materials[media.layers++] = materials.data[i];
-    }
-  }
-  LayerWriter counter(tree, media, nullptr, nullptr, 0);
-  if (media.layers != 0) {
-    TreeWalk(tree, shape, &counter).run();
-  }
-  // A chunk's first words are written before it is known to be empty.
-  media.words = counter.words() + 2;
-  return media;
-}
-
-// Writes the cubes of all layers, one layer after the other, at `top`, and their chunks from word `next_word` on.
-void write_media(const CompactTree& tree, const MapShape& shape, const MediaShape& media, uint32_t* top,
-                 uint64_t* chunks, uint64_t next_word) {
-  if (media.layers == 0) {
-    return;
-  }
-  std::fill(top, top + shape.top * media.layers, 0U);  // 0 is the first chunk, which is solid
-  LayerWriter writer(tree, media, top, chunks, next_word);
-  TreeWalk(tree, shape, &writer).run();
-}
 
 // Writes how far the empty cubes reach along one octant after the other. An empty cube of side k + 1 is an empty cell,
 // and the empty cubes of side k that begin at its seven neighbours ahead. Octant 0, whose bits also tell chunks, comes
@@ -574,21 +408,22 @@ T* array(Arena* arena, uint64_t count) {
 
 }  // namespace
 
-size_t RayMap::bytes(const CompactTree& tree, Span<const uint8_t> media) {
+size_t RayMap::bytes(const CompactTree& tree) {
   MapShape shape;
-  return measure(tree, &shape) ? map_bytes(shape, measure_media(tree, shape, media)) : 0;
+  constexpr uint64_t kPadding = 2 * 64;
+  return measure(tree, &shape) ? static_cast<size_t>((shape.top + 1) * sizeof(uint32_t) +
+                                                     shape.words * sizeof(uint64_t) + kPadding)
+                               : 0;
 }
 
-Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map, Span<const uint8_t> media) {
+Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map) {
   MapShape shape;
   if (!measure(tree, &shape)) {
     return Status::kDamaged;
   }
   const Arena before = *arena;
-  const MediaShape layers = measure_media(tree, shape, media);
-  const uint64_t words = shape.words + layers.words;
-  uint32_t* top = array<uint32_t>(arena, top_words(shape, layers));
-  uint64_t* chunks = words < kMostWords ? array<uint64_t>(arena, words) : nullptr;
+  uint32_t* top = array<uint32_t>(arena, shape.top + 1);
+  uint64_t* chunks = shape.words < kMostWords ? array<uint64_t>(arena, shape.words) : nullptr;
   if (top == nullptr || chunks == nullptr) {
     *arena = before;
     return Status::kOutOfMemory;
@@ -597,17 +432,11 @@ Status RayMap::make(const CompactTree& tree, Arena* arena, RayMap* map, Span<con
   if (!tree.empty()) {
     TreeWalk(tree, shape, &writer).run();
   }
-  write_media(tree, shape, layers, top + shape.top, chunks, writer.words());
   const int level = map_level(tree);
-  for (uint64_t layer = 0; layer <= layers.layers; ++layer) {
-    Reaches(top + layer * shape.top, level - kChunkLevel).write();
-  }
-  top[top_words(shape, layers) - 1] = kEmptyCube;
+  Reaches(top, level - kChunkLevel).write();
+  top[shape.top] = kEmptyCube;
   *map = RayMap(tree);
   map->cells_ = {top, chunks, level, has_nodes(tree), has_tags(tree)};
-  for (uint8_t layer = 0; layer < layers.layers; ++layer) {
-    map->layers_[layers.materials[layer]] = static_cast<uint8_t>(layer + 1);
-  }
   return Status::kOk;
 }
 

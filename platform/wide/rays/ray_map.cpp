@@ -31,8 +31,6 @@ Status run(const RayMap& map, Span<const Ray> rays, Job job) {
     std::fill_n(job.any, job.count, uint8_t{0});
   } else if (job.entries != nullptr) {
     std::fill_n(job.entries, job.count, RayPoint{0, 0});
-  } else if (job.exits != nullptr) {
-    std::fill_n(job.exits, job.count, MediumExit{});
   } else {
     std::fill_n(job.hits, job.count, Hit{});
   }
@@ -252,24 +250,16 @@ void put_class(Job* job, size_t ray, const Hit& hit) {
 
 void trace_by_core(Job* job, size_t ray) {
   const CompactTree& tree = job->map->tree();
-  if (job->exits != nullptr && job->in[ray] != kInAir) {
-    const Status left = leave_medium(tree, job->rays[ray], static_cast<uint8_t>(job->in[ray]),
-                                     &job->exits[ray], job->points[ray]);
-    job->status = job->status == Status::kOk ? left : job->status;
-    return;
-  }
   Hit hit;
-  const Status status = job->exits != nullptr ? closest_hit_from(tree, job->rays[ray], job->points[ray], &hit)
-                                              : closest_hit(tree, job->rays[ray], &hit);
+  const Status status = job->bound == Bound::kFrom
+                            ? closest_hit_from(tree, job->rays[ray], job->points[ray], &hit)
+                            : closest_hit(tree, job->rays[ray], &hit);
   if (job->status == Status::kOk) {
     job->status = status;
   }
   drop_late(*job, ray, &hit);
   if (job->hits != nullptr) {
     job->hits[ray] = hit;
-  } else if (job->exits != nullptr) {
-    job->exits[ray].hit = hit;
-    job->exits[ray].into_solid = hit.kind == HitKind::kHit;
   } else {
     put_class(job, ray, hit);
   }
@@ -286,7 +276,7 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   }
   // Written where it stays: a copy would be read just after it was written in pieces, and wait.
   Hit own;
-  Hit& hit = job->exits != nullptr ? job->exits[number].hit : job->hits != nullptr ? job->hits[number] : own;
+  Hit& hit = job->hits != nullptr ? job->hits[number] : own;
   hit.visits = visits;
   hit.kind = HitKind::kHit;
   const auto enter = [&](const Block& block) {
@@ -295,13 +285,6 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
     hit.material = block.material;
     find_face(ray, block.corner, int32_t{1} << block.level, &hit);
   };
-  if (job->exits != nullptr) {
-    MediumExit& exit = job->exits[number];
-    const Leaf leaf = leaf_at(*job->map->cells(), voxel);
-    exit.into_solid = job->in[number] == kInAir || leaf.holds();
-    enter(exit.into_solid ? block_at(*job->map, voxel, leaf) : Block{voxel, 0, 0});
-    return;
-  }
   if (job->hits == nullptr) {
     find_face(ray, voxel, 1, &hit);  // a merged block is entered at the same t
   } else if (!job->names && !job->map->tree().merged()) {
@@ -319,21 +302,14 @@ void put_hit(Job* job, size_t number, const Vec3i& cell, uint32_t visits) {
   put_class(job, number, hit);
 }
 
-void put_no_exit(Job* job, size_t ray, uint32_t visits) {
-  if (job->in[ray] == kInAir) {
-    job->exits[ray].hit.visits = visits;
-  } else {
-    trace_by_core(job, ray);  // the ray leaves the medium where it leaves the world
-  }
+Status any_hit(const RayMap& map, Span<const Ray> rays, Span<uint8_t> hit, const uint8_t* classes) {
+  return run(map, rays, {.any = hit.data, .classes = classes});
 }
 
-Status any_hit(const RayMap& map, Span<const Ray> rays, Span<uint8_t> hit) {
-  return run(map, rays, {.any = hit.data});
-}
-
-Status any_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
-                      Span<uint8_t> hit) {
-  return run(map, rays, {.points = before.data, .bound = Bound::kBefore, .any = hit.data});
+Status any_hit_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before, Span<uint8_t> hit,
+                      const uint8_t* classes) {
+  return run(map, rays,
+             {.points = before.data, .bound = Bound::kBefore, .any = hit.data, .classes = classes});
 }
 
 Status first_hit(const RayMap& map, Span<const Ray> rays, Span<Hit> hits) {
@@ -359,16 +335,6 @@ Status first_hit_within(const RayMap& map, Span<const Ray> rays, const RayPoint&
               .names = with_materials});
 }
 
-Status first_class(const RayMap& map, Span<const Ray> rays, const uint8_t* classes, Span<uint8_t> found) {
-  return run(map, rays, {.any = found.data, .classes = classes});
-}
-
-Status first_class_before(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> before,
-                          const uint8_t* classes, Span<uint8_t> found) {
-  return run(map, rays,
-             {.points = before.data, .bound = Bound::kBefore, .any = found.data, .classes = classes});
-}
-
 Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint before, Span<RayPoint> entries,
                           const uint8_t* classes) {
   return run(map, rays,
@@ -378,11 +344,6 @@ Status first_entry_before(const RayMap& map, Span<const Ray> rays, RayPoint befo
               .entries = entries.data,
               .names = false,
               .classes = classes});
-}
-
-Status first_change(const RayMap& map, Span<const Ray> rays, Span<const RayPoint> from,
-                    Span<const uint16_t> in, Span<MediumExit> exits) {
-  return run(map, rays, {.points = from.data, .bound = Bound::kFrom, .exits = exits.data, .in = in.data});
 }
 
 bool RayMap::material_at(const Vec3i& voxel, uint8_t* material) const {

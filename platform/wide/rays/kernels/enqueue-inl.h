@@ -224,7 +224,6 @@ struct NewRays {
   VF origin[3];  // biased
   VF begin;
   VF end;
-  MF in_air;  // rays of `exits` that are in nothing solid
   MF inside;  // rays that come to the occupied box
 };
 
@@ -335,28 +334,6 @@ struct PointColumns {
   }
 };
 
-// Lets rays that leave something look through the layer of their medium, all over the world. The core traces rays whose
-// medium has no layer, and rays that begin outside of the world.
-HWY_INLINE void add_layers(const Job& job, size_t first, size_t count, NewRays* rays) {
-  const U64 du;
-  const F64 d;
-  alignas(64) uint64_t layers[kLanes] = {};
-  alignas(64) double known[kLanes] = {};
-  alignas(64) double in_air[kLanes] = {};
-  const int bits = job.map->cells()->level - 4;
-  for (size_t lane = 0; lane < count; ++lane) {
-    const uint16_t in = job.in[first + lane];
-    const uint64_t layer = in < kInAir ? job.map->layer_of(static_cast<uint8_t>(in)) : 0;
-    layers[lane] = layer << (3 * bits);
-    in_air[lane] = in < kInAir ? 0 : 1;
-    known[lane] = in < kInAir && layer == 0 ? 0 : 1;
-  }
-  const VF half = hn::Set(d, 0.5);
-  rays->in_air = hn::Gt(hn::Load(d, in_air), half);
-  rays->ways.taken = hn::And(rays->ways.taken, hn::Gt(hn::Load(d, known), half));
-  rays->ways.top_flip = hn::Xor(rays->ways.top_flip, hn::Load(du, layers));
-}
-
 HWY_INLINE VF whole_number(int64_t number) {
   return hn::Set(F64(), static_cast<double>(number));
 }
@@ -393,8 +370,7 @@ HWY_INLINE void add_axis(const Job& job, int axis, VF origin, NewRays* rays, VF*
   const F64 d;
   Ways& ways = rays->ways;
   const int level = job.map->tree().level();
-  const VoxelBox box = job.exits == nullptr ? job.map->tree().bounds()
-                                            : VoxelBox{{0, 0, 0}, {1 << level, 1 << level, 1 << level}};
+  const VoxelBox& box = job.map->tree().bounds();
   ways.taken =
       hn::And(ways.taken, hn::And(hn::Ge(origin, whole_number(kMinOriginWorlds * (Q8::kOne << level))),
                                   hn::Le(origin, whole_number(kMaxOriginWorlds * (Q8::kOne << level)))));
@@ -428,9 +404,6 @@ HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* r
   const MF at_start = hn::Or(hn::Le(numerator, zero), hn::Le(divisor, zero));
   const VF t = hn::Div(numerator, hn::Mul(divisor, hn::Set(d, 256.0)));
   const VF from = hn::IfThenElse(at_start, zero, t);
-  if (job.exits != nullptr) {
-    rays->ways.taken = hn::And(rays->ways.taken, hn::Or(rays->in_air, hn::Ge(from, rays->begin)));
-  }
   rays->begin = hn::Max(rays->begin, from);
   // The proof holds only for points on a plane of one of the three axes.
   const MF of_plane =
@@ -462,9 +435,6 @@ HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, const W
     add_axis(job, axis, numbers.of[axis], &rays, &low[axis], &high[axis]);
   }
   rays.end = hn::Mul(rays.end, hn::Set(d, kJustBefore));
-  if (job.exits != nullptr) {
-    add_layers(job, first, count, &rays);
-  }
   if (job.bound != Bound::kNone) {
     add_bound(job, first, count, &rays);
   }
@@ -473,9 +443,6 @@ HWY_INLINE NewRays load_rays(const Job& job, size_t first, size_t count, const W
     place[axis] = hn::MulAdd(rays.begin, rays.ways.direction[axis], rays.origin[axis]);
     rays.inside =
         hn::And(rays.inside, hn::And(hn::Ge(place[axis], low[axis]), hn::Lt(place[axis], high[axis])));
-  }
-  if (job.exits != nullptr) {
-    rays.ways.taken = hn::And(rays.ways.taken, hn::Or(rays.in_air, rays.inside));
   }
   return rays;
 }

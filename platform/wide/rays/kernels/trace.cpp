@@ -284,12 +284,6 @@ HWY_INLINE void put_hits(Job* job, const Lanes& lanes, uint32_t hits) {
 
 HWY_INLINE void put_misses(Job* job, const Lanes& lanes, uint32_t misses) {
   const uint64_t* flips = lanes.words[kCellFlip - kDoubles];
-  if (job->exits != nullptr) {
-    for (; misses != 0; misses &= misses - 1) {
-      const unsigned lane = static_cast<unsigned>(__builtin_ctz(misses));
-      put_no_exit(job, flips[lane] >> 32, static_cast<uint32_t>(lanes.visits[lane]));
-    }
-  }
   if (job->hits == nullptr) {
     return;
   }
@@ -386,8 +380,7 @@ void trace_alike(Job* job, const uint64_t* of_rays) {
 
 void trace_job(Job* job) {
   const Spread spread(*job);
-  // Rays of `exits` each look through a layer.
-  const Alike alike = job->exits != nullptr ? Alike::kNothing : spread.alike();
+  const Alike alike = spread.alike();
   if (alike == Alike::kNothing) {
     trace_alike<Alike::kNothing>(job, nullptr);
     return;
