@@ -447,6 +447,7 @@ bool is_generator(const std::string& word) {
 
 std::vector<std::string> generator_examples() {
   std::vector<std::string> examples;
+  examples.reserve(kGenerators.size());
   for (const Name& name : kGenerators) {
     examples.push_back(concat(name.text, is_counted(name.kind) ? ":1000000" : ""));
   }
