@@ -58,7 +58,7 @@ target_compile_options(thimble_firmware_flags INTERFACE ${THIMBLE_ARCH_FLAGS}
   -fno-asynchronous-unwind-tables -ffunction-sections -fdata-sections
   # The bound of the stack is computed from the call graph; without -fno-ipa-icf functions vanish from it.
   -fcallgraph-info=su,da -fno-ipa-icf)
-target_compile_definitions(thimble_firmware_flags INTERFACE $<$<BOOL:${THIMBLE_HOLD}>:THIMBLE_HOLDS> $<$<BOOL:${BOARD_CORES}>:THIMBLE_CORES=${BOARD_CORES}>
+target_compile_definitions(thimble_firmware_flags INTERFACE $<$<BOOL:${BOARD_CORES}>:THIMBLE_CORES=${BOARD_CORES}>
   $<$<BOOL:${BOARD_BAND_BUFFERS}>:THIMBLE_BAND_BUFFERS=${BOARD_BAND_BUFFERS}> $<$<BOOL:${BOARD_FLUSHES_AGAIN}>:THIMBLE_FLUSHES_AGAIN>)
 # The core for speed, the rest for size. The demonstration with the core for size, too, takes 1.26 times the
 # instructions a frame on a Cortex-M3, 1.04 on a Cortex-M0 and 1.47 on RV32, for 12 to 18 KB less flash.
@@ -99,7 +99,9 @@ thimble_choose_formats()
 foreach(part thimble_port thimble_board thimble_apps)
   target_include_directories(${part} PRIVATE ${THIMBLE_PLATFORM_DIR} ${generated})
   target_compile_options(${part} PRIVATE -Os)
-  target_compile_definitions(${part} PRIVATE $<$<BOOL:${scene_in_flash}>:THIMBLE_SCENE_IN_FLASH>)
+  # Neither is for the core to know: it stays as it is when they change.
+  target_compile_definitions(${part} PRIVATE $<$<BOOL:${scene_in_flash}>:THIMBLE_SCENE_IN_FLASH>
+    $<$<BOOL:${THIMBLE_HOLD}>:THIMBLE_HOLDS>)
   target_link_libraries(${part} PRIVATE thimble thimble_firmware_flags thimble_warnings)
 endforeach()
 target_include_directories(thimble_port PRIVATE ${THIMBLE_PLATFORM_DIR}/arch)

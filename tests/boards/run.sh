@@ -49,8 +49,11 @@ if [ "${1:-}" = --job ]; then
       examples | frames) ;;
       *) [ -z "${LONG:-}" ] || sh "$here/images.sh" "$2" || status=1 ;;
     esac
-    # One board of each kind of core and start-up, and a display of one bit.
-    case $2 in lm3s6965evb | sifive_e | raspi0 | pico | pico-oled | gba) sh "$here/new.sh" "$2" || status=1 ;; esac
+    # One board of each compiler and emulator, and a display of one bit. LONG=1: of each kind of core, too.
+    case $2 in
+      lm3s6965evb | sifive_e | pico-oled | gba) sh "$here/new.sh" "$2" || status=1 ;;
+      raspi0 | pico) [ -z "${LONG:-}" ] || sh "$here/new.sh" "$2" || status=1 ;;
+    esac
     [ $status = 0 ] || echo "$2: FAILED, by what stands above"
   } >"$log" 2>&1
   cat "$log"
