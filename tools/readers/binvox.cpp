@@ -28,22 +28,16 @@ class BinvoxGrid final : public VoxelGrid {
     std::size_t at = data_offset_;
     for (; covered < cells; at += 2) {
       const std::string place = "run at byte offset " + std::to_string(at);
-      if (at + 2 > file.bytes.size()) {
-        throw InputError(place, ": the file ends after ", covered, " of ", cells, " voxels");
-      }
+      fail_if(at + 2 > file.bytes.size(), place, ": the file ends after ", covered, " of ", cells, " voxels");
       const unsigned value = file.bytes[at];
       const unsigned count = file.bytes[at + 1];
-      if (value > 1 || count == 0 || covered + count > cells) {
-        throw InputError(place, ": the value ", value, ", ", count, " times, with ", cells - covered,
-                         " voxels to go; values are 0 and 1, each 1 to 255 times");
-      }
+      fail_if(value > 1 || count == 0 || covered + count > cells, place, ": the value ", value, ", ", count,
+              " times, with ", cells - covered, " voxels to go; values are 0 and 1, each 1 to 255 times");
       covered += count;
       solid += value * count;
       meter.at(at);
     }
-    if (solid == 0) {
-      throw InputError("the grid holds no solid voxel");
-    }
+    fail_if(solid == 0, "the grid holds no solid voxel");
   }
 
   void for_each(const Visit& visit) const override {
@@ -67,32 +61,27 @@ class BinvoxGrid final : public VoxelGrid {
     LineReader lines(file_.text());
     std::string_view line;
     lines.next(line);
-    if (line.substr(kBinvoxMagic.size()) != " 1") {
-      fail_at_line(1, quoted(line), " is not version 1, the only one that is read");
-    }
+    fail_at_line_if(line.substr(kBinvoxMagic.size()) != " 1", 1, quoted(line),
+                    " is not version 1, the only one that is read");
     for (bool more = true; more;) {
-      if (!lines.next(line)) {
-        throw InputError("the header has no line 'data'");
-      }
+      fail_if(!lines.next(line), "the header has no line 'data'");
       const std::string_view word = take_word(line);
       more = word != "data";
       if (word == "dim") {
         for (std::uint32_t& side : dim_) {
           std::int64_t value = 0;
           const std::string_view number = take_word(line);
-          if (!parse_integer(number, value) || value < 1 || value > std::int64_t{kGridSideLimit}) {
-            fail_at_line(lines.line_number(), "the side ", quoted(number), " is no number from 1 to ",
-                         kGridSideLimit);
-          }
+          fail_at_line_if(!parse_integer(number, value) || value < 1 || value > std::int64_t{kGridSideLimit},
+                          lines.line_number(), "the side ", quoted(number), " is no number from 1 to ",
+                          kGridSideLimit);
           side = static_cast<std::uint32_t>(value);
         }
-      } else if (more && word != "translate" && word != "scale" && !word.empty() && !word.starts_with('#')) {
-        fail_at_line(lines.line_number(), quoted(word), " is not dim, translate, scale or data");
+      } else {
+        fail_at_line_if(more && word != "translate" && word != "scale" && !word.empty() && word[0] != '#',
+                        lines.line_number(), quoted(word), " is not dim, translate, scale or data");
       }
     }
-    if (dim_[0] == 0) {
-      fail_at_line(lines.line_number(), "'data' comes before 'dim'");
-    }
+    fail_at_line_if(dim_[0] == 0, lines.line_number(), "'data' comes before 'dim'");
     data_offset_ = lines.offset();
   }
 

@@ -41,9 +41,8 @@ std::span<const std::uint8_t> ByteReader::take(std::uint64_t count) {
 }
 
 void ByteReader::expect(std::string_view magic, const char* what) {
-  if (remaining() < magic.size() || text(magic.size()) != magic) {
-    throw InputError("is no ", what, ": it does not begin with \"", magic, "\"");
-  }
+  tools::fail_if(remaining() < magic.size() || text(magic.size()) != magic, "is no ", what,
+                 ": it does not begin with \"", magic, "\"");
 }
 
 ByteReader ByteReader::sub(std::uint64_t count, std::string_view place) {

@@ -187,6 +187,11 @@ class ByteReader {
   [[noreturn]] void fail(const Pieces&... pieces) const {
     throw InputError(place_, ": ", pieces...);
   }
+  /// Throws it where `is_wrong`.
+  template <class... Pieces>
+  void fail_if(bool is_wrong, const Pieces&... pieces) const {
+    tools::fail_if(is_wrong, place_, ": ", pieces...);
+  }
 
  private:
   std::uint64_t little(std::size_t count) { return load_bits(take(count).data(), count, false); }

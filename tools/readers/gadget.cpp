@@ -44,9 +44,7 @@ struct Record {
 /// The record whose first marker is at `offset`; both markers are in the file and agree.
 Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, bool is_big_endian) {
   const std::string place = "record at byte offset " + std::to_string(offset);
-  if (bytes.size() - offset < kMarkerBytes) {
-    throw InputError(place, ": the file ends in its marker");
-  }
+  fail_if(bytes.size() - offset < kMarkerBytes, place, ": the file ends in its marker");
   Record record;
   record.offset = offset + kMarkerBytes;
   record.size_bytes = static_cast<std::uint32_t>(load_bits(&bytes[offset], kMarkerBytes, is_big_endian));
@@ -57,10 +55,8 @@ Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, bool i
   }
   const std::uint64_t marker =
       load_bits(&bytes[record.offset + record.size_bytes], kMarkerBytes, is_big_endian);
-  if (marker != record.size_bytes) {
-    throw InputError(place, ": its length is ", record.size_bytes, " before the data and ", marker,
-                     " after it");
-  }
+  fail_if(marker != record.size_bytes, place, ": its length is ", record.size_bytes, " before the data and ",
+          marker, " after it");
   return record;
 }
 
@@ -103,9 +99,8 @@ bool is_file_big_endian(std::span<const std::uint8_t> bytes) {
       if (marker == kGadgetHeaderBytes) {
         return is_big_endian;
       }
-      if (marker == 8 && bytes.size() >= 8 && bytes[4] == 'H' && bytes[5] == 'E') {
-        throw InputError("this is a Gadget snapshot of format 2; only format 1 is supported");
-      }
+      fail_if(marker == 8 && bytes.size() >= 8 && bytes[4] == 'H' && bytes[5] == 'E',
+              "this is a Gadget snapshot of format 2; only format 1 is supported");
     }
   }
   throw InputError(
@@ -144,9 +139,7 @@ Source read_gadget(const SharedBytes& file, const ReadOptions&, const Progress& 
         static_cast<std::uint32_t>(load_bits(&bytes[header.offset + 4 * type], 4, cloud->is_big_endian));
     particles += cloud->counts[type];
   }
-  if (particles == 0) {
-    throw InputError("the header counts no particles");
-  }
+  fail_if(particles == 0, "the header counts no particles");
   const Record positions = record_at(bytes, header.end(), cloud->is_big_endian);
   if (positions.size_bytes == particles * 3 * sizeof(float)) {
     cloud->number_bytes = sizeof(float);
@@ -165,9 +158,7 @@ Source read_gadget(const SharedBytes& file, const ReadOptions&, const Progress& 
   ProgressMeter meter(progress, bytes.size());
   const std::size_t point_bytes = 3 * cloud->number_bytes;
   cloud->for_each([&](const CloudPoint& point) {
-    if (!point.is_finite()) {
-      throw InputError("the position of particle ", point.line, " is not finite");
-    }
+    fail_if(!point.is_finite(), "the position of particle ", point.line, " is not finite");
     meter.at(positions.offset + static_cast<std::size_t>(point.line) * point_bytes);
   });
   return cloud;

@@ -142,9 +142,8 @@ class Scene {
     if (!is_colored_) {
       mesh_.colors = {};
     }
-    if (has_faces && mesh_.triangles.empty()) {
-      throw InputError(is_clear_ ? "all triangles of the scene are clear" : "the scene holds no triangles");
-    }
+    fail_if(has_faces && mesh_.triangles.empty(),
+            is_clear_ ? "all triangles of the scene are clear" : "the scene holds no triangles");
     if (mesh_.surface_of.empty()) {
       mesh_.surfaces = {};
     } else {
@@ -168,9 +167,8 @@ class Scene {
     const auto enter = [&](const json::array_t& list, const Placing& parent, const std::string& place) {
       for (const json& index : list) {
         const std::uint64_t node = index.is_number_unsigned() ? index.get<std::uint64_t>() : UINT64_MAX;
-        if (node >= seen.size() || seen[static_cast<std::size_t>(node)]) {
-          throw InputError(place, ": it names a node that is not there, or one that has a parent already");
-        }
+        fail_if(node >= seen.size() || seen[static_cast<std::size_t>(node)], place,
+                ": it names a node that is not there, or one that has a parent already");
         seen[static_cast<std::size_t>(node)] = true;
         waiting.push_back({node, parent});
       }
@@ -219,9 +217,8 @@ class Scene {
         if (is_in(kRead, name)) {
           continue;
         }
-        if (list == std::string_view("extensionsRequired") && !is_in(kLooks, name)) {
-          throw InputError("the file requires the extension ", tools::quoted(name), ", which is not read");
-        }
+        fail_if(list == std::string_view("extensionsRequired") && !is_in(kLooks, name),
+                "the file requires the extension ", tools::quoted(name), ", which is not read");
         unread.insert(name);
       }
     }
@@ -242,10 +239,8 @@ class Scene {
     }
     const auto values = [&](const char* name, std::uint32_t components) {
       const GltfAccessor accessor = file_.accessor(*attributes, name, place);
-      if (accessor.components != 0 && accessor.components != components) {
-        throw InputError(place, ": ", name, " of its instances has ", accessor.components,
-                         " components, not ", components);
-      }
+      fail_if(accessor.components != 0 && accessor.components != components, place, ": ", name,
+              " of its instances has ", accessor.components, " components, not ", components);
       return accessor;
     };
     const GltfAccessor moves = values("TRANSLATION", 3);
@@ -253,9 +248,8 @@ class Scene {
     const GltfAccessor turns = values("ROTATION", 4);
     const std::uint64_t count = std::max({moves.count, scales.count, turns.count});
     for (const GltfAccessor& accessor : {moves, scales, turns}) {
-      if (accessor.components != 0 && accessor.count != count) {
-        throw InputError(place, ": its instances have ", count, " and ", accessor.count, " values");
-      }
+      fail_if(accessor.components != 0 && accessor.count != count, place, ": its instances have ", count,
+              " and ", accessor.count, " values");
     }
     const auto take = [](const GltfAccessor& accessor, std::uint64_t i, std::span<double> to) {
       for (std::uint32_t component = 0; component < accessor.components; ++component) {
@@ -309,17 +303,15 @@ class Scene {
         part.mode = kTriangles;
       }
       const GltfAccessor positions = file_.accessor(place);
-      if (positions.components != 3) {
-        throw InputError(part.place, ": its positions have ", positions.components, " components, not 3");
-      }
+      fail_if(positions.components != 3, part.place, ": its positions have ", positions.components,
+              " components, not 3");
       part.vertices = positions.count;
       const auto indices = gltf_number(*part.primitive, "indices", part.place);
       part.corners = part.mode == kPoints ? 0 : (indices ? file_.accessor(*indices).count : part.vertices);
       bytes_ += kPartBytes + part.vertices * kVertexBytes + triangles_of(part) * kTriangleBytes;
-      if (bytes_ + file_.bytes_made() > file_.most_bytes()) {
-        throw InputError("the scene places meshes that take more than the limit of ", file_.most_bytes(),
-                         " bytes, three times what the file holds and 64 MB");
-      }
+      fail_if(bytes_ + file_.bytes_made() > file_.most_bytes(),
+              "the scene places meshes that take more than the limit of ", file_.most_bytes(),
+              " bytes, three times what the file holds and 64 MB");
       parts_.push_back(std::move(part));
     }
   }
@@ -338,11 +330,10 @@ class Scene {
       vertices += part.vertices;
       triangles += triangles_of(part);
     }
-    if (vertices == 0 || vertices > kMeshVertexLimit) {
-      throw InputError(vertices == 0 ? "the scene holds neither triangles nor points"
-                                     : "the scene has more vertices than the limit of " +
-                                           std::to_string(kMeshVertexLimit));
-    }
+    fail_if(vertices == 0 || vertices > kMeshVertexLimit,
+            vertices == 0
+                ? "the scene holds neither triangles nor points"
+                : "the scene has more vertices than the limit of " + std::to_string(kMeshVertexLimit));
     mesh_.positions.reserve(static_cast<std::size_t>(vertices));
     mesh_.colors.reserve(static_cast<std::size_t>(vertices));
     mesh_.triangles.reserve(has_faces ? static_cast<std::size_t>(triangles) : 0);
@@ -358,9 +349,7 @@ class Scene {
       for (std::size_t row = 0; row < 3; ++row) {
         const auto& m = part.placing[row];
         world[row] = m[0] * local[0] + m[1] * local[1] + m[2] * local[2] + m[3];
-        if (!std::isfinite(world[row])) {
-          throw InputError(part.place, ": the position of vertex ", i, " is not finite");
-        }
+        fail_if(!std::isfinite(world[row]), part.place, ": the position of vertex ", i, " is not finite");
       }
       mesh_.positions.push_back(world);
     }
@@ -400,9 +389,7 @@ class Scene {
   void add_corners(const Part& part, std::uint32_t first) {
     const GltfAccessor indices = file_.accessor(*part.primitive, "indices", part.place);
     const bool has_indices = indices.components != 0;
-    if (has_indices && indices.components != 1) {
-      throw InputError(part.place, ": its indices are vectors");
-    }
+    fail_if(has_indices && indices.components != 1, part.place, ": its indices are vectors");
     undrawn_["the last corners, too few for a triangle,"] +=
         part.corners < 3 || (part.mode == kTriangles && part.corners % 3 != 0) ? 1U : 0U;
     Polygons fan(mesh_);
@@ -410,10 +397,8 @@ class Scene {
     std::array<std::uint32_t, 3> corners{};
     for (std::uint64_t i = 0; i < part.corners; ++i) {
       const std::uint64_t index = has_indices ? indices.index(i) : i;
-      if (index >= part.vertices) {
-        throw InputError(part.place, ": its corner ", i, " has the index ", index,
-                         ", which is not one of its ", part.vertices, " vertices");
-      }
+      fail_if(index >= part.vertices, part.place, ": its corner ", i, " has the index ", index,
+              ", which is not one of its ", part.vertices, " vertices");
       const auto corner = static_cast<std::uint32_t>(first + index);
       if (part.mode == kFan) {
         fan.add(corner);

@@ -25,11 +25,10 @@ void check_beginning(std::span<const std::uint8_t> packed, const std::string& pl
                  buffer.Decode(&header.version_major) && buffer.Decode(&header.version_minor) &&
                  buffer.Decode(&header.encoder_type) && buffer.Decode(&header.encoder_method) &&
                  buffer.Decode(&header.flags);
-  if (is_good && (header.version_major != draco::kDracoMeshBitstreamVersionMajor ||
-                  header.version_minor != draco::kDracoMeshBitstreamVersionMinor)) {
-    throw InputError(place, ": its Draco data is of version ", header.version_major, ".",
-                     header.version_minor, "; only 2.2 is read");
-  }
+  fail_if(is_good && (header.version_major != draco::kDracoMeshBitstreamVersionMajor ||
+                      header.version_minor != draco::kDracoMeshBitstreamVersionMinor),
+          place, ": its Draco data is of version ", header.version_major, ".", header.version_minor,
+          "; only 2.2 is read");
   if (is_good && (header.flags & METADATA_FLAG_MASK) != 0) {
     draco::GeometryMetadata metadata;
     is_good = draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata);
@@ -43,13 +42,10 @@ void check_beginning(std::span<const std::uint8_t> packed, const std::string& pl
   } else {
     is_good = is_good && draco::DecodeVarint(&faces, &buffer) && draco::DecodeVarint(&points, &buffer);
   }
-  if (!is_good) {
-    throw InputError(place, ": its Draco data is damaged at its beginning");
-  }
-  if (std::max(points, faces) > kBelieved + kBelievedPerByte * packed.size()) {
-    throw InputError(place, ": its Draco data claims ", faces, " triangles and ", points, " points in ",
-                     packed.size(), " bytes");
-  }
+  fail_if(!is_good, place, ": its Draco data is damaged at its beginning");
+  fail_if(std::max(points, faces) > kBelieved + kBelievedPerByte * packed.size(), place,
+          ": its Draco data claims ", faces, " triangles and ", points, " points in ", packed.size(),
+          " bytes");
 }
 
 }  // namespace
@@ -59,18 +55,14 @@ void unpack_draco(GltfFile& file, const json& primitive, const json& extension, 
   const auto indices = gltf_number(primitive, "indices", place);
   const json* ids = gltf_member(extension, "attributes");
   const json* attributes = gltf_member(primitive, "attributes");
-  if (!view || !indices || ids == nullptr || !ids->is_object()) {
-    throw InputError(place,
-                     ": its KHR_draco_mesh_compression lacks bufferView or attributes, or it has no indices");
-  }
+  fail_if(!view || !indices || ids == nullptr || !ids->is_object(), place,
+          ": its KHR_draco_mesh_compression lacks bufferView or attributes, or it has no indices");
   const auto packed = file.buffer_view(*view);
   check_beginning(packed, place);
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(packed.data()), packed.size());
   auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) {
-    throw InputError(place, ": its Draco data is damaged");
-  }
+  fail_if(!decoded.ok(), place, ": its Draco data is damaged");
   const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
   file.unpacked(*view, std::uint64_t{mesh->num_faces()} * 12 + std::uint64_t{mesh->num_points()} * 12);
   file.fill(*indices, std::uint64_t{mesh->num_faces()} * 3,
@@ -85,9 +77,8 @@ void unpack_draco(GltfFile& file, const json& primitive, const json& extension, 
         unique_id && *unique_id <= UINT32_MAX
             ? mesh->GetAttributeByUniqueId(static_cast<std::uint32_t>(*unique_id))
             : nullptr;
-    if (!accessor || attribute == nullptr) {
-      throw InputError(place, ": its Draco data has no ", tools::quoted(name), " as it says");
-    }
+    fail_if(!accessor || attribute == nullptr, place, ": its Draco data has no ", tools::quoted(name),
+            " as it says");
     std::array<float, 4> reals{};
     std::array<std::int64_t, 4> integers{};
     const bool is_real = attribute->data_type() == draco::DT_FLOAT32;
@@ -96,9 +87,7 @@ void unpack_draco(GltfFile& file, const json& primitive, const json& extension, 
         const auto value = attribute->mapped_index(draco::PointIndex(static_cast<std::uint32_t>(k)));
         const bool has_value = is_real ? attribute->ConvertValue<float>(value, 4, reals.data())
                                        : attribute->ConvertValue<std::int64_t>(value, 4, integers.data());
-        if (!has_value) {
-          throw InputError(place, ": its Draco data has values of a kind that is not read");
-        }
+        fail_if(!has_value, place, ": its Draco data has values of a kind that is not read");
       }
       return is_real ? static_cast<double>(reals[component]) : static_cast<double>(integers[component]);
     });

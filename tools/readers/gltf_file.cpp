@@ -35,10 +35,8 @@ void check_json(std::string_view text) {
     in_string = c == '"';
     depth += c == '[' || c == '{' ? 1 : (c == ']' || c == '}' ? -1 : 0);
     values += c == '[' || c == '{' || c == ',' ? 1 : 0;
-    if (depth > kGltfDepthLimit || values > kGltfValueLimit) {
-      throw InputError("the JSON has more than ", kGltfValueLimit, " values, or nests them deeper than ",
-                       kGltfDepthLimit, ", at its byte ", i);
-    }
+    fail_if(depth > kGltfDepthLimit || values > kGltfValueLimit, "the JSON has more than ", kGltfValueLimit,
+            " values, or nests them deeper than ", kGltfDepthLimit, ", at its byte ", i);
   }
 }
 
@@ -46,9 +44,7 @@ json parse_json(std::string_view text) {
   check_json(text);
   try {
     json parsed = json::parse(text.begin(), text.end());
-    if (!parsed.is_object()) {
-      throw InputError("the JSON is no object");
-    }
+    fail_if(!parsed.is_object(), "the JSON is no object");
     return parsed;
   } catch (const json::exception& error) {
     throw InputError(json_fault(error));
@@ -159,9 +155,8 @@ std::optional<std::uint64_t> gltf_number(const json& object, const char* name, c
   }
   // Exporters have written 12.0.
   const double value = member->is_number() ? member->get<double>() : -1;
-  if (!(value >= 0 && value <= 9007199254740992.0) || value != std::floor(value)) {
-    throw InputError(place, ": ", name, " is no whole number from 0 on");
-  }
+  fail_if(!(value >= 0 && value <= 9007199254740992.0) || value != std::floor(value), place, ": ", name,
+          " is no whole number from 0 on");
   return static_cast<std::uint64_t>(value);
 }
 
@@ -175,9 +170,7 @@ void gltf_reals(const json& object, const char* name, std::span<double> values, 
     is_good = (*member)[i].is_number();
     values[i] = is_good ? (*member)[i].get<double>() : 0;
   }
-  if (!is_good) {
-    throw InputError(place, ": ", name, " is no list of ", values.size(), " numbers");
-  }
+  fail_if(!is_good, place, ": ", name, " is no list of ", values.size(), " numbers");
 }
 
 void gltf_real(const json& object, const char* name, double& value, const std::string& place) {
@@ -185,9 +178,7 @@ void gltf_real(const json& object, const char* name, double& value, const std::s
   if (member == nullptr) {
     return;
   }
-  if (!member->is_number()) {
-    throw InputError(place, ": ", name, " is no number");
-  }
+  fail_if(!member->is_number(), place, ": ", name, " is no number");
   value = member->get<double>();
 }
 
@@ -206,10 +197,8 @@ std::uint32_t GltfAccessor::index(std::uint64_t i) const {
 
 GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
     : file_(file), path_(path), bytes_read_(file.bytes.size()) {
-  if (!looks_like_gltf(file.bytes)) {
-    throw InputError(
-        "is no glTF file: it begins neither with \"glTF\" nor with a JSON object that names its asset");
-  }
+  fail_if(!looks_like_gltf(file.bytes),
+          "is no glTF file: it begins neither with \"glTF\" nor with a JSON object that names its asset");
   if (!file.text().starts_with("glTF")) {
     json_ = parse_json(file.text());
     const json* asset = gltf_member(json_, "asset");
@@ -224,9 +213,7 @@ GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
   ByteReader reader(file.bytes, "the header");
   reader.skip(4);
   const std::uint32_t version = reader.u32();
-  if (version != 2) {
-    throw InputError("version ", version, " at byte offset 4 is not supported, only 2 is");
-  }
+  fail_if(version != 2, "version ", version, " at byte offset 4 is not supported, only 2 is");
   reader.skip(4);
   bool has_json = false;
   while (reader.remaining() >= 8) {
@@ -235,29 +222,21 @@ GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
     ByteReader chunk = reader.sub(size, "the chunk at byte offset " + std::to_string(reader.offset() - 8));
     const SharedBytes content{chunk.take(size), file.owner};
     if (!has_json) {
-      if (kind != kJsonChunk) {
-        throw InputError("the first chunk is not JSON");
-      }
+      fail_if(kind != kJsonChunk, "the first chunk is not JSON");
       json_ = parse_json(content.text());
       has_json = true;
     } else if (kind == kBinaryChunk && !binary_) {
       binary_ = content;
     }
   }
-  if (!has_json) {
-    throw InputError("the file ends before its JSON");
-  }
+  fail_if(!has_json, "the file ends before its JSON");
 }
 
 const json& GltfFile::entry(const char* name, std::uint64_t i) const {
   const json::array_t& list = gltf_list(json_, name);
-  if (i >= list.size()) {
-    throw InputError("there is no entry ", i, " among the ", list.size(), " of ", quoted(name));
-  }
+  fail_if(i >= list.size(), "there is no entry ", i, " among the ", list.size(), " of '", name, "'");
   const json& found = list[static_cast<std::size_t>(i)];
-  if (!found.is_object()) {
-    throw InputError("entry ", i, " of ", quoted(name), " is no object");
-  }
+  fail_if(!found.is_object(), "entry ", i, " of '", name, "' is no object");
   return found;
 }
 
@@ -303,14 +282,10 @@ std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
   const json& entry = this->entry("buffers", i);
   const json* uri = gltf_member(entry, "uri");
   if (uri == nullptr) {
-    if (i != 0 || !binary_) {
-      throw InputError(place, ": it has no link, and the file has no binary chunk for it");
-    }
+    fail_if(i != 0 || !binary_, place, ": it has no link, and the file has no binary chunk for it");
     return binary_->bytes;
   }
-  if (!uri->is_string()) {
-    throw InputError(place, ": its link is no text");
-  }
+  fail_if(!uri->is_string(), place, ": its link is no text");
   SharedBytes bytes;
   if (const std::string fault = link(uri->get_ref<const std::string&>(), place, bytes); !fault.empty()) {
     throw InputError(fault);
@@ -321,16 +296,13 @@ std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
 std::span<const std::uint8_t> GltfFile::buffer_view(std::uint64_t i) {
   const std::string place = "buffer view " + std::to_string(i);
   const json& view = entry("bufferViews", i);
-  if (gltf_extension(view, "EXT_meshopt_compression") != nullptr) {
-    throw InputError(place, ": its data is compressed (EXT_meshopt_compression), which is not read");
-  }
+  fail_if(gltf_extension(view, "EXT_meshopt_compression") != nullptr, place,
+          ": its data is compressed (EXT_meshopt_compression), which is not read");
   const auto whole = buffer(gltf_number(view, "buffer", place).value_or(0));
   const std::uint64_t offset = gltf_number(view, "byteOffset", place).value_or(0);
   const std::uint64_t length = gltf_number(view, "byteLength", place).value_or(0);
-  if (offset > whole.size() || length > whole.size() - offset) {
-    throw InputError(place, ": ", length, " bytes from ", offset, " on are not in its buffer of ",
-                     whole.size());
-  }
+  fail_if(offset > whole.size() || length > whole.size() - offset, place, ": ", length, " bytes from ",
+          offset, " on are not in its buffer of ", whole.size());
   return whole.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
 
@@ -343,10 +315,8 @@ void GltfFile::lay(GltfAccessor& accessor, std::uint64_t view, std::uint64_t off
       offset <= bytes.size() && accessor.stride >= element && accessor.stride <= 65535 &&
       (accessor.count == 0 || (element <= bytes.size() - offset &&
                                accessor.count - 1 <= (bytes.size() - offset - element) / accessor.stride));
-  if (!fits) {
-    throw InputError(place, ": ", accessor.count, " times ", element, " bytes from ", offset,
-                     " on, one every ", accessor.stride, ", are not in its buffer view of ", bytes.size());
-  }
+  fail_if(!fits, place, ": ", accessor.count, " times ", element, " bytes from ", offset, " on, one every ",
+          accessor.stride, ", are not in its buffer view of ", bytes.size());
   accessor.bytes = bytes.subspan(static_cast<std::size_t>(offset));
 }
 
@@ -375,19 +345,16 @@ std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor
     indices.components = 1;
     indices.count = gltf_number(*sparse, "count", place).value_or(0);
     indices.type = where == nullptr ? NumberType{'u', 0} : component_type_of(*where, place);
-    if (!index_view || !value_view || indices.type.kind != 'u' || indices.type.size_bytes == 0) {
-      throw InputError(place, ": its sparse values lack their indices or themselves");
-    }
+    fail_if(!index_view || !value_view || indices.type.kind != 'u' || indices.type.size_bytes == 0, place,
+            ": its sparse values lack their indices or themselves");
     GltfAccessor values = accessor;
     values.count = indices.count;
     lay(indices, *index_view, gltf_number(*where, "byteOffset", place).value_or(0), place);
     lay(values, *value_view, gltf_number(*what, "byteOffset", place).value_or(0), place);
     for (std::uint64_t k = 0; k < indices.count; ++k) {
       const std::uint32_t index = indices.index(k);
-      if (index >= accessor.count) {
-        throw InputError(place, ": its sparse value ", k, " has the index ", index,
-                         ", which is not one of its ", accessor.count);
-      }
+      fail_if(index >= accessor.count, place, ": its sparse value ", k, " has the index ", index,
+              ", which is not one of its ", accessor.count);
       set(index, values, k);
     }
   }
@@ -396,10 +363,9 @@ std::span<const std::uint8_t> GltfFile::make(std::uint64_t i, const GltfAccessor
 
 std::vector<std::uint8_t> GltfFile::room_for(const GltfAccessor& accessor, const std::string& place) {
   const std::uint64_t element = accessor.element_bytes();
-  if (accessor.count > (most_bytes() - std::min(most_bytes(), bytes_made_)) / element) {
-    throw InputError(place, ": ", accessor.count, " sparse or compressed values take more than the limit of ",
-                     most_bytes(), " bytes, three times what the file holds and 64 MB");
-  }
+  fail_if(accessor.count > (most_bytes() - std::min(most_bytes(), bytes_made_)) / element, place, ": ",
+          accessor.count, " sparse or compressed values take more than the limit of ", most_bytes(),
+          " bytes, three times what the file holds and 64 MB");
   bytes_made_ += accessor.count * element;
   return std::vector<std::uint8_t>(static_cast<std::size_t>(accessor.count * element));
 }
@@ -411,9 +377,8 @@ void GltfFile::fill(std::uint64_t i, std::uint64_t count,
   }
   const std::string place = "accessor " + std::to_string(i);
   const GltfAccessor accessor = described(i, place);
-  if (accessor.count != count) {
-    throw InputError(place, ": it has ", accessor.count, " values, and its compressed data ", count);
-  }
+  fail_if(accessor.count != count, place, ": it has ", accessor.count, " values, and its compressed data ",
+          count);
   std::vector<std::uint8_t> bytes = room_for(accessor, place);
   std::size_t at = 0;
   for (std::uint64_t k = 0; k < count; ++k) {
@@ -445,9 +410,8 @@ GltfAccessor GltfFile::described(std::uint64_t i, const std::string& place) cons
     }
   }
   accessor.type = component_type_of(entry, place);
-  if (accessor.element_bytes() == 0) {
-    throw InputError(place, ": its type or componentType is missing or none of numbers and vectors");
-  }
+  fail_if(accessor.element_bytes() == 0, place,
+          ": its type or componentType is missing or none of numbers and vectors");
   const json* normalized = gltf_member(entry, "normalized");
   accessor.normalized = normalized != nullptr && normalized->is_boolean() && normalized->get<bool>();
   accessor.count = gltf_number(entry, "count", place).value_or(0);

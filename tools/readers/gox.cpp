@@ -69,9 +69,8 @@ class GoxGrid final : public VoxelGrid {
     ByteReader reader(file_.bytes);
     reader.expect("GOX ", "Goxel scene");
     const std::uint32_t version = reader.u32();
-    if (version < 1 || version > kNewestVersion) {
-      throw InputError("version ", version, " of Goxel's scenes is not read, only 1 and 2 are");
-    }
+    fail_if(version < 1 || version > kNewestVersion, "version ", version,
+            " of Goxel's scenes is not read, only 1 and 2 are");
     for (std::size_t chunks = 0; reader.remaining() > 0;) {
       const std::string place = "the chunk at byte offset " + std::to_string(reader.offset());
       const std::string_view kind = reader.text(4);
@@ -84,9 +83,8 @@ class GoxGrid final : public VoxelGrid {
         read_layer(chunk);
         ++chunks;
       }
-      if (chunks > kMostBlocks || blocks_ > kMostBlocks) {
-        chunk.fail("there are more than the limit of ", kMostBlocks, " blocks");
-      }
+      chunk.fail_if(chunks > kMostBlocks || blocks_ > kMostBlocks, "there are more than the limit of ",
+                    kMostBlocks, " blocks");
     }
   }
 
@@ -161,9 +159,8 @@ class GoxGrid final : public VoxelGrid {
               reader.i32();  // version 1 counts from the middle, which moving to 0,0,0 makes the same
         }
         reader.skip(4);
-        if (block.picture >= pictures_.size()) {
-          reader.fail("block ", block.picture, " is not among the ", pictures_.size(), " of the file");
-        }
+        reader.fail_if(block.picture >= pictures_.size(), "block ", block.picture, " is not among the ",
+                       pictures_.size(), " of the file");
         placed_.push_back(block);
       }
     }
@@ -211,9 +208,8 @@ class GoxGrid final : public VoxelGrid {
 
   static std::shared_ptr<const std::uint8_t> decode(ByteReader picture) {
     const auto encoded = picture.take(picture.remaining());
-    if (picture_size(encoded) != std::array<int, 2>{kPictureSide, kPictureSide}) {
-      picture.fail("the block is no picture of 64 x 64 pixels");
-    }
+    picture.fail_if(picture_size(encoded) != std::array<int, 2>{kPictureSide, kPictureSide},
+                    "the block is no picture of 64 x 64 pixels");
     return decode_picture(encoded, 4, picture.place() + ": the block ");
   }
 
@@ -227,14 +223,11 @@ class GoxGrid final : public VoxelGrid {
       }
       is_solid = true;
     });
-    if (!is_solid) {
-      throw InputError("the file holds no voxels that are drawn");
-    }
+    fail_if(!is_solid, "the file holds no voxels that are drawn");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t side = high[axis] - low_[axis] + 1;
-      if (side > std::int64_t{kGridSideLimit}) {
-        throw InputError("the layers reach over ", side, " voxels, the limit is ", kGridSideLimit);
-      }
+      fail_if(side > std::int64_t{kGridSideLimit}, "the layers reach over ", side, " voxels, the limit is ",
+              kGridSideLimit);
       size_[axis] = static_cast<std::int32_t>(side);
     }
   }

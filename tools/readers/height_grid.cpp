@@ -65,9 +65,7 @@ class Landscape final : public VoxelGrid {
       low = std::min(low, value);
       high = std::max(high, value);
     });
-    if (low > high) {
-      throw InputError("no point of the grid has a height");
-    }
+    fail_if(low > high, "no point of the grid has a height");
     tops_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]), kHole);
     const double range = high > low ? high / 2 - low / 2 : 1;  // halves: the range may be infinite
     for_each_sample(columns, rows, height, [&](std::size_t at, double value) {
@@ -139,9 +137,8 @@ class Landscape final : public VoxelGrid {
 }  // namespace
 
 Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightAt& height) {
-  if (columns < 2 || rows < 2) {
-    throw InputError("a grid of ", columns, " x ", rows, " heights is no landscape; 2 x 2 is the least");
-  }
+  fail_if(columns < 2 || rows < 2, "a grid of ", columns, " x ", rows,
+          " heights is no landscape; 2 x 2 is the least");
   return std::make_unique<Landscape>(columns, rows, height);
 }
 
@@ -153,9 +150,8 @@ bool looks_like_height_grid(std::span<const std::uint8_t> bytes) {
 /// Memory: 4 bytes a height.
 /// @throws InputError  naming the line: a number that is none, too few or too many of them
 Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
-  if (!looks_like_height_grid(file.bytes)) {
-    throw InputError("is no grid of heights: it does not begin with the word ncols");
-  }
+  fail_if(!looks_like_height_grid(file.bytes),
+          "is no grid of heights: it does not begin with the word ncols");
   ProgressMeter meter(progress, file.bytes.size());
   WordReader words(file.text());
   std::array<std::int64_t, 2> counts{};
@@ -166,9 +162,8 @@ Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progr
     const std::string_view number = words.next();
     for (std::size_t i = 0; i < 2; ++i) {
       const bool is_count = equals_ignoring_case(word, i == 0 ? "ncols" : "nrows");
-      if (is_count && (!parse_integer(number, counts[i]) || counts[i] < 2)) {
-        fail_at_line(words.line(), quoted(word), " is ", quoted(number), ", not a whole number from 2 on");
-      }
+      fail_at_line_if(is_count && (!parse_integer(number, counts[i]) || counts[i] < 2), words.line(),
+                      quoted(word), " is ", quoted(number), ", not a whole number from 2 on");
     }
     if (equals_ignoring_case(word, "nodata_value")) {
       nothing = finite_number(number, words.line(), "NODATA_value");
@@ -178,10 +173,8 @@ Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progr
   const auto rows = static_cast<std::uint64_t>(counts[1]);
   // A digit and what separates it from the next; the last may stand at the very end.
   const std::uint64_t room = (std::uint64_t{words.remaining()} + word.size() + 1) / 2;
-  if (columns == 0 || rows == 0 || columns > room / rows) {
-    throw InputError("the header announces ", rows, " rows of ", columns,
-                     " heights, but the file has room for ", room, " at most");
-  }
+  fail_if(columns == 0 || rows == 0 || columns > room / rows, "the header announces ", rows, " rows of ",
+          columns, " heights, but the file has room for ", room, " at most");
   std::vector<float> heights;
   heights.reserve(static_cast<std::size_t>(columns * rows));
   for (; !word.empty(); word = words.next()) {
@@ -196,10 +189,8 @@ Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progr
     heights.push_back(is_there ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN());
     meter.at(words.offset());
   }
-  if (heights.size() != columns * rows) {
-    throw InputError("the header announces ", columns * rows, " heights, but the file holds ",
-                     heights.size());
-  }
+  fail_if(heights.size() != columns * rows, "the header announces ", columns * rows,
+          " heights, but the file holds ", heights.size());
   return height_landscape(columns, rows, [&](std::uint64_t column, std::uint64_t row) {
     return static_cast<double>(heights[static_cast<std::size_t>(row * columns + column)]);
   });

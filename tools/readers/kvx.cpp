@@ -32,9 +32,8 @@ class ColumnGrid : public VoxelGrid {
   void read_size(ByteReader& reader, std::size_t axes = 3, const char* what = "voxels") {
     for (std::size_t axis = 0; axis < axes; ++axis) {
       sides_[axis] = reader.u32();
-      if (sides_[axis] < 1 || sides_[axis] > kGridSideLimit) {
-        reader.fail("a side of ", sides_[axis], " ", what, "; there are 1 to ", kGridSideLimit);
-      }
+      reader.fail_if(sides_[axis] < 1 || sides_[axis] > kGridSideLimit, "a side of ", sides_[axis], " ", what,
+                     "; there are 1 to ", kGridSideLimit);
     }
     set_size(sides_[0], sides_[1], sides_[2]);
   }
@@ -54,16 +53,13 @@ class KvxGrid final : public ColumnGrid {
     const std::uint32_t model_bytes = reader.u32();
     read_size(reader);
     const std::uint64_t end = std::uint64_t{model_bytes} + 4;
-    if (file.bytes.size() < kPaletteBytes || end > file.bytes.size() - kPaletteBytes) {
-      throw InputError("the model announces ", model_bytes,
-                       " bytes, which the file does not hold before a palette of 768");
-    }
+    fail_if(file.bytes.size() < kPaletteBytes || end > file.bytes.size() - kPaletteBytes,
+            "the model announces ", model_bytes,
+            " bytes, which the file does not hold before a palette of 768");
     const std::uint64_t tables =
         4 * (std::uint64_t{sides_[0]} + 1) + 2 * std::uint64_t{sides_[0]} * (sides_[1] + 1);
-    if (kKvxHeaderBytes + tables > end) {
-      throw InputError("the model of ", model_bytes, " bytes has no room for the table of ", sides_[0], " x ",
-                       sides_[1], " columns");
-    }
+    fail_if(kKvxHeaderBytes + tables > end, "the model of ", model_bytes,
+            " bytes has no room for the table of ", sides_[0], " x ", sides_[1], " columns");
     end_ = static_cast<std::size_t>(end);
     check_solid("the model holds no voxels");
   }
@@ -78,10 +74,8 @@ class KvxGrid final : public ColumnGrid {
           const std::uint32_t top = slabs.u8();
           const std::uint32_t length = slabs.u8();
           slabs.skip(1);  // which sides are visible
-          if (top + length > sides_[2]) {
-            slabs.fail("a slab reaches from ", top, " to ", top + length, ", below the model's ", sides_[2],
-                       " voxels");
-          }
+          slabs.fail_if(top + length > sides_[2], "a slab reaches from ", top, " to ", top + length,
+                        ", below the model's ", sides_[2], " voxels");
           for (std::uint32_t z = top; z < top + length; ++z) {
             const std::uint8_t* color = palette + 3 * std::size_t{slabs.u8()};
             put(visit, x, y, z, {up(color[0]), up(color[1]), up(color[2])});
@@ -102,10 +96,8 @@ class KvxGrid final : public ColumnGrid {
     const std::uint64_t first = kKvxHeaderBytes + first_row + inner.u16();
     const std::uint64_t last = kKvxHeaderBytes + first_row + inner.u16();
     const std::string place = concat("column ", x, ",", y);
-    if (first > last || last > end_) {
-      throw InputError(place, " lies from byte offset ", first, " to ", last,
-                       ", outside of the model, which ends at ", end_);
-    }
+    fail_if(first > last || last > end_, place, " lies from byte offset ", first, " to ", last,
+            ", outside of the model, which ends at ", end_);
     return ByteReader(
         file_.bytes.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first)), place,
         first);
@@ -137,18 +129,14 @@ class Kv6Grid final : public ColumnGrid {
           const auto color = voxels.take(4);
           const std::uint32_t z = voxels.u16();
           voxels.skip(2);
-          if (z >= sides_[2]) {
-            voxels.fail("a voxel of column ", x, ",", y, " lies at ", z, ", below the model's ", sides_[2],
-                        " voxels");
-          }
+          voxels.fail_if(z >= sides_[2], "a voxel of column ", x, ",", y, " lies at ", z,
+                         ", below the model's ", sides_[2], " voxels");
           put(visit, x, y, z, {color[2], color[1], color[0]});
         }
       }
     }
-    if (voxels.remaining() != 0) {
-      voxels.fail("there are ", count_, " of them, and the columns have ",
-                  count_ - voxels.remaining() / kKv6VoxelBytes);
-    }
+    voxels.fail_if(voxels.remaining() != 0, "there are ", count_, " of them, and the columns have ",
+                   count_ - voxels.remaining() / kKv6VoxelBytes);
   }
 
  private:
@@ -160,9 +148,8 @@ class VxlGrid final : public ColumnGrid {
  public:
   explicit VxlGrid(const SharedBytes& file) : ColumnGrid(file) {
     sides_ = {512, 512, 0};
-    if (file.text().starts_with("Voxel Animation")) {
-      throw InputError("is a model of Command & Conquer, and only maps of Voxlap are read");
-    }
+    fail_if(file.text().starts_with("Voxel Animation"),
+            "is a model of Command & Conquer, and only maps of Voxlap are read");
     if (file.text().starts_with(kVoxlapMagic)) {
       ByteReader reader(file.bytes, "the header");
       reader.skip(4);
@@ -217,12 +204,11 @@ class VxlGrid final : public ColumnGrid {
         const std::uint32_t air = reader.u8();  // means nothing in a first span
         const auto below = static_cast<std::uint32_t>(lower.size() / kColorBytes);
         is_last = words == 0;
-        if (top > end || end > sides_[2] ||
-            (!is_first && (air < hidden || air > top || below > air - hidden)) ||
-            (!is_last && words < 1 + end - top)) {
-          reader.fail("column ", x, ",", y, " has a span from ", top, " to ", end,
-                      " that its neighbours leave no room for, before byte offset ", reader.offset());
-        }
+        reader.fail_if(top > end || end > sides_[2] ||
+                           (!is_first && (air < hidden || air > top || below > air - hidden)) ||
+                           (!is_last && words < 1 + end - top),
+                       "column ", x, ",", y, " has a span from ", top, " to ", end,
+                       " that its neighbours leave no room for, before byte offset ", reader.offset());
         if (!is_first) {
           take(x, y, hidden, air - below, nullptr);
           take(x, y, air - below, air, lower.data());

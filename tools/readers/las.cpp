@@ -43,17 +43,13 @@ class LasCloud final : public PointCloud {
     std::uint64_t kept = 0;
     walk([&](const CloudPoint& point, const std::uint8_t* color) {
       ++kept;
-      if (!point.is_finite()) {
-        throw InputError("the position of point ", point.line, " is not finite");
-      }
+      fail_if(!point.is_finite(), "the position of point ", point.line, " is not finite");
       for (std::size_t channel = 0; color != nullptr && channel < 3; ++channel) {
         highest = std::max(highest, component(color, channel));
       }
       meter.at(static_cast<std::size_t>(first_offset_ + (point.line - 1) * record_bytes_));
     });
-    if (kept == 0) {
-      throw InputError(count_ == 0 ? "the file holds no points" : "all points of the file are withheld");
-    }
+    fail_if(kept == 0, count_ == 0 ? "the file holds no points" : "all points of the file are withheld");
     has_color_ = highest > 0;
     // 16 bits by the specification; cameras of 8 and 12 bits write what they have, or 8 bits times 16.
     full_ = options.full_color != 0 ? options.full_color
@@ -85,10 +81,8 @@ class LasCloud final : public PointCloud {
     header.skip(20);
     const unsigned major = header.u8();
     const unsigned minor = header.u8();
-    if (major != 1 || minor > 4) {
-      throw InputError("version ", major, ".", minor,
-                       " at byte offset 24 is not supported, only 1.0 to 1.4 are");
-    }
+    fail_if(major != 1 || minor > 4, "version ", major, ".", minor,
+            " at byte offset 24 is not supported, only 1.0 to 1.4 are");
     header.skip(68);
     const std::uint16_t header_bytes = header.u16();
     first_offset_ = header.u32();
@@ -111,15 +105,12 @@ class LasCloud final : public PointCloud {
       const std::uint64_t count = header.u64();
       count_ = count != 0 ? count : count_;
     }
-    if (format >= kFormats.size()) {
-      throw InputError("point format ", format, " at byte offset 104 is not supported, only 0 to 10 are");
-    }
+    fail_if(format >= kFormats.size(), "point format ", format,
+            " at byte offset 104 is not supported, only 0 to 10 are");
     is_new_format_ = format >= 6;
     color_offset_ = kFormats[format].color_offset;
-    if (record_bytes_ < kFormats[format].least_bytes) {
-      throw InputError("points of format ", format, " take at least ", kFormats[format].least_bytes,
-                       " bytes, but the header says ", record_bytes_);
-    }
+    fail_if(record_bytes_ < kFormats[format].least_bytes, "points of format ", format, " take at least ",
+            kFormats[format].least_bytes, " bytes, but the header says ", record_bytes_);
     if (is_packed) {
       const bool has_color = color_offset_ != kNoColor;
       file_ = unpack_laz(file_, {first_offset_, count_, record_bytes_}, has_color, progress);
@@ -129,10 +120,8 @@ class LasCloud final : public PointCloud {
     }
     const std::uint64_t room =
         first_offset_ < file_.bytes.size() ? (file_.bytes.size() - first_offset_) / record_bytes_ : 0;
-    if (count_ > room) {
-      throw InputError("the header counts ", count_, " points, but from byte offset ", first_offset_,
-                       " on the file has room for ", room);
-    }
+    fail_if(count_ > room, "the header counts ", count_, " points, but from byte offset ", first_offset_,
+            " on the file has room for ", room);
   }
 
   /// Calls take(point, color) for each point that is not withheld, without its colour, whose three components of 16 bits

@@ -12,8 +12,8 @@ namespace {
 
 // The arithmetic coder of LASzip: symbols, bits and integers out of bytes, by models that learn as they go.
 
-[[noreturn]] void refuse_damaged() {
-  throw InputError("its compressed points are damaged or cut off");
+void refuse_damaged_if(bool is_damaged) {
+  fail_if(is_damaged, "its compressed points are damaged or cut off");
 }
 
 /// How often each symbol came, and from that its share of the interval. Counts are halved at 2^15.
@@ -127,9 +127,7 @@ class ArithmeticDecoder {
     }
     length_ >>= count;
     const std::uint32_t value = value_ / length_;
-    if (value >> count != 0) {
-      refuse_damaged();
-    }
+    refuse_damaged_if(value >> count != 0);
     value_ -= value * length_;
     refill();
     return value;
@@ -137,9 +135,7 @@ class ArithmeticDecoder {
 
  private:
   std::uint8_t next_byte() {
-    if (at_ == bytes_.size()) {
-      refuse_damaged();
-    }
+    refuse_damaged_if(at_ == bytes_.size());
     return bytes_[at_++];
   }
   void refill() {
@@ -306,9 +302,7 @@ class TimeModel {
         steps_[now_] = 0;
         extremes_[now_] = 0;
       } else if (way > full) {
-        if (switches == 3) {  // there are four sequences
-          refuse_damaged();
-        }
+        refuse_damaged_if(switches == 3);  // there are four sequences
         now_ = (now_ + way - full) & 3;
         continue;
       } else if (is_still) {
@@ -463,9 +457,7 @@ class LayeredChunk {
     std::uint64_t offset = layout.record_bytes + 4 + 4 * layout.layers;
     for (std::size_t i = 0; i < layout.layers; ++i) {
       const std::uint32_t size = sizes.u32();
-      if (size > bytes.size() - std::min<std::uint64_t>(offset, bytes.size())) {
-        refuse_damaged();
-      }
+      refuse_damaged_if(size > bytes.size() - std::min<std::uint64_t>(offset, bytes.size()));
       const auto layer = bytes.subspan(static_cast<std::size_t>(offset), size);
       offset += size;
       if (size != 0 && (i == kXy || i == kHeights || i == kFlags || i == kColors)) {
@@ -479,9 +471,7 @@ class LayeredChunk {
 
   const Point& first() const { return scanners_[scanner_]->last.point; }
   const Point& next() {
-    if (!decoders_[kXy]) {
-      refuse_damaged();
-    }
+    refuse_damaged_if(!decoders_[kXy]);
     ArithmeticDecoder& decoder = *decoders_[kXy];
     Scanner* scanner = scanners_[scanner_].get();
     const Last& before = scanner->last;
@@ -577,11 +567,6 @@ struct Packing {
   Layout layout{};
 };
 
-[[noreturn]] void refuse_item(unsigned type, unsigned version) {
-  throw InputError("item ", type, " of version ", version,
-                   " in its compressed points is not read (waveforms, or LASzip before 2.0)");
-}
-
 // The items of a point, in their order; each of the new formats has layers of its own.
 Layout read_items(ByteReader& record) {
   enum Item : unsigned {
@@ -604,13 +589,11 @@ Layout read_items(ByteReader& record) {
     const bool is_old = type == kByte || (type >= kPoint10 && type <= kColor12);
     const bool is_new = type >= kPoint14 && type <= kByte14;
     const bool is_first = type == kPoint10 || type == kPoint14;
-    if ((!is_old || version != 2) && (!is_new || version < 2 || version > 4)) {
-      refuse_item(type, version);
-    }
+    fail_if((!is_old || version != 2) && (!is_new || version < 2 || version > 4), "item ", type,
+            " of version ", version,
+            " in its compressed points is not read (waveforms, or LASzip before 2.0)");
     const std::size_t least = type == kPoint10 ? 20 : type == kPoint14 ? 30 : type == kTime11 ? 8 : 6;
-    if (is_first != (i == 0) || (type != kByte && type != kByte14 && size < least)) {
-      refuse_damaged();
-    }
+    refuse_damaged_if(is_first != (i == 0) || (type != kByte && type != kByte14 && size < least));
     if (type == kColor12 || type == kColor14 || type == kColorNir14) {
       layout.color_offset = layout.record_bytes;
     }
@@ -640,19 +623,16 @@ Packing read_packing(const SharedBytes& file, const LasPoints& points) {
       Packing packing;
       const unsigned compressor = all.u16();
       const unsigned coder = all.u16();
-      if (compressor < 1 || compressor > 3 || coder != 0) {
-        throw InputError("compressor ", compressor, " with coder ", coder, " of its points is not read");
-      }
+      fail_if(compressor < 1 || compressor > 3 || coder != 0, "compressor ", compressor, " with coder ",
+              coder, " of its points is not read");
       packing.is_layered = compressor == 3;
       packing.is_chunked = compressor != 1;
       all.skip(8);
       packing.chunk_points = all.u32();
       all.skip(16);
       packing.layout = read_items(all);
-      if (packing.layout.record_bytes != points.record_bytes ||
-          packing.is_layered != (packing.layout.layers != 0)) {
-        refuse_damaged();
-      }
+      refuse_damaged_if(packing.layout.record_bytes != points.record_bytes ||
+                        packing.is_layered != (packing.layout.layers != 0));
       return packing;
     }
     all.skip(static_cast<std::size_t>(behind - all.offset()));
@@ -666,16 +646,12 @@ std::vector<std::uint32_t> read_chunk_table(const SharedBytes& file, std::uint64
   if (table_offset == UINT64_MAX && size >= 8) {  // written to a pipe: the end says where
     table_offset = load_bits(&file.bytes[static_cast<std::size_t>(size - 8)], 8, false);
   }
-  if (table_offset > size || size - table_offset < 8) {
-    refuse_damaged();
-  }
+  refuse_damaged_if(table_offset > size || size - table_offset < 8);
   ByteReader table(file.bytes.subspan(static_cast<std::size_t>(table_offset)), "the table of chunks",
                    table_offset);
   table.skip(4);
   const std::uint32_t count = table.u32();
-  if (count > size / 16) {  // no chunk takes less than its first point
-    refuse_damaged();
-  }
+  refuse_damaged_if(count > size / 16);  // no chunk takes less than its first point
   ArithmeticDecoder decoder(file.bytes.subspan(static_cast<std::size_t>(table_offset) + 8));
   IntegerModel model(32, 2);
   std::vector<std::uint32_t> counts(count);
@@ -707,9 +683,7 @@ void put_point(std::vector<std::uint8_t>* out, const Point& point, bool has_colo
 template <class Chunk>
 std::size_t unpack_chunk(std::span<const std::uint8_t> bytes, const Layout& layout, std::uint64_t points,
                          bool has_color, std::vector<std::uint8_t>* out) {
-  if (bytes.size() < layout.record_bytes) {
-    refuse_damaged();
-  }
+  refuse_damaged_if(bytes.size() < layout.record_bytes);
   Chunk chunk(bytes, layout);
   put_point(out, chunk.first(), has_color);
   for (std::uint64_t i = 1; i < points; ++i) {
@@ -727,10 +701,8 @@ SharedBytes unpack_laz(const SharedBytes& file, const LasPoints& points, bool ha
   // Real scans take two to ten bytes a point; what was made to take none costs time all the same.
   constexpr std::uint64_t kBelievedPoints = 2'000'000;
   constexpr std::uint64_t kBelievedPerByte = 5;
-  if (points.count > kBelievedPoints + kBelievedPerByte * file.bytes.size()) {
-    throw InputError("the header counts ", points.count, " points in ", file.bytes.size(),
-                     " bytes, more than they are believed to hold");
-  }
+  fail_if(points.count > kBelievedPoints + kBelievedPerByte * file.bytes.size(), "the header counts ",
+          points.count, " points in ", file.bytes.size(), " bytes, more than they are believed to hold");
   std::uint64_t offset = points.first_offset;
   std::vector<std::uint32_t> table;
   if (packing.is_chunked) {
@@ -740,9 +712,8 @@ SharedBytes unpack_laz(const SharedBytes& file, const LasPoints& points, bool ha
     offset += 8;
     if (packing.chunk_points == UINT32_MAX) {
       table = read_chunk_table(file, table_offset);
-    } else if (packing.chunk_points == 0) {
-      refuse_damaged();
     }
+    refuse_damaged_if(packing.chunk_points == 0);
   }
   auto out = std::make_shared<std::vector<std::uint8_t>>();
   out->reserve(static_cast<std::size_t>(points.count * record_bytes));
@@ -753,9 +724,7 @@ SharedBytes unpack_laz(const SharedBytes& file, const LasPoints& points, bool ha
     const std::uint64_t chunk = is_in_table          ? (i < table.size() ? table[i] : 0)
                                 : packing.is_chunked ? packing.chunk_points
                                                      : left;
-    if (chunk == 0 || chunk > left + (is_in_table ? 0 : chunk) || offset > file.bytes.size()) {
-      refuse_damaged();
-    }
+    refuse_damaged_if(chunk == 0 || chunk > left + (is_in_table ? 0 : chunk) || offset > file.bytes.size());
     const std::uint64_t count = std::min(chunk, left);
     const auto bytes = file.bytes.subspan(static_cast<std::size_t>(offset));
     offset += packing.is_layered

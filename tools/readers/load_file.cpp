@@ -55,9 +55,7 @@ class Descriptor {
     if (::fstat(fd_, &status) != 0) {
       throw InputError("cannot be examined: ", reason(errno));
     }
-    if (S_ISDIR(status.st_mode)) {
-      throw InputError("is a directory, not a file");
-    }
+    fail_if(S_ISDIR(status.st_mode), "is a directory, not a file");
     return S_ISREG(status.st_mode) && status.st_size > 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
   }
 
@@ -112,24 +110,18 @@ class FileBuffer {
   }
   void reserve(std::uint64_t capacity) {
     capacity = std::min(capacity, limit_bytes_ + 1);
-    if (capacity > capacity_ && !resize(capacity)) {
-      refuse_for_memory();
-    }
+    check_memory(capacity <= capacity_ || resize(capacity));
   }
   /// `count` bytes of `room()` were written.
   void grew(std::size_t count) {
     size_ += count;
-    if (size_ > limit_bytes_) {
-      refuse(limit_bytes_);
-    }
+    check_size(size_, limit_bytes_);
   }
   /// They were inflated, and all so far from `packed_bytes`.
   void grew_from(std::uint64_t packed_bytes, std::size_t count) {
     grew(count);
-    if (size_ > kBelievedBytes && size_ / kBelievedRatio > packed_bytes) {
-      throw InputError("inflates to more than 256 MiB, more than ", kBelievedRatio,
-                       " times what it takes packed");
-    }
+    fail_if(size_ > kBelievedBytes && size_ / kBelievedRatio > packed_bytes,
+            "inflates to more than 256 MiB, more than ", kBelievedRatio, " times what it takes packed");
   }
   std::size_t size() const { return size_; }
   std::span<const std::uint8_t> bytes() const { return {data_.get(), size_}; }
@@ -139,22 +131,22 @@ class FileBuffer {
     }
     return {bytes(), std::shared_ptr<const void>(std::move(data_))};
   }
-  [[noreturn]] static void refuse(std::uint64_t limit_bytes) {
-    throw InputError("holds more than the limit of ", limit_bytes, " bytes");
+  static void check_size(std::uint64_t size_bytes, std::uint64_t limit_bytes) {
+    fail_if(size_bytes > limit_bytes, "holds more than the limit of ", limit_bytes, " bytes");
   }
 
  private:
   /// Twice the room; where this machine does not have that, half as much more, and so on.
   void grow() {
-    for (std::uint64_t more = std::max<std::uint64_t>(kStepBytes, capacity_); more >= kStepBytes; more /= 2) {
-      if (resize(std::min(capacity_ + more, limit_bytes_ + 1))) {
-        return;
-      }
+    bool has_room = false;
+    for (std::uint64_t more = std::max<std::uint64_t>(kStepBytes, capacity_); !has_room && more >= kStepBytes;
+         more /= 2) {
+      has_room = resize(std::min(capacity_ + more, limit_bytes_ + 1));
     }
-    refuse_for_memory();
+    check_memory(has_room);
   }
-  [[noreturn]] void refuse_for_memory() const {
-    throw InputError("does not fit the memory that is left on this machine: ", size_, " bytes of it did");
+  void check_memory(bool has_room) const {
+    fail_if(!has_room, "does not fit the memory that is left on this machine: ", size_, " bytes of it did");
   }
   bool resize(std::uint64_t capacity) {
     void* moved =
@@ -212,9 +204,7 @@ class Unpacker {
 class ZlibUnpacker final : public Unpacker {
  public:
   explicit ZlibUnpacker(int window) {
-    if (inflateInit2(&stream_, window) != Z_OK) {
-      throw InputError("zlib does not start");
-    }
+    fail_if(inflateInit2(&stream_, window) != Z_OK, "zlib does not start");
   }
   ZlibUnpacker(const ZlibUnpacker&) = delete;
   ZlibUnpacker& operator=(const ZlibUnpacker&) = delete;
@@ -256,9 +246,7 @@ class XzUnpacker final : public Unpacker {
  public:
   XzUnpacker() {
     constexpr std::uint64_t kMostBytes = std::uint64_t{128} << 20;  // xz -9 has dictionaries of 64 MiB
-    if (lzma_stream_decoder(&stream_, kMostBytes, 0) != LZMA_OK) {
-      throw InputError("liblzma does not start");
-    }
+    fail_if(lzma_stream_decoder(&stream_, kMostBytes, 0) != LZMA_OK, "liblzma does not start");
   }
   XzUnpacker(const XzUnpacker&) = delete;
   XzUnpacker& operator=(const XzUnpacker&) = delete;
@@ -319,9 +307,8 @@ class Members {
       const Unpacker::Step step = unpacker_->step(packed, room);
       packed = packed.subspan(step.taken);
       taken_bytes_ += step.taken;
-      if (step.fault != nullptr) {
-        throw InputError(packing_.name, " data is damaged near byte offset ", taken_bytes_, ": ", step.fault);
-      }
+      fail_if(step.fault != nullptr, packing_.name, " data is damaged near byte offset ", taken_bytes_, ": ",
+              step.fault);
       out_.grew_from(taken_bytes_, step.made);
       looker_.at(out_.bytes(), false);
       between_members_ = step.is_end;
@@ -329,13 +316,9 @@ class Members {
     }
   }
   void finish() const {
-    if (!between_members_) {
-      throw InputError(packing_.name, " data is truncated: the file ends at byte offset ", taken_bytes_,
-                       " within a member");
-    }
-    if (out_.size() == 0) {
-      throw InputError(packing_.name, " data holds no bytes");
-    }
+    fail_if(!between_members_, packing_.name, " data is truncated: the file ends at byte offset ",
+            taken_bytes_, " within a member");
+    fail_if(out_.size() == 0, packing_.name, " data holds no bytes");
   }
 
  private:
@@ -346,10 +329,8 @@ class Members {
       ++taken_bytes_;
       return false;
     }
-    if (packing_.begins.find(static_cast<char>(packed->front())) == std::string_view::npos) {
-      throw InputError(packing_.name, " data ends at byte offset ", taken_bytes_,
-                       " but something else follows it");
-    }
+    fail_if(packing_.begins.find(static_cast<char>(packed->front())) == std::string_view::npos, packing_.name,
+            " data ends at byte offset ", taken_bytes_, " but something else follows it");
     unpacker_ = packing_.start();
     return true;
   }
@@ -398,10 +379,8 @@ SharedBytes inflate_bytes(std::span<const std::uint8_t> packed, Deflated frame, 
                           const std::string& place) {
   FileBuffer out(limit_bytes);
   const Unpacker::Step last = inflate_into(out, packed, frame, UINT64_MAX);
-  if (!last.is_end) {
-    throw InputError(
-        place, last.fault == nullptr ? ": the deflated data is truncated" : ": the deflated data is damaged");
-  }
+  fail_if(!last.is_end, place,
+          last.fault == nullptr ? ": the deflated data is truncated" : ": the deflated data is damaged");
   return out.finish();
 }
 
@@ -416,9 +395,8 @@ namespace {
 /// Of a directory opening it says what is wrong.
 void check_regular(const std::string& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
-    throw InputError("is no regular file");
-  }
+  fail_if(::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode),
+          "is no regular file");
 }
 
 }  // namespace
@@ -442,9 +420,7 @@ SharedBytes load_file(const std::string& path, std::uint64_t limit_bytes, const 
   const auto step_storage = std::make_unique<std::array<std::uint8_t, kStepBytes>>();
   const std::span<std::uint8_t> step(*step_storage);
   const std::size_t got = file.read(step.data(), step.size());
-  if (got == 0) {
-    throw InputError("is empty");
-  }
+  fail_if(got == 0, "is empty");
   Looker looker(look);
   const std::string_view head(reinterpret_cast<const char*>(step.data()), got);
   for (const Packing& packing : kPackings) {
@@ -453,15 +429,11 @@ SharedBytes load_file(const std::string& path, std::uint64_t limit_bytes, const 
     }
   }
   for (const Packing& packing : kPackings) {
-    if (path.ends_with(packing.ending)) {
-      throw InputError("its name ends in ", packing.ending, " but it does not begin with the ", packing.name,
-                       " signature");
-    }
+    fail_if(path.ends_with(packing.ending), "its name ends in ", packing.ending,
+            " but it does not begin with the ", packing.name, " signature");
   }
   looker.at(step.first(got), true);  // a pipe hands out less only at its end
-  if (size_hint_bytes > limit_bytes) {
-    FileBuffer::refuse(limit_bytes);
-  }
+  FileBuffer::check_size(size_hint_bytes, limit_bytes);
   FileBuffer buffer(limit_bytes);
   // One byte more than expected: the read that finds the end needs room too.
   buffer.reserve(std::max<std::uint64_t>(size_hint_bytes, got) + 1);

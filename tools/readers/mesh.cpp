@@ -220,9 +220,7 @@ void note_left_out(Notes& notes, std::uint64_t points) {
 }
 
 Source mesh_or_points(TriangleMesh mesh, std::uint64_t face_count) {
-  if (mesh.positions.empty()) {
-    throw InputError("the file holds no vertices");
-  }
+  fail_if(mesh.positions.empty(), "the file holds no vertices");
   if (face_count == 0) {
     return std::make_unique<VertexCloud>(std::move(mesh));
   }

@@ -46,9 +46,7 @@ std::uint64_t numbers_of(const NpyHeader& header) {
 std::string_view value_of(std::string_view dictionary, std::string_view key) {
   const std::size_t at = dictionary.find("'" + std::string(key) + "'");
   const std::size_t colon = at == std::string_view::npos ? at : dictionary.find(':', at);
-  if (colon == std::string_view::npos) {
-    throw InputError("the header has no ", quoted(key));
-  }
+  fail_if(colon == std::string_view::npos, "the header has no ", quoted(key));
   std::string_view value = dictionary.substr(colon + 1);
   value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
   return value;
@@ -62,10 +60,9 @@ void read_type(std::string_view value, NpyHeader& header) {
                                                            "i4", "i8", "f2", "f4", "f8", "?"};
   const bool has_order = !text.empty() && std::string_view("<>|=").find(text[0]) != std::string_view::npos;
   const std::string_view type = text.substr(has_order ? 1 : 0);
-  if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
-    throw InputError("the type of the array's numbers, ", quoted(value.substr(0, value.find(','))),
-                     ", is none of booleans, integers, and floats of 2, 4 or 8 bytes");
-  }
+  fail_if(std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end(), "the type of the array's numbers, ",
+          quoted(value.substr(0, value.find(','))),
+          ", is none of booleans, integers, and floats of 2, 4 or 8 bytes");
   header.type.kind = type[0] == '?' ? 'b' : type[0];
   header.type.size_bytes = type.size() < 2 ? 1 : static_cast<std::size_t>(type[1] - '0');
   header.is_big_endian = has_order && text[0] == '>';
@@ -73,20 +70,17 @@ void read_type(std::string_view value, NpyHeader& header) {
 
 void read_shape(std::string_view value, NpyHeader& header) {
   const std::size_t end = value.find(')');
-  if (value.empty() || value[0] != '(' || end == std::string_view::npos) {
-    throw InputError("the array's shape is no list in parentheses");
-  }
+  fail_if(value.empty() || value[0] != '(' || end == std::string_view::npos,
+          "the array's shape is no list in parentheses");
   value = value.substr(1, end - 1);
   while (value.find_first_not_of(" ,") != std::string_view::npos) {
     value.remove_prefix(value.find_first_not_of(" ,"));
     const std::size_t length = std::min(value.find_first_of(" ,"), value.size());
     std::int64_t side = 0;
-    if (!parse_integer(value.substr(0, length), side) || side < 0) {
-      throw InputError("the array's shape holds ", quoted(value.substr(0, length)), ", which is no length");
-    }
-    if (header.shape.size() == kMostDimensions) {
-      throw InputError("the array has more than ", kMostDimensions, " dimensions");
-    }
+    fail_if(!parse_integer(value.substr(0, length), side) || side < 0, "the array's shape holds ",
+            quoted(value.substr(0, length)), ", which is no length");
+    fail_if(header.shape.size() == kMostDimensions, "the array has more than ", kMostDimensions,
+            " dimensions");
     header.shape.push_back(static_cast<std::uint64_t>(side));
     value.remove_prefix(length);
   }
@@ -100,9 +94,8 @@ NpyHeader read_npy_header(std::span<const std::uint8_t> bytes) {
   reader.skip(kNpyMagic.size());
   const unsigned version = reader.u8();
   reader.skip(1);
-  if (version < 1 || version > 3) {
-    throw InputError("version ", version, " at byte offset 6 is not supported, only 1 to 3 are");
-  }
+  fail_if(version < 1 || version > 3, "version ", version,
+          " at byte offset 6 is not supported, only 1 to 3 are");
   const std::string_view dictionary = reader.text(version == 1 ? reader.u16() : reader.u32());
   NpyHeader header;
   read_type(value_of(dictionary, "descr"), header);
@@ -120,10 +113,8 @@ struct Array {
 
   Array(NpyHeader read, SharedBytes file) : header(std::move(read)), bytes(std::move(file)) {
     const std::uint64_t room = (bytes.bytes.size() - header.data_offset) / header.type.size_bytes;
-    if (numbers_of(header) > room) {
-      throw InputError("the array's shape takes ", numbers_of(header), " numbers of ", header.type.size_bytes,
-                       " bytes, but the file has room for ", room);
-    }
+    fail_if(numbers_of(header) > room, "the array's shape takes ", numbers_of(header), " numbers of ",
+            header.type.size_bytes, " bytes, but the file has room for ", room);
     strides.resize(header.shape.size());
     std::uint64_t stride = 1;
     for (std::size_t i = 0; i < strides.size(); ++i) {
@@ -151,10 +142,8 @@ class ArrayPoints final : public PointCloud {
         scale_.see(number(point.line - 1, first_color_ + channel));
       }
     });
-    if (finite == 0) {
-      throw InputError(array_.header.shape[0] == 0 ? "the array holds no points"
-                                                   : "no point of the array is finite");
-    }
+    fail_if(finite == 0,
+            array_.header.shape[0] == 0 ? "the array holds no points" : "no point of the array is finite");
     note_left_out(notes, array_.header.shape[0] - finite);
     has_color_ = first_color_ != 0 && scale_.looks_like_colors();
     if (has_color_) {
@@ -210,9 +199,8 @@ class ArrayGrid final : public VoxelGrid {
       : array_(std::move(array)), channels_(array_.header.shape.size() == 4 ? array_.header.shape[3] : 0) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::uint64_t side = array_.header.shape[axis];
-      if (side < 1 || side > kGridSideLimit) {
-        throw InputError("the array has a side of ", side, " voxels; there are 1 to ", kGridSideLimit);
-      }
+      fail_if(side < 1 || side > kGridSideLimit, "the array has a side of ", side, " voxels; there are 1 to ",
+              kGridSideLimit);
       size_[axis] = static_cast<std::int32_t>(side);
     }
     has_color_ = channels_ != 0;
@@ -275,9 +263,8 @@ Source source_of(Array array, const ReadOptions& options) {
   if (has_rows_of_points && options.as != ArrayAs::kHeights) {
     return std::make_unique<ArrayPoints>(std::move(array), options);
   }
-  if (options.as == ArrayAs::kPoints) {
-    throw InputError("--as-points: points are N x 3 to N x 9 numbers, and this is ", shape_of(header));
-  }
+  fail_if(options.as == ArrayAs::kPoints, "--as-points: points are N x 3 to N x 9 numbers, and this is ",
+          shape_of(header));
   if (dimensions == 2) {
     return height_landscape(header.shape[1], header.shape[0], [&](std::uint64_t column, std::uint64_t row) {
       return array.at(row * array.strides[0] + column * array.strides[1]);
@@ -309,9 +296,7 @@ SharedBytes largest_member(const SharedBytes& file) {
       best = member;
     }
   }
-  if (!best) {
-    throw InputError("the archive holds no NumPy array of two dimensions or more");
-  }
+  fail_if(!best, "the archive holds no NumPy array of two dimensions or more");
   return zip_unpack(*best);
 }
 
@@ -345,9 +330,7 @@ Source read_npy(const SharedBytes& file, const ReadOptions& options, const Progr
 NumberTable read_npy_table(const SharedBytes& file) {
   const auto array = std::make_shared<const Array>(array_of(file));
   const NpyHeader& header = array->header;
-  if (header.shape.size() != 2) {
-    throw InputError("the array is ", shape_of(header), ", no table of rows and columns");
-  }
+  fail_if(header.shape.size() != 2, "the array is ", shape_of(header), ", no table of rows and columns");
   return {header.shape[0], header.shape[1], [array](std::uint64_t row, std::uint64_t column) {
             return array->at(row * array->strides[0] + column * array->strides[1]);
           }};

@@ -381,9 +381,8 @@ class ObjParser {
 
   void vertex(std::string_view words) {
     static constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
-    if (mesh_.positions.size() >= kMeshVertexLimit) {
-      fail_at_line(line_, "the mesh has more than ", kMeshVertexLimit, " vertices");
-    }
+    fail_at_line_if(mesh_.positions.size() >= kMeshVertexLimit, line_, "the mesh has more than ",
+                    kMeshVertexLimit, " vertices");
     std::array<double, 3> position{};
     for (std::size_t i = 0; i < 3; ++i) {
       position[i] = finite_number(take_word(words), line_, kNames[i]);

@@ -71,9 +71,8 @@ const char* fault_of(ConstBytes bytes, std::uint32_t* place) {
 Source read_oct(const SharedBytes& file, const ReadOptions&, const Progress&) {
   const auto bytes = file.bytes;
   // What a person can do something about gets a sentence of its own.
-  if (!file.text().starts_with("TMS")) {  // the version follows
-    throw InputError("not a scene baked by thimble bake (its first bytes are not TMS)");
-  }
+  fail_if(!file.text().starts_with("TMS"),  // the version follows
+          "not a scene baked by thimble bake (its first bytes are not TMS)");
   if (bytes.size() > kVersionOffset && bytes[kVersionOffset] != kBakedVersion) {
     throw another_version(concat(bytes[kVersionOffset], "; this one reads ", kBakedVersion));
   }
@@ -92,9 +91,7 @@ Source read_oct(const SharedBytes& file, const ReadOptions&, const Progress&) {
   }
   BakedFile result;
   result.file = file;
-  if (BakedScene::open(view, &result.scene) != Status::kOk) {
-    throw InputError("damaged");
-  }
+  fail_if(BakedScene::open(view, &result.scene) != Status::kOk, "damaged");
   // The core leaves this to whoever draws light; here the whole file must be sound.
   const ConstBytes lighting = result.scene.section(SectionKind::kLighting);
   if (lighting.data != nullptr) {

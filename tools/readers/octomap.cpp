@@ -23,10 +23,8 @@ class OctomapGrid final : public VoxelGrid {
  public:
   explicit OctomapGrid(const SharedBytes& file) : file_(file) {
     is_binary_ = file.text().starts_with(kBinaryMapMagic);
-    if (!looks_like_octomap(file.bytes)) {
-      throw InputError("is no OctoMap file: it does not begin with \"", kFullMapMagic, "\" or \"",
-                       kBinaryMapMagic, "\"");
-    }
+    fail_if(!looks_like_octomap(file.bytes), "is no OctoMap file: it does not begin with \"", kFullMapMagic,
+            "\" or \"", kBinaryMapMagic, "\"");
     read_head();
     std::uint64_t voxels = 0;
     low_ = Vec3i{1 << kMapLevels, 1 << kMapLevels, 1 << kMapLevels};
@@ -38,15 +36,12 @@ class OctomapGrid final : public VoxelGrid {
               std::max(high.z, corner.z + side)};
       voxels += std::uint64_t{1} << 3 * level;
     });
-    if (voxels == 0) {
-      throw InputError("the map has no occupied leaf");
-    }
+    fail_if(voxels == 0, "the map has no occupied leaf");
     size_ = {high.x - low_.x, high.y - low_.y, high.z - low_.z};
     const std::int32_t longest = *std::max_element(size_.begin(), size_.end());
-    if (longest > static_cast<std::int32_t>(kGridSideLimit) || voxels > kMostMapVoxels) {
-      throw InputError("the occupied leaves are ", voxels, " voxels and ", longest, " long; the limits are ",
-                       kMostMapVoxels, " and ", kGridSideLimit);
-    }
+    fail_if(longest > static_cast<std::int32_t>(kGridSideLimit) || voxels > kMostMapVoxels,
+            "the occupied leaves are ", voxels, " voxels and ", longest, " long; the limits are ",
+            kMostMapVoxels, " and ", kGridSideLimit);
   }
 
   void for_each(const Visit& visit) const override {
@@ -62,18 +57,14 @@ class OctomapGrid final : public VoxelGrid {
     std::string_view id;
     std::string_view key;
     for (std::string_view line; key != "data";) {
-      if (!lines.next(line)) {
-        throw InputError("the header has no line 'data'");
-      }
+      fail_if(!lines.next(line), "the header has no line 'data'");
       key = take_word(line);
       id = key == "id" ? take_word(line) : id;
     }
     // Files from before classes had names say 1.
     has_color_ = id == "ColorOcTree" && !is_binary_;
-    if (id != "OcTree" && id != "1" && id != "ColorOcTree" && id != "OcTreeStamped") {
-      throw InputError("holds a tree of class ", quoted(id),
-                       "; OcTree, ColorOcTree and OcTreeStamped are read");
-    }
+    fail_if(id != "OcTree" && id != "1" && id != "ColorOcTree" && id != "OcTreeStamped",
+            "holds a tree of class ", quoted(id), "; OcTree, ColorOcTree and OcTreeStamped are read");
     nodes_offset_ = lines.offset();
   }
 
@@ -100,9 +91,8 @@ class OctomapGrid final : public VoxelGrid {
       }
       return;
     }
-    if (level == 0) {
-      reader.fail("a node below the last of ", kMapLevels, " levels, before byte offset ", reader.offset());
-    }
+    reader.fail_if(level == 0, "a node below the last of ", kMapLevels, " levels, before byte offset ",
+                   reader.offset());
     const std::int32_t half = std::int32_t{1} << (level - 1);
     for (unsigned octant = 0; octant < 8; ++octant) {
       const Vec3i at{corner.x + ((octant & 1U) != 0 ? half : 0), corner.y + ((octant & 2U) != 0 ? half : 0),

@@ -72,25 +72,21 @@ class OffParser {
 
  private:
   template <class... Pieces>
-  [[noreturn]] void fail(const Pieces&... pieces) const {
-    fail_at_line(words_.line(), pieces...);
+  void fail_if(bool is_wrong, const Pieces&... pieces) const {
+    fail_at_line_if(is_wrong, words_.line(), pieces...);
   }
 
   void header() {
     const std::string_view word = words_.next();
     keyword_ = parse_keyword(word);
-    if (word.empty()) {
-      throw InputError("the file is empty or holds only comments");
-    }
-    if (!keyword_.known) {
-      fail("the file begins with ", quoted(word), ", not with OFF, COFF, NOFF, CNOFF or ST before these");
-    }
+    tools::fail_if(word.empty(), "the file is empty or holds only comments");
+    fail_if(!keyword_.known, "the file begins with ", quoted(word),
+            ", not with OFF, COFF, NOFF, CNOFF or ST before these");
     vertex_count_ = keyword_.count.empty() ? count("vertices") : count("vertices", keyword_.count);
     face_count_ = count("faces");
     count("edges");
-    if (vertex_count_ > kMeshVertexLimit) {
-      fail("the mesh has ", vertex_count_, " vertices, the limit is ", kMeshVertexLimit);
-    }
+    fail_if(vertex_count_ > kMeshVertexLimit, "the mesh has ", vertex_count_, " vertices, the limit is ",
+            kMeshVertexLimit);
     // The shortest vertex is "0 0 0" with what separates it from the next, the shortest face "0".
     check_room(vertex_count_, 6, "vertices");
     check_room(face_count_, 2, "faces");
@@ -108,28 +104,20 @@ class OffParser {
   std::uint64_t count(const char* what) { return count(what, words_.next()); }
   std::uint64_t count(const char* what, std::string_view word) const {
     std::int64_t value = 0;
-    if (word == "BINARY") {
-      fail("binary OFF is not supported");
-    }
-    if (!parse_integer(word, value) || value < 0) {
-      fail("the number of ", what, " is ", quoted(word));
-    }
+    fail_if(word == "BINARY", "binary OFF is not supported");
+    fail_if(!parse_integer(word, value) || value < 0, "the number of ", what, " is ", quoted(word));
     return static_cast<std::uint64_t>(value);
   }
 
   void check_room(std::uint64_t declared, std::uint64_t least_bytes, const char* what) const {
     const std::uint64_t room = (std::uint64_t{words_.remaining()} + 1) / least_bytes;
-    if (declared > room) {
-      throw InputError("the header declares ", declared, " ", what, ", but the file has room for ", room,
-                       " at most");
-    }
+    tools::fail_if(declared > room, "the header declares ", declared, " ", what,
+                   ", but the file has room for ", room, " at most");
   }
 
   double number(const char* what, std::uint64_t vertex) {
     const std::string_view word = words_.next();
-    if (word.empty()) {
-      fail("the file ends in vertex ", vertex, " of ", vertex_count_);
-    }
+    fail_if(word.empty(), "the file ends in vertex ", vertex, " of ", vertex_count_);
     double value = 0;
     if (parse_number(word, value) != NumberKind::kFinite) {
       // The sentence is made only when it is needed: this runs for every coordinate.
@@ -169,11 +157,9 @@ class OffParser {
   std::int64_t integer(std::uint64_t face) {
     const std::string_view word = words_.next();
     std::int64_t value = 0;
-    if (word.empty()) {
-      fail("the file ends in face ", face, " of ", face_count_);
-    }
+    fail_if(word.empty(), "the file ends in face ", face, " of ", face_count_);
     if (!parse_integer(word, value)) {
-      fail(quoted(word), " in face ", face, " is not a whole number");
+      fail_at_line(words_.line(), quoted(word), " in face ", face, " is not a whole number");
     }
     return value;
   }
@@ -182,17 +168,13 @@ class OffParser {
     mesh_.triangles.reserve(static_cast<std::size_t>(face_count_));
     for (std::uint64_t face = 0; face < face_count_; ++face) {
       const std::int64_t corners = integer(face);
-      if (corners < 0) {
-        fail("face ", face, " has ", corners, " corners");
-      }
+      fail_if(corners < 0, "face ", face, " has ", corners, " corners");
       const std::size_t before = mesh_.triangles.size();
       polygons_.begin();
       for (std::int64_t i = 0; i < corners; ++i) {
         const std::int64_t index = integer(face);
-        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
-          fail("face ", face, " has the index ", index, ", which is not one of the ", vertex_count_,
-               " vertices");
-        }
+        fail_if(index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_, "face ", face,
+                " has the index ", index, ", which is not one of the ", vertex_count_, " vertices");
         polygons_.add(static_cast<std::uint32_t>(index));
       }
       const std::array<float, 3> color = is_by_line_ ? face_color() : kNoColor;

@@ -50,9 +50,7 @@ class PcdHeaderParser {
   PcdHeader parse() {
     std::string_view line;
     for (;;) {
-      if (!lines_.next(line)) {
-        throw InputError("the header has no line 'DATA'");
-      }
+      tools::fail_if(!lines_.next(line), "the header has no line 'DATA'");
       const std::string_view word = take_word(line);
       if (word == "DATA") {
         encoding(take_word(line));
@@ -60,9 +58,7 @@ class PcdHeaderParser {
       }
       statement(word, line);
     }
-    if (header_.fields.empty()) {
-      throw InputError("the header has no line 'FIELDS'");
-    }
+    tools::fail_if(header_.fields.empty(), "the header has no line 'FIELDS'");
     header_.data_offset = lines_.offset();
     header_.data_line = lines_.line_number() + 1;
     return std::move(header_);
@@ -79,15 +75,13 @@ class PcdHeaderParser {
     } else if (word == "SIZE") {
       each_field(line, [&](Field& field, std::string_view value) {
         field.type.size_bytes = number(value, 8);
-        if (!std::has_single_bit(field.type.size_bytes)) {
-          fail("the size ", quoted(value), " is not 1, 2, 4 or 8");
-        }
+        fail_if(!std::has_single_bit(field.type.size_bytes), "the size ", quoted(value),
+                " is not 1, 2, 4 or 8");
       });
     } else if (word == "TYPE") {
       each_field(line, [&](Field& field, std::string_view value) {
-        if (value != "F" && value != "U" && value != "I") {
-          fail("the type ", quoted(value), " is not F, U or I");
-        }
+        fail_if(value != "F" && value != "U" && value != "I", "the type ", quoted(value),
+                " is not F, U or I");
         field.type.kind = static_cast<char>(value.front() - 'A' + 'a');
       });
     } else if (word == "COUNT") {
@@ -106,8 +100,9 @@ class PcdHeaderParser {
         parse_number(take_word(line), value);
         header_.is_turned = header_.is_turned || value != still;
       }
-    } else if (!word.empty() && word.front() != '#' && word != "VERSION") {
-      fail(quoted(word), " begins no line of a header");
+    } else {
+      fail_if(!word.empty() && word.front() != '#' && word != "VERSION", quoted(word),
+              " begins no line of a header");
     }
   }
 
@@ -123,21 +118,20 @@ class PcdHeaderParser {
       header_.encoding = PcdEncoding::kBinary;
     } else if (word == "binary_compressed") {
       header_.encoding = PcdEncoding::kCompressed;
-    } else if (word != "ascii") {
-      fail("the data ", quoted(word), " is not ascii, binary or binary_compressed");
+    } else {
+      fail_if(word != "ascii", "the data ", quoted(word), " is not ascii, binary or binary_compressed");
     }
   }
 
   std::uint64_t number(std::string_view word, std::uint64_t most) const {
     std::int64_t value = 0;
-    if (!parse_integer(word, value) || value < 0 || static_cast<std::uint64_t>(value) > most) {
-      fail(quoted(word), " is no whole number from 0 to ", most);
-    }
+    fail_if(!parse_integer(word, value) || value < 0 || static_cast<std::uint64_t>(value) > most,
+            quoted(word), " is no whole number from 0 to ", most);
     return static_cast<std::uint64_t>(value);
   }
   template <class... Pieces>
-  [[noreturn]] void fail(const Pieces&... pieces) const {
-    fail_at_line(lines_.line_number(), pieces...);
+  void fail_if(bool is_wrong, const Pieces&... pieces) const {
+    fail_at_line_if(is_wrong, lines_.line_number(), pieces...);
   }
 
   LineReader lines_;
@@ -148,10 +142,8 @@ class PcdHeaderParser {
 /// of what came already: three bits of length (7: a byte more follows), thirteen of distance.
 std::string unpack_lzf(std::span<const std::uint8_t> packed, std::size_t size) {
   // A copy of three bytes makes at most 264.
-  if (size / 88 > packed.size()) {
-    throw InputError("the compressed data announces ", size, " bytes, which ", packed.size(),
-                     " packed ones cannot hold");
-  }
+  fail_if(size / 88 > packed.size(), "the compressed data announces ", size, " bytes, which ", packed.size(),
+          " packed ones cannot hold");
   ByteReader reader(packed, "the compressed data");
   std::string out;
   out.reserve(size);
@@ -162,20 +154,15 @@ std::string unpack_lzf(std::span<const std::uint8_t> packed, std::size_t size) {
     } else {
       const std::size_t length = 2 + ((control >> 5) == 7 ? 7 + std::size_t{reader.u8()} : control >> 5);
       const std::size_t distance = ((control & 31) << 8 | reader.u8()) + 1;
-      if (distance > out.size()) {
-        reader.fail("a copy at byte ", reader.offset(), " of it reaches before the beginning");
-      }
+      reader.fail_if(distance > out.size(), "a copy at byte ", reader.offset(),
+                     " of it reaches before the beginning");
       for (std::size_t i = 0; i < length; ++i) {
         out.push_back(out[out.size() - distance]);
       }
     }
-    if (out.size() > size) {
-      reader.fail("it holds more than the ", size, " bytes announced");
-    }
+    reader.fail_if(out.size() > size, "it holds more than the ", size, " bytes announced");
   }
-  if (out.size() != size) {
-    reader.fail("it holds ", out.size(), " bytes, not the ", size, " announced");
-  }
+  reader.fail_if(out.size() != size, "it holds ", out.size(), " bytes, not the ", size, " announced");
   return out;
 }
 
@@ -198,17 +185,14 @@ class PcdCloud final : public PointCloud {
       ByteReader data(file.bytes.subspan(data_offset_), "the compressed data", data_offset_);
       const std::uint32_t packed_bytes = data.u32();
       const std::uint32_t size_bytes = data.u32();
-      if (count_ != size_bytes / record_ || size_bytes % record_ != 0) {
-        throw InputError("the header counts ", count_, " points of ", record_,
-                         " bytes, but the compressed data announces ", size_bytes, " bytes");
-      }
+      fail_if(count_ != size_bytes / record_ || size_bytes % record_ != 0, "the header counts ", count_,
+              " points of ", record_, " bytes, but the compressed data announces ", size_bytes, " bytes");
       file_ = SharedBytes::own(unpack_lzf(data.take(packed_bytes), size_bytes));
       data_offset_ = 0;
     }
     const std::uint64_t room = (file_.bytes.size() - data_offset_ + (is_text_ ? 1 : 0)) / record_;
-    if (count_ > room) {
-      throw InputError("the header counts ", count_, " points, but the file has room for ", room, " at most");
-    }
+    fail_if(count_ > room, "the header counts ", count_, " points, but the file has room for ", room,
+            " at most");
     ProgressMeter meter(progress, file.bytes.size());
     std::uint64_t finite = 0;
     walk(
@@ -219,12 +203,8 @@ class PcdCloud final : public PointCloud {
           }
         },
         meter);
-    if (finite == 0) {
-      throw InputError(count_ == 0 ? "the header counts no points" : "no point of the file is finite");
-    }
-    if (has_parts_ && !scale_.is_valid()) {
-      throw InputError("the fields r, g and b hold values that are no colors");
-    }
+    fail_if(finite == 0, count_ == 0 ? "the header counts no points" : "no point of the file is finite");
+    fail_if(has_parts_ && !scale_.is_valid(), "the fields r, g and b hold values that are no colors");
     note_left_out(notes, count_ - finite);
     if (header.is_turned) {
       notes.emplace_back("its points are drawn as the sensor saw them, without the header's VIEWPOINT");
@@ -250,9 +230,7 @@ class PcdCloud final : public PointCloud {
   using Components = std::array<double, 3>;
 
   void count_points(const PcdHeader& header) {
-    if (!header.points && !header.width) {
-      throw InputError("the header has no line 'POINTS' or 'WIDTH'");
-    }
+    fail_if(!header.points && !header.width, "the header has no line 'POINTS' or 'WIDTH'");
     count_ = header.points.value_or(header.width.value_or(0) * header.height.value_or(1));
   }
 
@@ -272,17 +250,13 @@ class PcdCloud final : public PointCloud {
           columns_[i].first = is_text_ ? values : bytes;
         }
       }
-      if (field.type.kind == 'f' && field.type.size_bytes < 4) {
-        throw InputError("the field ", quoted(field.name), " is of floats of ", field.type.size_bytes,
-                         " bytes, which there are not");
-      }
+      fail_if(field.type.kind == 'f' && field.type.size_bytes < 4, "the field ", quoted(field.name),
+              " is of floats of ", field.type.size_bytes, " bytes, which there are not");
       bytes += field.type.size_bytes * field.count;
       values += field.count;
     }
     for (std::size_t i = 0; i < kColor; ++i) {
-      if (!found[i]) {
-        throw InputError("no field of the header is named ", kNames[i]);
-      }
+      fail_if(!found[i], "no field of the header is named ", kNames[i]);
     }
     has_color_ = found[kColor];
     has_parts_ = !has_color_ && found[kParts] && found[kParts + 1] && found[kParts + 2];
@@ -336,9 +310,7 @@ class PcdCloud final : public PointCloud {
       last = std::max(last, column.first);
     }
     for (std::uint64_t done = 0; done < count_;) {
-      if (!lines.next(line)) {
-        throw InputError("the header counts ", count_, " points, but the file holds ", done);
-      }
+      fail_if(!lines.next(line), "the header counts ", count_, " points, but the file holds ", done);
       meter.at(data_offset_ + lines.offset());
       std::array<std::string_view, kUsed> words;
       std::uint64_t at = 0;
@@ -353,9 +325,7 @@ class PcdCloud final : public PointCloud {
       }
       ++done;
       const std::uint64_t line_number = data_line_ + lines.line_number() - 1;
-      if (at <= last) {
-        fail_at_line(line_number, at, " values, but the fields of the header take more");
-      }
+      fail_at_line_if(at <= last, line_number, at, " values, but the fields of the header take more");
       give(
           line_number, [&](std::size_t column) { return number(words[column], line_number); },
           [&] { return written_color(words[kColor], line_number); }, take);

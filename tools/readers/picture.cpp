@@ -96,21 +96,16 @@ std::shared_ptr<std::uint8_t> decode_picture(std::span<const std::uint8_t> encod
   std::shared_ptr<std::uint8_t> decoded(
       stbi_load_from_memory(encoded.data(), counted(encoded), &width, &height, &in_file, channels),
       free_block);
-  if (decoded == nullptr) {
-    throw InputError(place, "is damaged: ", stbi_failure_reason());
-  }
+  fail_if(decoded == nullptr, place, "is damaged: ", stbi_failure_reason());
   return decoded;
 }
 
 Image read_picture(const std::string& path, std::int32_t width_px, std::int32_t height_px) {
   const SharedBytes file = load_file(path, std::uint64_t{256} << 20);
   const auto [width, height] = picture_size(file.bytes);
-  if (width < 1 || height < 1) {
-    throw InputError("is no PNG, JPEG, PPM or PGM");
-  }
-  if (width != width_px || height != height_px) {
-    throw InputError("is ", width, " x ", height, " pixels, not ", width_px, " x ", height_px);
-  }
+  fail_if(width < 1 || height < 1, "is no PNG, JPEG, PPM or PGM");
+  fail_if(width != width_px || height != height_px, "is ", width, " x ", height, " pixels, not ", width_px,
+          " x ", height_px);
   const std::shared_ptr<std::uint8_t> pixels = decode_picture(file.bytes, 3);
   Image image{width, height, PixelFormat::kRgb888, {}};
   image.pixels.assign(pixels.get(),

@@ -43,7 +43,7 @@ bool is_splat(const PlyElement& element) {
 //   least_bytes(...)    the fewest bytes a record of an element can take
 //   begin(element), end_record()   what comes next is an element's records; one of them ends
 //   finish(notes)       says what stands behind all of them
-//   fail(sentence)      throws with the place of the value read last
+//   fail_if(is_wrong, sentence)   throws with the place of the value read last
 // and are copyable marks of their own position.
 
 class AsciiBody {
@@ -57,16 +57,11 @@ class AsciiBody {
 
   double scalar(const NumberType&) {
     const std::string_view word = next();
-    double value = 0;
-    switch (parse_number(word, value)) {
-      case NumberKind::kFinite:
-        return value;
-      case NumberKind::kNotFinite:
-        return std::numeric_limits<double>::quiet_NaN();
-      case NumberKind::kGarbage:
-        break;
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (parse_number(word, value) == NumberKind::kGarbage) {
+      fail_at_line(words_.line(), quoted(word), " is not a number");
     }
-    fail(quoted(word), " is not a number");
+    return value;
   }
   void skip(const NumberType&, std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -80,8 +75,8 @@ class AsciiBody {
   std::size_t offset() const { return start_ + words_.offset(); }
   std::uint64_t line() const { return words_.line(); }
   template <class... Pieces>
-  [[noreturn]] void fail(const Pieces&... pieces) const {
-    fail_at_line(words_.line(), pieces...);
+  void fail_if(bool is_wrong, const Pieces&... pieces) const {
+    fail_at_line_if(is_wrong, words_.line(), pieces...);
   }
   /// Decides whether each of the element's records is a line.
   void begin(const PlyElement& element) {
@@ -124,9 +119,7 @@ class AsciiBody {
  private:
   std::string_view next() {
     const std::string_view word = words_.next();
-    if (word.empty()) {
-      fail("the file ends before all that the header declares");
-    }
+    fail_if(word.empty(), "the file ends before all that the header declares");
     return word;
   }
 
@@ -150,9 +143,8 @@ class BinaryBody {
     return load_number(&bytes_[next_ - type.size_bytes], type, big_endian_);
   }
   void skip(const NumberType& type, std::uint64_t count) {
-    if (count > remaining() / type.size_bytes) {
-      throw InputError("after byte offset ", next_, ": the file ends before all that the header declares");
-    }
+    tools::fail_if(count > remaining() / type.size_bytes, "after byte offset ", next_,
+                   ": the file ends before all that the header declares");
     next_ += static_cast<std::size_t>(count) * type.size_bytes;
   }
   static std::uint64_t least_bytes(const PlyElement& element) {
@@ -167,8 +159,8 @@ class BinaryBody {
   std::size_t offset() const { return next_; }
   static std::uint64_t line() { return 0; }
   template <class... Pieces>
-  [[noreturn]] void fail(const Pieces&... pieces) const {
-    throw InputError("before byte offset ", next_, ": ", pieces...);
+  void fail_if(bool is_wrong, const Pieces&... pieces) const {
+    tools::fail_if(is_wrong, "before byte offset ", next_, ": ", pieces...);
   }
   static void begin(const PlyElement&) {}
   static void end_record() {}
@@ -194,14 +186,12 @@ void begin_element(Body& body, const PlyElement& element) {
 template <class Body>
 std::uint64_t list_length(Body& body, const PlyProperty& property) {
   const double length = body.scalar(property.count_type);
-  if (!(length >= 0) || length != std::floor(length)) {
-    body.fail("the length of a list is not a whole number from 0 on");
-  }
+  body.fail_if(!(length >= 0) || length != std::floor(length),
+               "the length of a list is not a whole number from 0 on");
   const std::uint64_t most = body.remaining() / Body::least_bytes(property.type);
-  if (length > static_cast<double>(most)) {
-    body.fail("a list of ", static_cast<std::uint64_t>(std::min(length, 1e18)),
-              " entries is longer than the rest of the file");
-  }
+  body.fail_if(length > static_cast<double>(most), "a list of ",
+               static_cast<std::uint64_t>(std::min(length, 1e18)),
+               " entries is longer than the rest of the file");
   return static_cast<std::uint64_t>(length);
 }
 
@@ -310,10 +300,9 @@ template <class Body>
 std::int64_t read_index(Body& body, const NumberType& type, std::int64_t lowest, std::uint64_t vertex_count,
                         const PlyElement& element, std::uint64_t record) {
   const double value = body.scalar(type);
-  if (!(value >= static_cast<double>(lowest) && value < static_cast<double>(vertex_count)) ||
-      value != std::floor(value)) {
-    body.fail(element.name, " ", record, " has an index that is not one of the ", vertex_count, " vertices");
-  }
+  body.fail_if(!(value >= static_cast<double>(lowest) && value < static_cast<double>(vertex_count)) ||
+                   value != std::floor(value),
+               element.name, " ", record, " has an index that is not one of the ", vertex_count, " vertices");
   return static_cast<std::int64_t>(value);
 }
 
@@ -472,9 +461,8 @@ void add_faces(Body& body, const PlyElement& element, const PlyHeader& header, c
 template <class Body>
 TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& vertices,
                        const ReadOptions& options, ProgressMeter& meter) {
-  if (vertices.count > kMeshVertexLimit) {
-    throw InputError("the mesh has ", vertices.count, " vertices, the limit is ", kMeshVertexLimit);
-  }
+  fail_if(vertices.count > kMeshVertexLimit, "the mesh has ", vertices.count, " vertices, the limit is ",
+          kMeshVertexLimit);
   TriangleMesh mesh;
   Polygons polygons(mesh);
   for (const PlyElement& element : header.elements) {
@@ -488,9 +476,7 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
       Body first = body;
       ColorParts parts(element, options);
       read_vertices(body, element, meter, [&](const PlyVertex& vertex) {
-        if (!vertex.is_finite()) {
-          body.fail("a coordinate of vertex ", mesh.positions.size(), " is not finite");
-        }
+        body.fail_if(!vertex.is_finite(), "a coordinate of vertex ", mesh.positions.size(), " is not finite");
         parts.see(vertex);
         mesh.positions.push_back(vertex.position());
         if (has_places) {
@@ -540,10 +526,8 @@ class PlyCloud final : public PointCloud {
         parts_.see(vertex);
       }
     });
-    if (drawn == 0) {
-      throw InputError(finite == 0 ? "no vertex of the file is finite"
-                                   : "all splats of the file are nearly clear");
-    }
+    fail_if(drawn == 0,
+            finite == 0 ? "no vertex of the file is finite" : "all splats of the file are nearly clear");
     note_left_out(notes, vertices_.count - finite);
     parts_.add_note(notes);
     if (is_splat(vertices_)) {
@@ -597,13 +581,9 @@ Source read_body(const SharedBytes& file, const ReadOptions& options, const PlyH
     }
     has_polygons = has_polygons || holds_polygons(element);
   }
-  if (vertices == nullptr || vertices->count == 0) {
-    throw InputError("the file holds no vertices");
-  }
+  fail_if(vertices == nullptr || vertices->count == 0, "the file holds no vertices");
   for (const PlyRole role : {PlyRole::kX, PlyRole::kY, PlyRole::kZ}) {
-    if (!has_role(*vertices, role)) {
-      throw InputError("element 'vertex' has no property x, y or z that is a number");
-    }
+    fail_if(!has_role(*vertices, role), "element 'vertex' has no property x, y or z that is a number");
   }
   ProgressMeter meter(progress, file.bytes.size());
   Body body(file, header);

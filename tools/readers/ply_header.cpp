@@ -82,15 +82,12 @@ class PlyHeaderParser {
   explicit PlyHeaderParser(std::string_view text) : text_(text), lines_(text) {}
 
   PlyHeader parse() {
-    if (!looks_like_ply({reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size()})) {
-      throw InputError("the first line is not 'ply'");
-    }
+    const bool is_ply = looks_like_ply({reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size()});
+    tools::fail_if(!is_ply, "the first line is not 'ply'");
     std::string_view line;
     lines_.next(line);
     for (;;) {
-      if (!lines_.next(line)) {
-        throw InputError("the header has no line 'end_header'");
-      }
+      tools::fail_if(!lines_.next(line), "the header has no line 'end_header'");
       const std::string_view word = take_word(line);
       if (word == "end_header") {
         break;
@@ -107,9 +104,7 @@ class PlyHeaderParser {
         }
       }
     }
-    if (!has_format_) {
-      throw InputError("the header has no line 'format'");
-    }
+    tools::fail_if(!has_format_, "the header has no line 'format'");
     header_.body_offset = lines_.offset();
     header_.body_line = lines_.line_number() + 1;
     // A binary body may begin with a byte that looks like the second half of a CRLF; only a header written
@@ -123,8 +118,8 @@ class PlyHeaderParser {
 
  private:
   template <class... Pieces>
-  [[noreturn]] void fail(const Pieces&... pieces) const {
-    fail_at_line(lines_.line_number(), pieces...);
+  void fail_if(bool is_wrong, const Pieces&... pieces) const {
+    fail_at_line_if(is_wrong, lines_.line_number(), pieces...);
   }
 
   void format(std::string_view line) {
@@ -136,7 +131,7 @@ class PlyHeaderParser {
     } else if (word == "binary_big_endian") {
       header_.encoding = PlyEncoding::kBigEndian;
     } else {
-      fail("the format ", quoted(word), " is not ascii, binary_little_endian or binary_big_endian");
+      fail_if(true, "the format ", quoted(word), " is not ascii, binary_little_endian or binary_big_endian");
     }
     has_format_ = true;
   }
@@ -145,49 +140,39 @@ class PlyHeaderParser {
     const std::string_view name = take_word(line);
     const std::string_view count = take_word(line);
     std::int64_t value = 0;
-    if (name.empty() || !parse_integer(count, value) || value < 0) {
-      fail("element ", quoted(name), " has the count ", quoted(count), ", which is no number of elements");
-    }
+    fail_if(name.empty() || !parse_integer(count, value) || value < 0, "element ", quoted(name),
+            " has the count ", quoted(count), ", which is no number of elements");
     PlyElement added;
     added.name = name;
     added.kind = kind_named(name);
     added.count = static_cast<std::uint64_t>(value);
     if (added.kind != PlyElementKind::kOther) {
       for (const PlyElement& other : header_.elements) {
-        if (other.kind == added.kind) {
-          fail("element ", quoted(name), " is declared twice");
-        }
+        fail_if(other.kind == added.kind, "element ", quoted(name), " is declared twice");
       }
     }
     header_.elements.push_back(std::move(added));
   }
 
   void property(std::string_view line) {
-    if (header_.elements.empty()) {
-      fail("a property comes before the first element");
-    }
+    fail_if(header_.elements.empty(), "a property comes before the first element");
     PlyElement& element = header_.elements.back();
     PlyProperty added;
     std::string_view word = take_word(line);
     if (word == "list") {
       added.is_list = true;
       added.count_type = type(take_word(line));
-      if (added.count_type.kind == 'f') {
-        fail("the length of a list cannot be of type float or double");
-      }
+      fail_if(added.count_type.kind == 'f', "the length of a list cannot be of type float or double");
       word = take_word(line);
     }
     added.type = type(word);
     const std::string_view name = take_word(line);
-    if (name.empty()) {
-      fail("a property has no name");
-    }
+    fail_if(name.empty(), "a property has no name");
     added.role = role_of(element.kind, name, added.is_list);
     added.is_harmonic = is_splat(name);
     if (added.role != PlyRole::kUnused && has_role(element, added.role)) {
-      if (added.role <= PlyRole::kZ || added.role == PlyRole::kIndices) {
-        fail("property ", quoted(name), " is declared twice");
-      }
+      fail_if(added.role <= PlyRole::kZ || added.role == PlyRole::kIndices, "property ", quoted(name),
+              " is declared twice");
       added.is_harmonic = false;
       added.role = PlyRole::kUnused;  // A second set of colours; the first one counts.
     }
@@ -196,9 +181,7 @@ class PlyHeaderParser {
 
   NumberType type(std::string_view name) const {
     const std::optional<NumberType> found = type_named(name);
-    if (!found) {
-      fail("the type ", quoted(name), " is unknown");
-    }
+    fail_if(!found, "the type ", quoted(name), " is unknown");
     return *found;
   }
 

@@ -59,9 +59,8 @@ class QubicleGrid final : public VoxelGrid {
   static constexpr std::uint64_t kMostCells = std::uint64_t{1} << 28;
 
   void read_binary(ByteReader& reader) {
-    if (file_.bytes.size() < 4 || reader.u32() != kVersion) {
-      throw InputError("is not a Qubicle file of version 1.1: it does not begin with the bytes 1, 1, 0, 0");
-    }
+    fail_if(file_.bytes.size() < 4 || reader.u32() != kVersion,
+            "is not a Qubicle file of version 1.1: it does not begin with the bytes 1, 1, 0, 0");
     is_bgra_ = flag(reader, "color format");
     is_left_handed_ = !flag(reader, "z axis");
     is_packed_ = flag(reader, "compression");
@@ -83,9 +82,9 @@ class QubicleGrid final : public VoxelGrid {
   void read_project(ByteReader& reader) {
     reader.expect("QBCL", "Qubicle project");
     reader.skip(4);  // the program's version
-    if (const std::uint32_t version = reader.u32(); version != kProjectVersion) {
-      reader.fail("version ", version, " of Qubicle's projects is not read, only 2 is");
-    }
+    const std::uint32_t version = reader.u32();
+    reader.fail_if(version != kProjectVersion, "version ", version,
+                   " of Qubicle's projects is not read, only 2 is");
     const std::uint64_t thumbnail_width = reader.u32();
     reader.skip(4 * thumbnail_width * reader.u32());
     for (int i = 0; i < 7; ++i) {
@@ -132,10 +131,8 @@ class QubicleGrid final : public VoxelGrid {
     Matrix matrix;
     for (std::uint32_t& side : matrix.size) {
       side = reader.u32();
-      if (side > kGridSideLimit) {
-        reader.fail("matrix ", matrices_.size(), " has a side of ", side, " voxels, the limit is ",
-                    kGridSideLimit);
-      }
+      reader.fail_if(side > kGridSideLimit, "matrix ", matrices_.size(), " has a side of ", side,
+                     " voxels, the limit is ", kGridSideLimit);
     }
     for (std::int64_t& coordinate : matrix.position) {
       coordinate = reader.i32();
@@ -149,9 +146,7 @@ class QubicleGrid final : public VoxelGrid {
     if (is_packed_) {
       // What a run repeats costs no byte, but time.
       cells_ += std::uint64_t{matrix.size[0]} * std::max(matrix.size[1], 1U) * matrix.size[2];
-      if (cells_ > kMostCells) {
-        reader.fail("the matrices have more cells than the limit of ", kMostCells);
-      }
+      reader.fail_if(cells_ > kMostCells, "the matrices have more cells than the limit of ", kMostCells);
     }
     walk(matrix, reader, [](auto, auto, auto, auto) {});
     matrices_.push_back(matrix);
@@ -159,9 +154,7 @@ class QubicleGrid final : public VoxelGrid {
 
   static bool flag(ByteReader& reader, const char* what) {
     const std::uint32_t value = reader.u32();
-    if (value > 1) {
-      reader.fail("the ", what, " is ", value, ", not 0 or 1");
-    }
+    reader.fail_if(value > 1, "the ", what, " is ", value, ", not 0 or 1");
     return value == 1;
   }
 
@@ -197,9 +190,8 @@ class QubicleGrid final : public VoxelGrid {
           bits = groups.u32();
           --left;
         }
-        if (times > matrix.size[1] - y) {
-          groups.fail("column ", x, ",", z, " holds more than its ", matrix.size[1], " voxels");
-        }
+        groups.fail_if(times > matrix.size[1] - y, "column ", x, ",", z, " holds more than its ",
+                       matrix.size[1], " voxels");
         for (const std::uint32_t end = y + times; y < end; ++y) {
           if (bits >> 24 != 0) {
             take(x, y, z, bits);
@@ -221,9 +213,7 @@ class QubicleGrid final : public VoxelGrid {
     };
     for (std::uint32_t z = 0; z < matrix.size[2]; ++z) {
       if (!is_packed_) {
-        if (reader.remaining() / 4 < slice) {
-          reader.fail("the file ends in slice ", z, " of ", matrix.size[2]);
-        }
+        reader.fail_if(reader.remaining() / 4 < slice, "the file ends in slice ", z, " of ", matrix.size[2]);
         for (std::uint64_t index = 0; index < slice; ++index) {
           put(index, z, reader.u32());
         }
@@ -233,10 +223,8 @@ class QubicleGrid final : public VoxelGrid {
       for (std::uint32_t code = reader.u32(); code != kNextSliceFlag; code = reader.u32()) {
         const std::uint32_t times = code == kRunFlag ? reader.u32() : 1;
         const std::uint32_t bits = code == kRunFlag ? reader.u32() : code;
-        if (times > slice - index) {
-          reader.fail("slice ", z, " holds more than its ", slice, " voxels, before byte offset ",
-                      reader.offset());
-        }
+        reader.fail_if(times > slice - index, "slice ", z, " holds more than its ", slice,
+                       " voxels, before byte offset ", reader.offset());
         for (const std::uint64_t end = index + times; index < end; ++index) {
           put(index, z, bits);
         }
@@ -258,15 +246,12 @@ class QubicleGrid final : public VoxelGrid {
       }
       any = true;
     }
-    if (!any) {
-      throw InputError("the file holds no voxels");
-    }
+    fail_if(!any, "the file holds no voxels");
     constexpr std::array<std::size_t, 3> kTurned{0, 2, 1};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t side = high[axis] - low_[axis];
-      if (side > std::int64_t{kGridSideLimit}) {
-        throw InputError("the matrices reach over ", side, " voxels, the limit is ", kGridSideLimit);
-      }
+      fail_if(side > std::int64_t{kGridSideLimit}, "the matrices reach over ", side, " voxels, the limit is ",
+              kGridSideLimit);
       size_[kTurned[axis]] = static_cast<std::int32_t>(side);
     }
     check_solid("the file holds no voxels");

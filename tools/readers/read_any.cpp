@@ -30,9 +30,7 @@ ZipMember scene_member(const SharedBytes& file) {
   if (scenes.size() == 1) {
     return scenes[0];
   }
-  if (scenes.empty()) {
-    throw InputError("the archive holds no scene");
-  }
+  fail_if(scenes.empty(), "the archive holds no scene");
   throw InputError("the archive holds ", scenes.size(), " scenes, ", quoted(scenes[0].name), " and ",
                    quoted(scenes[1].name), scenes.size() > 2 ? " among them" : "",
                    "; unpack the one that is meant");
@@ -85,10 +83,8 @@ bool has_ending(std::string_view path, std::string_view ending) {
 
 const ReaderRow& row_for(std::string_view path, std::span<const std::uint8_t> bytes) {
   const ReaderRow* row = find_reader(path, bytes);
-  if (row == nullptr) {
-    throw InputError(
-        "neither the name nor the contents tell what this file is; thimble info --help lists what is read");
-  }
+  fail_if(row == nullptr,
+          "neither the name nor the contents tell what this file is; thimble info --help lists what is read");
   return *row;
 }
 
@@ -97,9 +93,8 @@ void check_text(std::span<const std::uint8_t> first, const char* name) {
   refuse_zero_bytes(first, name);
   const bool is_blank = std::all_of(first.begin(), first.end(),
                                     [](std::uint8_t byte) { return is_space(static_cast<char>(byte)); });
-  if (is_blank && first.size() >= kFirstLookBytes) {
-    throw InputError("begins with ", first.size(), " blanks and empty lines, and no text");
-  }
+  fail_if(is_blank && first.size() >= kFirstLookBytes, "begins with ", first.size(),
+          " blanks and empty lines, and no text");
 }
 
 }  // namespace
@@ -143,19 +138,15 @@ void check_beginning(std::string_view path, std::span<const std::uint8_t> first)
 
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress) {
   const ReaderRow& row = row_for(options.path, file.bytes);
-  if (options.frame && row.read != read_vox && row.read != read_zip) {
-    throw InputError("--frame and --frames are for .vox files with frames, and this is a ", row.name);
-  }
-  if (options.as != ArrayAs::kByShape && row.read != read_npy && row.read != read_zip) {
-    throw InputError("--as-points and --as-heights are for .npy and .npz, and this is a ", row.name);
-  }
+  fail_if(options.frame && row.read != read_vox && row.read != read_zip,
+          "--frame and --frames are for .vox files with frames, and this is a ", row.name);
+  fail_if(options.as != ArrayAs::kByShape && row.read != read_npy && row.read != read_zip,
+          "--as-points and --as-heights are for .npy and .npz, and this is a ", row.name);
   constexpr std::array kColorGuessers{read_las, read_npy, read_obj, read_off,
                                       read_pcd, read_ply, read_xyz, read_zip};
-  if (options.full_color != 0 &&
-      std::find(kColorGuessers.begin(), kColorGuessers.end(), row.read) == kColorGuessers.end()) {
-    throw InputError("--colors is for formats that do not say what a full color is, and this is a ",
-                     row.name);
-  }
+  fail_if(options.full_color != 0 &&
+              std::find(kColorGuessers.begin(), kColorGuessers.end(), row.read) == kColorGuessers.end(),
+          "--colors is for formats that do not say what a full color is, and this is a ", row.name);
   Source source = row.read(file, options, progress);
   if (progress) {
     progress(1);

@@ -42,20 +42,15 @@ int find(const SceneText& scene, std::string_view name) {
 
 std::size_t named_material(TextLine& line, const SceneText& scene, const char* what) {
   const Word word = line.word();
-  if (word.empty()) {
-    fail_at(word.place, what, " needs the name of a material");
-  }
+  fail_if(word.empty(), word.place, what, " needs the name of a material");
   const int found = find(scene, word.text);
-  if (found < 0) {
-    fail_at(word.place, "there is no material ", quoted(word.text), " above this line");
-  }
+  fail_if(found < 0, word.place, "there is no material ", quoted(word.text), " above this line");
   return static_cast<std::size_t>(found);
 }
 
 SceneText::Part& add_part(SceneText* scene, SceneText::PartKind kind, TextPlace place) {
-  if (scene->parts.size() == kSceneTextParts) {
-    fail_at(place, "there are more models, boxes and balls than the limit of ", grouped(kSceneTextParts));
-  }
+  fail_if(scene->parts.size() == kSceneTextParts, place,
+          "there are more models, boxes and balls than the limit of ", grouped(kSceneTextParts));
   SceneText::Part& part = scene->parts.emplace_back();
   part.kind = kind;
   part.place = place;
@@ -81,15 +76,12 @@ void replace(TextLine& line, const SceneText& scene, SceneText::Part* part, Repl
   const Word which = line.word();
   const bool is_all = which.text == "all";
   std::int64_t number = 0;
-  if (!is_all && (!parse_integer(which.text, number) || number < 0 || number > 255)) {
-    fail_at(which.place, "replace needs a palette index from 0 to 255, or all",
-            which.empty() ? std::string() : ", not " + quoted(which.text));
-  }
+  fail_if(!is_all && (!parse_integer(which.text, number) || number < 0 || number > 255), which.place,
+          "replace needs a palette index from 0 to 255, or all",
+          which.empty() ? std::string() : ", not " + quoted(which.text));
   const auto index = static_cast<std::size_t>(number);
   bool& is_done = is_all ? so_far->all : so_far->done[index];
-  if (is_done) {
-    fail_at(which.place, "replace ", which.text, " is said twice in this model");
-  }
+  fail_if(is_done, which.place, "replace ", which.text, " is said twice in this model");
   is_done = true;
   const auto material = static_cast<std::int16_t>(named_material(line, scene, "replace"));
   part->replaces = true;
@@ -127,32 +119,24 @@ void water(TextLine& line, TextPlace place, SceneText* scene) {
   if (clauses.has("from") || clauses.has("to")) {
     clauses.need("to");
     clauses.need("from");
-    if (plan[0] >= plan[2] || plan[1] >= plan[3]) {
-      fail_at(place, "water from ", plan[0], " ", plan[1], " to ", plan[2], " ", plan[3], " holds no column");
-    }
+    fail_if(plan[0] >= plan[2] || plan[1] >= plan[3], place, "water from ", plan[0], " ", plan[1], " to ",
+            plan[2], " ", plan[3], " holds no column");
     area.from_to = plan;
   }
   area.level_q8 = to_fixed(level, Q8::kOne);
-  if (area.level_q8 <= area.floor * Q8::kOne) {
-    fail_at(level_place, "the level of the water is not above its floor at ", area.floor);
-  }
+  fail_if(area.level_q8 <= area.floor * Q8::kOne, level_place,
+          "the level of the water is not above its floor at ", area.floor);
   scene->water = area;
 }
 
 void material(TextLine& line, TextPlace place, SceneText* scene) {
-  if (scene->materials.size() == kSceneTextMaterials) {
-    fail_at(place, "there are more materials than the limit of ", kSceneTextMaterials);
-  }
+  fail_if(scene->materials.size() == kSceneTextMaterials, place,
+          "there are more materials than the limit of ", kSceneTextMaterials);
   const Word name = line.word();
-  if (name.empty()) {
-    fail_at(name.place, "material needs a name");
-  }
-  if (name.text.empty() || std::any_of(name.text.begin(), name.text.end(), is_space)) {
-    fail_at(name.place, "a material's name is one word");
-  }
-  if (find(*scene, name.text) >= 0) {
-    fail_at(name.place, "there is a material ", quoted(name.text), " already");
-  }
+  fail_if(name.empty(), name.place, "material needs a name");
+  fail_if(name.text.empty() || std::any_of(name.text.begin(), name.text.end(), is_space), name.place,
+          "a material's name is one word");
+  fail_if(find(*scene, name.text) >= 0, name.place, "there is a material ", quoted(name.text), " already");
   SceneText::NamedSurface result;
   result.name = name.text;
   result.place = name.place;
@@ -162,9 +146,7 @@ void material(TextLine& line, TextPlace place, SceneText* scene) {
   bool has_kind = false;
   for (std::size_t kind = 0; kind < kThingKinds.size(); ++kind) {
     known.push_back({kThingKinds[kind], [&, kind](const Word& word) {
-                       if (has_kind) {
-                         fail_at(word.place, "a material has one kind; there is one already");
-                       }
+                       fail_if(has_kind, word.place, "a material has one kind; there is one already");
                        has_kind = true;
                        surface.kind = static_cast<SurfaceKind>(kind);
                      }});
@@ -216,9 +198,7 @@ void ball(TextLine& line, TextPlace place, SceneText* scene) {
 void model(TextLine& line, TextPlace place, SceneText* scene) {
   SceneText::Part& part = add_part(scene, SceneText::PartKind::kModel, place);
   const Word file = line.word();
-  if (file.text.empty()) {
-    fail_at(file.place, "model needs the name of a file or a generator");
-  }
+  fail_if(file.text.empty(), file.place, "model needs the name of a file or a generator");
   part.file = file.text;
   part.file_place = file.place;
   part.replaced.fill(-1);
@@ -275,16 +255,12 @@ struct Tinted {
 std::array<double, 3> direction(TextLine& line, const Word& word) {
   const std::string name(word.text);
   const std::array<double, 3> result = line.three_reals(name, -kMostDirection, kMostDirection);
-  if (largest(result) == 0) {
-    fail_at(word.place, name, " 0 0 0 has no direction");
-  }
+  fail_if(largest(result) == 0, word.place, name, " 0 0 0 has no direction");
   return result;
 }
 
 void read_light(TextLine& line, TextPlace place, SceneText* scene, bool is_point) {
-  if (scene->lights.size() == kMaxLights) {
-    fail_at(place, "there are more lights than the limit of ", kMaxLights);
-  }
+  fail_if(scene->lights.size() == kMaxLights, place, "there are more lights than the limit of ", kMaxLights);
   Clauses clauses(is_point ? "lamp" : "sun", &line);
   Light light;
   light.is_point = is_point;
@@ -319,9 +295,8 @@ void camera(TextLine& line, TextPlace place, SceneText* scene) {
   std::array<double, 3> target{};
   std::array<double, 3> up{};
   const auto check_projection = [&](const Word& word) {
-    if (clauses.has("fov") && clauses.has("span")) {
-      fail_at(word.place, "fov is for perspective and span for parallel rays: there is one or the other");
-    }
+    fail_if(clauses.has("fov") && clauses.has("span"), word.place,
+            "fov is for perspective and span for parallel rays: there is one or the other");
   };
   clauses.read({
       {"eye", [&](const Word&) { eye = line.three_reals("eye", -kFar, kFar); }},
@@ -344,9 +319,7 @@ void camera(TextLine& line, TextPlace place, SceneText* scene) {
   const Real3 forward = minus(target, eye);
   result.eye = to_q8(eye);
   result.target = to_q8(target);
-  if (largest(forward) == 0) {
-    fail_at(place, "eye and target of the camera are the same point");
-  }
+  fail_if(largest(forward) == 0, place, "eye and target of the camera are the same point");
   result.forward = to_integers(forward, kMaxViewComponent);
   result.up = largest(up) == 0 ? Vec3i{} : to_integers(up, kMaxViewComponent);
   scene->camera = result;
@@ -396,9 +369,8 @@ void occlusion(TextLine& line, TextPlace, SceneText* scene) {
       .read({{"rays",
               [&](const Word& word) {
                 const std::int32_t rays = line.whole("rays", 4, 32);
-                if (rays != 4 && rays != 8 && rays != 16 && rays != 32) {
-                  fail_at(word.place, "rays is ", rays, ", it must be 4, 8, 16 or 32");
-                }
+                fail_if(rays != 4 && rays != 8 && rays != 16 && rays != 32, word.place, "rays is ", rays,
+                        ", it must be 4, 8, 16 or 32");
                 result.rays = static_cast<std::uint8_t>(rays);
               }},
              {"reach",
@@ -409,9 +381,8 @@ void occlusion(TextLine& line, TextPlace, SceneText* scene) {
 void effects(TextLine& line, TextPlace, SceneText* scene) {
   constexpr EffectSet kEffectsOfLight = Effect::kShadows | Effect::kEmitterLight;
   const Word which = line.word();
-  if (which.text != "on" && which.text != "off") {
-    fail_at(which.place, "effects needs on or off", which.empty() ? "" : ", not " + quoted(which.text));
-  }
+  fail_if(which.text != "on" && which.text != "off", which.place, "effects needs on or off",
+          which.empty() ? "" : ", not " + quoted(which.text));
   EffectSet& set = which.text == "on" ? scene->on : scene->off;
   bool any = false;
   for (; !any || !line.at_end(); any = true) {
@@ -423,19 +394,13 @@ void effects(TextLine& line, TextPlace, SceneText* scene) {
       found |= name == word.text ? EffectSet{1} << bit : Effect::kNone;
       known += (bit == 0 ? "" : ", ") + std::string(name);
     }
-    if (found == Effect::kNone) {
-      fail_at(word.place,
-              word.empty() ? "the name of an effect is missing" : quoted(word.text) + " is no effect",
-              "; there are ", known);
-    }
-    if (((scene->on | scene->off) & found) != 0) {
-      fail_at(word.place, word.text, " is turned on or off twice");
-    }
+    fail_if(found == Effect::kNone, word.place,
+            word.empty() ? "the name of an effect is missing" : quoted(word.text) + " is no effect",
+            "; there are ", known);
+    fail_if(((scene->on | scene->off) & found) != 0, word.place, word.text, " is turned on or off twice");
     set |= found;
-    if ((scene->off & Effect::kDirectLight) != 0 && (scene->on & kEffectsOfLight) != 0) {
-      fail_at(word.place,
-              "without direct-light there are no shadows and no emitter-light: one is on, the other off");
-    }
+    fail_if((scene->off & Effect::kDirectLight) != 0 && (scene->on & kEffectsOfLight) != 0, word.place,
+            "without direct-light there are no shadows and no emitter-light: one is on, the other off");
   }
 }
 
@@ -491,9 +456,8 @@ void read_statement(TextLine line, FirstLines* first, SceneText* scene) {
       known += (known.empty() ? "" : ", ") + std::string(statement.word);
       continue;
     }
-    if (statement.once && (*first)[i] != 0) {
-      fail_at(word.place, word.text, " is said twice; the first stands in line ", (*first)[i]);
-    }
+    fail_if(statement.once && (*first)[i] != 0, word.place, word.text,
+            " is said twice; the first stands in line ", (*first)[i]);
     (*first)[i] = word.place.line;
     statement.read(line, word.place, scene);
     if (!line.at_end()) {
@@ -516,10 +480,8 @@ Source read_scene_text(const SharedBytes& file, const ReadOptions&, const Progre
   if (text.starts_with(kMark)) {
     text.remove_prefix(kMark.size());
   }
-  if (text.size() > kSceneTextBytes) {
-    throw InputError("holds ", grouped(text.size()), " bytes, the limit of a .scene file is ",
-                     grouped(kSceneTextBytes));
-  }
+  fail_if(text.size() > kSceneTextBytes, "holds ", grouped(text.size()),
+          " bytes, the limit of a .scene file is ", grouped(kSceneTextBytes));
   check_characters(text);
   const auto scene = std::make_shared<SceneText>();
   FirstLines first{};
@@ -529,9 +491,8 @@ Source read_scene_text(const SharedBytes& file, const ReadOptions&, const Progre
   while (lines.next(line)) {
     read_statement(TextLine(line, ++number), &first, scene.get());
   }
-  if (scene->parts.empty()) {
-    fail_at({number, 1}, "the file ends and shows nothing: there is no model, box or ball in it");
-  }
+  fail_if(scene->parts.empty(), {number, 1},
+          "the file ends and shows nothing: there is no model, box or ball in it");
   scene->rest.has_shadows = !scene->lights.empty();
   return std::shared_ptr<const SceneText>(scene);
 }

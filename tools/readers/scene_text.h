@@ -30,6 +30,11 @@ template <class... Pieces>
 [[noreturn]] void fail_at(const TextPlace& place, const Pieces&... pieces) {
   throw InputError("line ", place.line, ", column ", place.column, ": ", pieces...);
 }
+/// Throws it where `is_wrong`.
+template <class... Pieces>
+void fail_if(bool is_wrong, const TextPlace& place, const Pieces&... pieces) {
+  fail_if(is_wrong, "line ", place.line, ", column ", place.column, ": ", pieces...);
+}
 
 struct SceneText {
   struct NamedSurface {

@@ -36,9 +36,8 @@ enum class NbtKind : std::uint8_t {
 
 NbtKind kind_of(ByteReader& reader) {
   const unsigned kind = reader.u8();
-  if (kind > static_cast<unsigned>(NbtKind::kLongs)) {
-    reader.fail("there is no tag of kind ", kind, ", before byte offset ", reader.offset());
-  }
+  reader.fail_if(kind > static_cast<unsigned>(NbtKind::kLongs), "there is no tag of kind ", kind,
+                 ", before byte offset ", reader.offset());
   return static_cast<NbtKind>(kind);
 }
 
@@ -68,9 +67,7 @@ void nbt_compound(ByteReader& reader, const std::function<void(NbtKind kind, std
 std::span<const std::uint8_t> nbt_array(ByteReader& reader, NbtKind kind) {
   const std::int32_t count = reader.i32_be();
   const std::uint64_t each = kind == NbtKind::kBytes ? 1 : (kind == NbtKind::kInts ? 4 : 8);
-  if (count < 0) {
-    reader.fail("an array of ", count, " numbers, before byte offset ", reader.offset());
-  }
+  reader.fail_if(count < 0, "an array of ", count, " numbers, before byte offset ", reader.offset());
   return reader.take(each * static_cast<std::uint64_t>(count));
 }
 
@@ -78,9 +75,8 @@ std::span<const std::uint8_t> nbt_array(ByteReader& reader, NbtKind kind) {
 std::uint32_t nbt_list(ByteReader& reader, NbtKind* of) {
   *of = kind_of(reader);
   const std::int32_t count = reader.i32_be();
-  if (count > 0 && *of == NbtKind::kEnd) {
-    reader.fail("a list of ", count, " nothings, before byte offset ", reader.offset());
-  }
+  reader.fail_if(count > 0 && *of == NbtKind::kEnd, "a list of ", count, " nothings, before byte offset ",
+                 reader.offset());
   return static_cast<std::uint32_t>(std::max(count, 0));
 }
 
@@ -111,9 +107,8 @@ void nbt_skip(ByteReader& reader, NbtKind kind, int depth = 0) {
     return;
   }
   const bool is_compound = kind == NbtKind::kCompound;
-  if ((is_compound || kind == NbtKind::kList) && depth == kDeepest) {
-    reader.fail("tags are nested deeper than the limit of ", kDeepest);
-  }
+  reader.fail_if((is_compound || kind == NbtKind::kList) && depth == kDeepest,
+                 "tags are nested deeper than the limit of ", kDeepest);
   if (is_compound) {
     nbt_compound(reader, [&](NbtKind inner, std::string_view) { nbt_skip(reader, inner, depth + 1); });
   } else if (kind == NbtKind::kText) {
@@ -149,9 +144,8 @@ struct BlockBox {
 };
 
 std::uint32_t checked_side(std::string_view name, std::int64_t value) {
-  if (value < 1 || value > std::int64_t{kGridSideLimit}) {
-    throw InputError(name, " is ", value, "; a side has 1 to ", kGridSideLimit, " blocks");
-  }
+  fail_if(value < 1 || value > std::int64_t{kGridSideLimit}, name, " is ", value, "; a side has 1 to ",
+          kGridSideLimit, " blocks");
   return static_cast<std::uint32_t>(value);
 }
 
@@ -168,9 +162,9 @@ std::array<std::int32_t, 3> read_triple(ByteReader& reader, NbtKind kind) {
         nbt_skip(reader, entry_kind);
       }
     });
-  } else if (kind != NbtKind::kList || nbt_list(reader, &of) != 3) {
-    reader.fail("no three numbers before byte offset ", reader.offset());
   } else {
+    const bool has_three = kind == NbtKind::kList && nbt_list(reader, &of) == 3;
+    reader.fail_if(!has_three, "no three numbers before byte offset ", reader.offset());
     for (std::int32_t& number : out) {
       number = static_cast<std::int32_t>(nbt_integer(reader, of));
     }
@@ -193,10 +187,8 @@ std::vector<std::optional<Rgb>> read_palette(ByteReader& reader) {
         }
       });
     }
-    if (block.empty()) {
-      reader.fail("entry ", palette.size(), " of a palette has no Name, before byte offset ",
-                  reader.offset());
-    }
+    reader.fail_if(block.empty(), "entry ", palette.size(), " of a palette has no Name, before byte offset ",
+                   reader.offset());
     palette.push_back(block_color(block));
   }
   return palette;
@@ -210,9 +202,8 @@ class SchematicGrid final : public VoxelGrid {
       check();
       return;
     }
-    if (!looks_like_schematic(file.bytes)) {
-      throw InputError("is no schematic: it does not begin with a compound tag, nameless or named Schematic");
-    }
+    fail_if(!looks_like_schematic(file.bytes),
+            "is no schematic: it does not begin with a compound tag, nameless or named Schematic");
     ByteReader reader(file.bytes, "the tags");
     std::string_view name;
     nbt_head(reader, &name);
@@ -239,14 +230,12 @@ class SchematicGrid final : public VoxelGrid {
   void read_nodes(ByteReader reader) {
     reader.expect("MTSM", "Minetest schematic");
     const unsigned version = reader.u16_be();
-    if (version < 1 || version > 4) {
-      throw InputError("version ", version, " at byte offset 4 is not supported, only 1 to 4 are");
-    }
+    fail_if(version < 1 || version > 4, "version ", version,
+            " at byte offset 4 is not supported, only 1 to 4 are");
     for (std::uint32_t& side : box_.size) {
       side = reader.u16_be();
-      if (side < 1 || side > kGridSideLimit) {
-        reader.fail("a side of ", side, " nodes; there are 1 to ", kGridSideLimit);
-      }
+      reader.fail_if(side < 1 || side > kGridSideLimit, "a side of ", side, " nodes; there are 1 to ",
+                     kGridSideLimit);
     }
     if (version >= 3) {
       reader.skip(box_.size[1]);  // chances of the layers
@@ -258,9 +247,8 @@ class SchematicGrid final : public VoxelGrid {
     const std::uint64_t bytes = box_.cells() * kNodeBytes;
     file_ = inflate_bytes(reader.take(reader.remaining()), Deflated::kZlib, bytes, "the nodes");
     box_.blocks = file_.bytes;
-    if (box_.blocks.size() != bytes) {
-      throw InputError("the nodes take ", box_.blocks.size(), " bytes, not 4 for each of ", box_.cells());
-    }
+    fail_if(box_.blocks.size() != bytes, "the nodes take ", box_.blocks.size(), " bytes, not 4 for each of ",
+            box_.cells());
     code_ = BlockCode::kNodes;
     chance_bits_ = version < 2 ? 0 : version < 4 ? 0xFFU : 0x7FU;
   }
@@ -368,19 +356,16 @@ class SchematicGrid final : public VoxelGrid {
       box.corner[axis] = position[axis] + std::min<std::int64_t>(side + 1, 0);
       box.size[axis] = checked_side("Size of region " + quoted(name), side < 0 ? -side : side);
     }
-    if (box.palette.empty() || box.blocks.size() / 8 < (box.cells() * box.bits() + 63) / 64) {
-      throw InputError("region ", quoted(name), " has no room for ", box.cells(), " blocks of ",
-                       box.palette.size(), " kinds in ", box.blocks.size(), " bytes");
-    }
+    fail_if(box.palette.empty() || box.blocks.size() / 8 < (box.cells() * box.bits() + 63) / 64, "region ",
+            quoted(name), " has no room for ", box.cells(), " blocks of ", box.palette.size(), " kinds in ",
+            box.blocks.size(), " bytes");
     boxes_.push_back(std::move(box));
   }
 
   void add_to_palette(std::int64_t index, std::string_view block) {
     // Palettes are dense, and an entry takes at least seven bytes.
-    if (index < 0 || static_cast<std::uint64_t>(index) > file_.bytes.size() / 7) {
-      throw InputError("the palette has the number ", index, " for ", quoted(block),
-                       ", more than the file has entries");
-    }
+    fail_if(index < 0 || static_cast<std::uint64_t>(index) > file_.bytes.size() / 7,
+            "the palette has the number ", index, " for ", quoted(block), ", more than the file has entries");
     box_.palette.resize(std::max(box_.palette.size(), static_cast<std::size_t>(index) + 1));
     box_.palette[static_cast<std::size_t>(index)] = block_color(block);
   }
@@ -413,18 +398,15 @@ class SchematicGrid final : public VoxelGrid {
 
   void check_box() {
     const std::uint64_t cells = box_.cells();
-    if (cells == 0) {
-      throw InputError("Width, Height and Length are not all there, nor are Regions or a structure's size");
-    }
+    fail_if(cells == 0, "Width, Height and Length are not all there, nor are Regions or a structure's size");
     // Version 3 calls the numbers of its palette Data.
     if (code_ == BlockCode::kVarints && box_.blocks.empty()) {
       box_.blocks = std::exchange(data_, {});
     }
-    if (code_ == BlockCode::kBytes ? box_.blocks.size() != cells
-                                   : code_ == BlockCode::kVarints && box_.blocks.size() < cells) {
-      throw InputError("the blocks take ", box_.blocks.size(), " bytes, but ", box_.size[0], " x ",
-                       box_.size[1], " x ", box_.size[2], " of them are announced");
-    }
+    fail_if(code_ == BlockCode::kBytes ? box_.blocks.size() != cells
+                                       : code_ == BlockCode::kVarints && box_.blocks.size() < cells,
+            "the blocks take ", box_.blocks.size(), " bytes, but ", box_.size[0], " x ", box_.size[1], " x ",
+            box_.size[2], " of them are announced");
   }
 
   template <class Take>
@@ -459,19 +441,16 @@ class SchematicGrid final : public VoxelGrid {
   }
 
   static const std::optional<Rgb>& palette_color(const BlockBox& box, std::uint64_t i, std::uint64_t number) {
-    if (number >= box.palette.size()) {
-      throw InputError("block ", i, " has the number ", number, ", which is not among the ",
-                       box.palette.size(), " of the palette");
-    }
+    fail_if(number >= box.palette.size(), "block ", i, " has the number ", number,
+            ", which is not among the ", box.palette.size(), " of the palette");
     return box.palette[static_cast<std::size_t>(number)];
   }
 
   static std::uint64_t varint(const BlockBox& box, std::uint64_t i, std::size_t* at) {
     std::uint64_t number = 0;
     for (unsigned shift = 0;; shift += 7) {
-      if (*at == box.blocks.size() || shift > 28) {
-        throw InputError("block ", i, " of ", box.cells(), " is cut off or too long");
-      }
+      fail_if(*at == box.blocks.size() || shift > 28, "block ", i, " of ", box.cells(),
+              " is cut off or too long");
       const std::uint8_t byte = box.blocks[(*at)++];
       number |= std::uint64_t{byte & 0x7FU} << shift;
       if ((byte & 0x80U) == 0) {
@@ -513,9 +492,7 @@ class SchematicGrid final : public VoxelGrid {
       std::array<std::uint64_t, 3> place{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         place[axis] = static_cast<std::uint64_t>(at[axis]);
-        if (place[axis] >= box.size[axis]) {
-          throw InputError("block ", i, " of the list is not within the size");
-        }
+        fail_if(place[axis] >= box.size[axis], "block ", i, " of the list is not within the size");
       }
       take((place[1] * box.size[2] + place[2]) * box.size[0] + place[0],
            palette_color(box, i, static_cast<std::uint64_t>(state)));

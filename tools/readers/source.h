@@ -69,9 +69,7 @@ class VoxelModel {
 /// Some formats repeat voxels in a few bytes; so many, a solid world of level 10, take minutes.
 inline constexpr std::uint64_t kMostGridVoxels = std::uint64_t{1} << 30;
 inline void check_grid_voxels(std::uint64_t voxels) {
-  if (voxels > kMostGridVoxels) {
-    throw InputError("holds more than the limit of ", kMostGridVoxels, " solid voxels");
-  }
+  fail_if(voxels > kMostGridVoxels, "holds more than the limit of ", kMostGridVoxels, " solid voxels");
 }
 
 /// Voxels with whole-number positions and a colour of their own each: `.binvox`, `.qb`, `.schematic` ...
@@ -95,9 +93,7 @@ class VoxelGrid {
   void check_solid(const char* sentence) const {
     std::uint64_t voxels = 0;
     for_each([&](auto, auto, auto, auto) { check_grid_voxels(++voxels); });
-    if (voxels == 0) {
-      throw InputError(sentence);
-    }
+    fail_if(voxels == 0, sentence);
   }
   void set_size(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     size_ = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)};

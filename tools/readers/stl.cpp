@@ -33,9 +33,7 @@ void add(TriangleMesh& mesh, const std::array<std::array<double, 3>, 3>& corners
 
 void reserve(TriangleMesh& mesh, std::uint64_t triangles) {
   constexpr std::uint64_t kMost = UINT32_MAX / 3;
-  if (triangles > kMost) {
-    throw InputError("the file holds ", triangles, " triangles, the limit is ", kMost);
-  }
+  fail_if(triangles > kMost, "the file holds ", triangles, " triangles, the limit is ", kMost);
   mesh.positions.reserve(static_cast<std::size_t>(3 * triangles));
   mesh.triangles.reserve(static_cast<std::size_t>(triangles));
 }
@@ -44,10 +42,8 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
   ByteReader reader(file.bytes);
   reader.skip(kStlHeaderBytes);
   const std::uint32_t count = reader.u32();
-  if (reader.remaining() / kTriangleBytes < count) {
-    throw InputError("the header counts ", count, " triangles, but the file has room for ",
-                     reader.remaining() / kTriangleBytes);
-  }
+  fail_if(reader.remaining() / kTriangleBytes < count, "the header counts ", count,
+          " triangles, but the file has room for ", reader.remaining() / kTriangleBytes);
   TriangleMesh mesh;
   reserve(mesh, count);
   std::uint32_t attributed = 0;
@@ -57,18 +53,16 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
     for (auto& corner : corners) {
       for (double& coordinate : corner) {
         coordinate = static_cast<double>(reader.f32());
-        if (!std::isfinite(coordinate)) {
-          reader.fail("a coordinate of triangle ", i, " is not finite, before byte offset ", reader.offset());
-        }
+        reader.fail_if(!std::isfinite(coordinate), "a coordinate of triangle ", i,
+                       " is not finite, before byte offset ", reader.offset());
       }
     }
     attributed += reader.u16() != 0 ? 1U : 0U;
     add(mesh, corners);
     meter.at(static_cast<std::size_t>(reader.offset()));
   }
-  if (count == 0 && reader.remaining() != 0) {
-    throw InputError("the header counts no triangles, but ", reader.remaining(), " bytes follow it");
-  }
+  fail_if(count == 0 && reader.remaining() != 0, "the header counts no triangles, but ", reader.remaining(),
+          " bytes follow it");
   if (attributed != 0) {
     mesh.notes.push_back(counted(attributed, "triangle has", "triangles have") +
                          " attributes, which may be colors; they are not read");
@@ -102,31 +96,25 @@ TriangleMesh read_text(std::string_view text, ProgressMeter& meter) {
     meter.at(lines.offset());
     const std::string_view word = take_word(line);
     if (equals_ignoring_case(word, "vertex")) {
-      if (!in_facet || count == 3) {
-        fail_at_line(lines.line_number(), in_facet ? "the facet has more than three corners"
-                                                   : "a corner stands outside of any facet");
-      }
+      fail_at_line_if(
+          !in_facet || count == 3, lines.line_number(),
+          in_facet ? "the facet has more than three corners" : "a corner stands outside of any facet");
       for (std::size_t axis = 0; axis < 3; ++axis) {
         corners[count][axis] = finite_number(take_word(line), lines.line_number(), kNames[axis]);
       }
       ++count;
     } else if (equals_ignoring_case(word, "facet")) {
-      if (in_facet) {
-        fail_at_line(lines.line_number(), "a facet begins within another one");
-      }
+      fail_at_line_if(in_facet, lines.line_number(), "a facet begins within another one");
       in_facet = true;
       count = 0;
     } else if (equals_ignoring_case(word, "endfacet")) {
-      if (!in_facet || count != 3) {
-        fail_at_line(lines.line_number(), "the facet has ", count, " corners, not three");
-      }
+      fail_at_line_if(!in_facet || count != 3, lines.line_number(), "the facet has ", count,
+                      " corners, not three");
       in_facet = false;
       add(mesh, corners);
     }
   }
-  if (in_facet) {
-    fail_at_line(lines.line_number(), "the file ends within a facet");
-  }
+  fail_at_line_if(in_facet, lines.line_number(), "the file ends within a facet");
   return mesh;
 }
 
@@ -148,9 +136,7 @@ Source read_stl(const SharedBytes& file, const ReadOptions&, const Progress& pro
   const std::string_view first = file.text().substr(0, kFirstLookBytes);
   const bool is_binary = !begins_with_solid(first) || first.find('\0') != std::string_view::npos;
   TriangleMesh mesh = is_binary ? read_binary(file, meter) : read_text(file.text(), meter);
-  if (mesh.triangles.empty()) {
-    throw InputError("the file holds no triangles");
-  }
+  fail_if(mesh.triangles.empty(), "the file holds no triangles");
   mesh.is_z_up = true;
   return mesh;
 }

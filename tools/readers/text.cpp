@@ -35,10 +35,8 @@ std::string quoted(std::string_view word) {
 
 void refuse_zero_bytes(std::span<const std::uint8_t> first, const char* name) {
   const auto zero = std::find(first.begin(), first.end(), std::uint8_t{0});
-  if (zero != first.end()) {
-    throw InputError("holds a zero byte at byte offset ", zero - first.begin(),
-                     ", and text, as which it would be read (", name, "), holds none");
-  }
+  fail_if(zero != first.end(), "holds a zero byte at byte offset ", zero - first.begin(),
+          ", and text, as which it would be read (", name, "), holds none");
 }
 
 NumberKind parse_number(std::string_view word, double& value) {
@@ -74,9 +72,7 @@ double finite_number(std::string_view word, std::uint64_t line, const std::strin
     case NumberKind::kGarbage:
       break;
   }
-  if (word.empty()) {
-    fail_at_line(line, what, " is missing");
-  }
+  fail_at_line_if(word.empty(), line, what, " is missing");
   fail_at_line(line, what, " is ", quoted(word), ", which is not a number");
 }
 

@@ -21,6 +21,12 @@ template <class... Pieces>
   throw InputError("line ", line, ": ", pieces...);
 }
 
+/// Throws it where `is_wrong`.
+template <class... Pieces>
+void fail_at_line_if(bool is_wrong, std::uint64_t line, const Pieces&... pieces) {
+  fail_if(is_wrong, "line ", line, ": ", pieces...);
+}
+
 /// `word` in single quotes for an error's sentence: cut to a length that fits on a line, bytes that do not
 /// print replaced by '?'.
 std::string quoted(std::string_view word);

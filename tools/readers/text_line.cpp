@@ -20,13 +20,10 @@ void check_characters(std::string_view text) {
     unsigned code = 0;
     const std::size_t length = character_bytes(text.substr(at), &code);
     const auto byte = static_cast<unsigned char>(text[at]);
-    if (length == 0) {
-      fail_at(place, "the bytes here are not UTF-8 text");
-    }
+    fail_if(length == 0, place, "the bytes here are not UTF-8 text");
     const bool ends_line = byte == '\n' || byte == '\r';
-    if ((byte < ' ' && byte != '\t' && !ends_line) || byte == 0x7F) {
-      fail_at(place, "byte ", byte, " is a control character, not text");
-    }
+    fail_if((byte < ' ' && byte != '\t' && !ends_line) || byte == 0x7F, place, "byte ", byte,
+            " is a control character, not text");
     at += text.substr(at).starts_with("\r\n") ? 2 : length;
     place = ends_line ? TextPlace{place.line + 1, 1} : TextPlace{place.line, place.column + 1};
   }
@@ -68,15 +65,11 @@ Word TextLine::word() {
     return result;
   }
   const std::size_t end = text_.find('"', next_ + 1);
-  if (end == std::string_view::npos) {
-    fail_at(result.place, "the quotation mark is not closed on this line");
-  }
+  fail_if(end == std::string_view::npos, result.place, "the quotation mark is not closed on this line");
   result.text = text_.substr(next_ + 1, end - next_ - 1);
   result.is_quoted = true;
   next_ = end + 1;
-  if (next_ < text_.size() && !is_space(text_[next_])) {
-    fail_at(place(), "a blank must follow the quotation mark");
-  }
+  fail_if(next_ < text_.size() && !is_space(text_[next_]), place(), "a blank must follow the quotation mark");
   return result;
 }
 
@@ -100,26 +93,22 @@ bool TextLine::at_end() {
 double TextLine::real(const std::string& what, double low, double high, bool is_first) {
   const Word word = number(is_first);
   const std::string range = shortest(low) + " to " + shortest(high);
-  if (word.text.empty()) {
-    fail_at(word.place, what, " is missing: a number from ", range, " is expected here");
-  }
+  fail_if(word.text.empty(), word.place, what, " is missing: a number from ", range, " is expected here");
   double value = 0;
   const NumberKind kind = parse_number(word.text, value);
-  if (kind != NumberKind::kFinite || !(value >= low && value <= high)) {
-    fail_at(word.place, what, " is ", quoted(word.text),
-            kind == NumberKind::kFinite      ? ", it must be " + range
-            : kind == NumberKind::kNotFinite ? ", which is not finite"
-                                             : ", which is not a number");
-  }
+  fail_if(kind != NumberKind::kFinite || !(value >= low && value <= high), word.place, what, " is ",
+          quoted(word.text),
+          kind == NumberKind::kFinite      ? ", it must be " + range
+          : kind == NumberKind::kNotFinite ? ", which is not finite"
+                                           : ", which is not a number");
   return value;
 }
 
 std::int32_t TextLine::whole(const std::string& what, std::int32_t low, std::int32_t high, bool is_first) {
   const Word word = number(is_first);
   const std::string range = concat(low, " to ", high);
-  if (word.text.empty()) {
-    fail_at(word.place, what, " is missing: a whole number from ", range, " is expected here");
-  }
+  fail_if(word.text.empty(), word.place, what, " is missing: a whole number from ", range,
+          " is expected here");
   std::int64_t value = 0;
   const bool is_whole = parse_integer(word.text, value);
   if (!is_whole || value < low || value > high) {
@@ -161,9 +150,8 @@ std::uint16_t TextLine::fixed_q8(const char* what, double high) {
 std::size_t TextLine::axis(const char* what) {
   const Word name = word();
   const std::size_t found = std::string_view("xyz").find(name.text);
-  if (name.text.size() != 1 || found == std::string_view::npos) {
-    fail_at(name.place, what, " needs an axis: x, y or z", name.empty() ? "" : ", not " + quoted(name.text));
-  }
+  fail_if(name.text.size() != 1 || found == std::string_view::npos, name.place, what,
+          " needs an axis: x, y or z", name.empty() ? "" : ", not " + quoted(name.text));
   return found;
 }
 
@@ -179,9 +167,7 @@ void Clauses::read(const std::vector<Clause>& known) {
       }
       fail_at(word.place, quoted(word.text), " is not known in ", statement_, "; there are ", names);
     }
-    if (!clause->repeats && has(word.text)) {
-      fail_at(word.place, word.text, " is said twice in this ", statement_);
-    }
+    fail_if(!clause->repeats && has(word.text), word.place, word.text, " is said twice in this ", statement_);
     said_.push_back(word.text);
     clause->read(word);
   }

@@ -113,9 +113,7 @@ void set_property(const Property& property, bool is_newer, double value, Materia
 /// Material ids are colour indices; newer files count 1 to 256, older ones 0 to 255, and both ends mean the
 /// unused entry.
 Material& material_of(std::int32_t id, const ByteReader& chunk, Palette& palette) {
-  if (id < 0 || id > 256) {
-    chunk.fail("material ", id, " is outside 0 to 256");
-  }
+  chunk.fail_if(id < 0 || id > 256, "material ", id, " is outside 0 to 256");
   return palette[static_cast<std::size_t>(id) & 0xff];
 }
 
@@ -247,10 +245,8 @@ ChunkHead read_head(ByteReader& reader) {
   head.content_bytes = reader.u32();
   head.children_bytes = reader.u32();
   const std::uint64_t announced = std::uint64_t{head.content_bytes} + head.children_bytes;
-  if (announced > reader.remaining()) {
-    throw InputError(vox_place(head.id, head.offset), ": ", announced, " bytes are announced and ",
-                     reader.remaining(), " are there");
-  }
+  fail_if(announced > reader.remaining(), vox_place(head.id, head.offset), ": ", announced,
+          " bytes are announced and ", reader.remaining(), " are there");
   return head;
 }
 
@@ -258,13 +254,10 @@ void VoxFile::read_chunks(ProgressMeter& meter) {
   ByteReader file(file_.bytes);
   file.expect("VOX ", "MagicaVoxel file");
   const std::uint32_t version = file.u32();
-  if (version != 150 && version != 200) {
-    throw InputError("version ", version, " at byte offset 4 is not supported, only 150 and 200 are");
-  }
+  fail_if(version != 150 && version != 200, "version ", version,
+          " at byte offset 4 is not supported, only 150 and 200 are");
   const ChunkHead main = read_head(file);
-  if (main.id != "MAIN") {
-    throw InputError(vox_place(main.id, main.offset), ": the first chunk must be MAIN");
-  }
+  fail_if(main.id != "MAIN", vox_place(main.id, main.offset), ": the first chunk must be MAIN");
   file.skip(main.content_bytes);
   ByteReader chunks = file.sub(main.children_bytes, vox_place(main.id, main.offset));
   while (chunks.remaining() > 0) {
@@ -293,33 +286,27 @@ void VoxFile::read_chunks(ProgressMeter& meter) {
     meter.at(static_cast<std::size_t>(chunks.offset()));
   }
   check_size_used();
-  if (models_.empty()) {
-    throw InputError(vox_place(main.id, main.offset), ": holds no model, no XYZI or TDCZ chunk is there");
-  }
+  fail_if(models_.empty(), vox_place(main.id, main.offset),
+          ": holds no model, no XYZI or TDCZ chunk is there");
 }
 
 void VoxFile::check_size_used() const {
-  if (size_pending_) {
-    throw InputError(pending_place_, ": no XYZI chunk follows before the next SIZE or the end");
-  }
+  fail_if(size_pending_, pending_place_, ": no XYZI chunk follows before the next SIZE or the end");
 }
 
 void VoxFile::read_size(ByteReader& chunk) {
   check_size_used();
   for (std::uint32_t& side : pending_size_) {
     side = chunk.u32();
-    if (side > kVoxModelSideLimit) {
-      chunk.fail("a side of ", side, " voxels is over the limit of ", kVoxModelSideLimit);
-    }
+    chunk.fail_if(side > kVoxModelSideLimit, "a side of ", side, " voxels is over the limit of ",
+                  kVoxModelSideLimit);
   }
   size_pending_ = true;
   pending_place_ = chunk.place();
 }
 
 Model VoxFile::take_size(ByteReader& chunk) {
-  if (!size_pending_) {
-    chunk.fail("no SIZE chunk stands before it");
-  }
+  chunk.fail_if(!size_pending_, "no SIZE chunk stands before it");
   size_pending_ = false;
   Model model;
   model.size = pending_size_;
@@ -331,21 +318,16 @@ void VoxFile::read_packed(ByteReader& chunk, ProgressMeter& meter) {
   Model model = take_size(chunk);
   std::uint64_t count = 1;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (chunk.u32() != model.size[i]) {
-      chunk.fail("its size is not that of the SIZE chunk before it");
-    }
+    chunk.fail_if(chunk.u32() != model.size[i], "its size is not that of the SIZE chunk before it");
     count *= model.size[i];
   }
   constexpr std::uint64_t kAlwaysBytes = 256 << 20;
   unpacked_bytes_ += count;
-  if (unpacked_bytes_ > kAlwaysBytes && unpacked_bytes_ / 100 > file_.bytes.size()) {
-    chunk.fail("packed models are more than 100 times what the file has");
-  }
+  chunk.fail_if(unpacked_bytes_ > kAlwaysBytes && unpacked_bytes_ / 100 > file_.bytes.size(),
+                "packed models are more than 100 times what the file has");
   const SharedBytes dense =
       inflate_bytes(chunk.take(chunk.remaining()), Deflated::kZlib, count, chunk.place());
-  if (dense.bytes.size() != count) {
-    chunk.fail("it unpacks to ", dense.bytes.size(), " voxels, not ", count);
-  }
+  chunk.fail_if(dense.bytes.size() != count, "it unpacks to ", dense.bytes.size(), " voxels, not ", count);
   const auto solid =
       count - static_cast<std::uint64_t>(std::count(dense.bytes.begin(), dense.bytes.end(), 0));
   std::vector<std::uint8_t> voxels;
@@ -368,18 +350,15 @@ void VoxFile::read_packed(ByteReader& chunk, ProgressMeter& meter) {
 void VoxFile::read_voxels(ByteReader& chunk, ProgressMeter& meter) {
   Model model = take_size(chunk);
   const std::uint32_t count = chunk.u32();
-  if (chunk.remaining() / kVoxelBytes < count) {
-    chunk.fail(count, " voxels of 4 bytes do not fit the ", chunk.remaining(), " bytes that are left");
-  }
+  chunk.fail_if(chunk.remaining() / kVoxelBytes < count, count, " voxels of 4 bytes do not fit the ",
+                chunk.remaining(), " bytes that are left");
   const std::uint64_t first_offset = chunk.offset();
   model.voxels = chunk.take(std::uint64_t{count} * kVoxelBytes);
   for (std::size_t at = 0; at < model.voxels.size(); at += kVoxelBytes) {
     const std::uint8_t* voxel = model.voxels.data() + at;
     for (std::size_t i = 0; i < 3; ++i) {
-      if (voxel[i] >= model.size[i]) {
-        chunk.fail("the voxel at byte offset ", first_offset + at, " lies at ", voxel[i], " on the ",
-                   "xyz"[i], " axis, outside its model of ", model.size[i], " voxels");
-      }
+      chunk.fail_if(voxel[i] >= model.size[i], "the voxel at byte offset ", first_offset + at, " lies at ",
+                    voxel[i], " on the ", "xyz"[i], " axis, outside its model of ", model.size[i], " voxels");
     }
     model.empty = model.empty && voxel[3] == 0;
     meter.at(static_cast<std::size_t>(first_offset) + at);
@@ -421,20 +400,15 @@ void VoxFile::place_scene() {
   const std::int64_t frame = frame_ ? std::int64_t{*frame_} : std::numeric_limits<std::int64_t>::min();
   const std::uint32_t visits = scene_.place_models(
       frame, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t offset) {
-        if (number >= models_.size()) {
-          throw InputError(vox_place("nSHP", offset), ": model ", number, " is not among the ",
-                           models_.size(), " models of this file");
-        }
-        if (instances_.size() == kVoxInstanceLimit) {
-          throw InputError(vox_place("nSHP", offset), ": the scene places more than the limit of ",
-                           kVoxInstanceLimit, " models");
-        }
+        const std::string at = vox_place("nSHP", offset);
+        fail_if(number >= models_.size(), at, ": model ", number, " is not among the ", models_.size(),
+                " models of this file");
+        fail_if(instances_.size() == kVoxInstanceLimit, at, ": the scene places more than the limit of ",
+                kVoxInstanceLimit, " models");
         const Model& model = models_[number];
         placed_voxels += model.voxels.size() / kVoxelBytes;
-        if (placed_voxels > kVoxPlacedVoxelLimit) {
-          throw InputError(vox_place("nSHP", offset), ": the scene places more than the limit of ",
-                           kVoxPlacedVoxelLimit, " voxels");
-        }
+        fail_if(placed_voxels > kVoxPlacedVoxelLimit, at, ": the scene places more than the limit of ",
+                kVoxPlacedVoxelLimit, " voxels");
         instances_.push_back(make_instance(number, model, transform));
         add_to_frames(instances_.back());
       });

@@ -20,18 +20,14 @@ std::array<std::int32_t, 3> parse_translation(std::string_view text, const ByteR
     rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
     const std::string_view word = rest.substr(0, rest.find(' '));
     const std::optional<std::int32_t> number = vox_number<std::int32_t>(word);
-    if (!number) {
-      chunk.fail("translation \"_t\" is not three whole numbers of 32 bits");
-    }
-    if (*number < -kVoxTranslationLimit || *number > kVoxTranslationLimit) {
-      chunk.fail("translation ", *number, " is beyond the limit of +-", kVoxTranslationLimit);
-    }
+    chunk.fail_if(!number, "translation \"_t\" is not three whole numbers of 32 bits");
+    chunk.fail_if(*number < -kVoxTranslationLimit || *number > kVoxTranslationLimit, "translation ", *number,
+                  " is beyond the limit of +-", kVoxTranslationLimit);
     coordinate = *number;
     rest.remove_prefix(word.size());
   }
-  if (rest.find_first_not_of(' ') != std::string_view::npos) {
-    chunk.fail("translation \"_t\" is not three whole numbers of 32 bits");
-  }
+  chunk.fail_if(rest.find_first_not_of(' ') != std::string_view::npos,
+                "translation \"_t\" is not three whole numbers of 32 bits");
   return translation;
 }
 
@@ -45,9 +41,8 @@ void parse_rotation(std::string_view text, const ByteReader& chunk, VoxTransform
   const unsigned bits = packed.value_or(0xff);
   const unsigned row0 = bits & 3u;
   const unsigned row1 = bits >> 2 & 3u;
-  if (!packed || row0 == 3 || row1 == 3 || row0 == row1) {
-    chunk.fail("rotation \"_r\" is not a byte that packs a rotation");
-  }
+  chunk.fail_if(!packed || row0 == 3 || row1 == 3 || row0 == row1,
+                "rotation \"_r\" is not a byte that packs a rotation");
   transform.axis = {static_cast<std::uint8_t>(row0), static_cast<std::uint8_t>(row1),
                     static_cast<std::uint8_t>(3 - row0 - row1)};
   for (unsigned row = 0; row < 3; ++row) {
@@ -58,9 +53,7 @@ void parse_rotation(std::string_view text, const ByteReader& chunk, VoxTransform
 /// `_f`, the frame that an entry is for; frames are counted from 0 and the first is 0 when none is given.
 std::int64_t parse_frame(std::string_view text, const ByteReader& chunk) {
   const std::optional<std::int64_t> frame = vox_number<std::int64_t>(text);
-  if (!frame) {
-    chunk.fail("frame \"_f\" is not a whole number");
-  }
+  chunk.fail_if(!frame, "frame \"_f\" is not a whole number");
   return *frame;
 }
 
@@ -149,9 +142,7 @@ void VoxScene::add_node(ByteReader& chunk, std::size_t kind, std::uint64_t offse
   node.kind = static_cast<Kind>(kind);
   node.offset = offset;
   node.id = chunk.i32();
-  if (node.id < 0) {
-    chunk.fail("node id ", node.id, " is negative");
-  }
+  chunk.fail_if(node.id < 0, "node id ", node.id, " is negative");
   node.hidden = is_hidden(chunk);
   node.first_child = static_cast<std::uint32_t>(children_.size());
   if (node.kind == Kind::kTransform) {
@@ -163,9 +154,8 @@ void VoxScene::add_node(ByteReader& chunk, std::size_t kind, std::uint64_t offse
     take_keys(chunk, read_model, &node);
   } else {
     const std::uint32_t count = chunk.u32();
-    if (chunk.remaining() / 4 < count) {
-      chunk.fail(count, " children do not fit the ", chunk.remaining(), " bytes that are left");
-    }
+    chunk.fail_if(chunk.remaining() / 4 < count, count, " children do not fit the ", chunk.remaining(),
+                  " bytes that are left");
     for (std::uint32_t i = 0; i < count; ++i) {
       children_.push_back(chunk.i32());
     }
@@ -221,19 +211,17 @@ std::uint32_t VoxScene::place_models(std::int64_t frame, const Place& place) {
   std::vector<Step> path;
   std::uint32_t visits = 0;
 
-  const auto fail = [](const Node& node, const auto&... sentence) {
-    throw InputError(vox_place(kVoxNodes[static_cast<std::size_t>(node.kind)], node.offset), ": ",
-                     sentence...);
+  const auto fail_if = [](bool is_wrong, const Node& node, const auto&... sentence) {
+    if (is_wrong) {
+      throw InputError(vox_place(kVoxNodes[static_cast<std::size_t>(node.kind)], node.offset), ": ",
+                       sentence...);
+    }
   };
   const auto enter = [&](std::uint32_t index, const VoxTransform& parent) {
     Node& node = nodes_[index];
-    if (++visits > kVoxVisitLimit) {
-      fail(node, concat("the scene graph has more than the limit of ", kVoxVisitLimit,
-                        " nodes, shared ones counted each time"));
-    }
-    if (node.on_path) {
-      fail(node, concat("node ", node.id, " contains itself: the scene graph has a cycle"));
-    }
+    fail_if(++visits > kVoxVisitLimit, node, "the scene graph has more than the limit of ", kVoxVisitLimit,
+            " nodes, shared ones counted each time");
+    fail_if(node.on_path, node, "node ", node.id, " contains itself: the scene graph has a cycle");
     if (node.hidden || std::binary_search(hidden_layers_.begin(), hidden_layers_.end(), node.layer)) {
       return;
     }
@@ -248,19 +236,15 @@ std::uint32_t VoxScene::place_models(std::int64_t frame, const Place& place) {
             ? parent.after(value_at(node.keys, node.key_count, frame, VoxTransform{}, read_transform))
             : parent;
     for (const std::int32_t coordinate : world.translation) {
-      if (coordinate < -kVoxTranslationLimit || coordinate > kVoxTranslationLimit) {
-        fail(node, concat("nested translations add up to ", coordinate, ", beyond the limit of +-",
-                          kVoxTranslationLimit));
-      }
+      fail_if(coordinate < -kVoxTranslationLimit || coordinate > kVoxTranslationLimit, node,
+              "nested translations add up to ", coordinate, ", beyond the limit of +-", kVoxTranslationLimit);
     }
     node.on_path = true;
     path.push_back({index, 0, world});
   };
 
   const std::uint32_t root = find(0);
-  if (root == kNoNode) {
-    fail(nodes_.front(), "the scene graph has no root, node 0");
-  }
+  fail_if(root == kNoNode, nodes_.front(), "the scene graph has no root, node 0");
   enter(root, VoxTransform{});
   while (!path.empty()) {
     Step& step = path.back();
@@ -273,9 +257,7 @@ std::uint32_t VoxScene::place_models(std::int64_t frame, const Place& place) {
     const std::int32_t id = children_[node.first_child + step.next_child];
     ++step.next_child;
     const std::uint32_t child = find(id);
-    if (child == kNoNode) {
-      fail(node, concat("child ", id, " is no node of this file"));
-    }
+    fail_if(child == kNoNode, node, "child ", id, " is no node of this file");
     const VoxTransform world = step.world;  // `enter` may move the path
     enter(child, world);
   }

@@ -225,17 +225,13 @@ double coordinate(std::string_view word, std::uint64_t line, const char* name, c
   const Separator separator = layout.separator;
   const std::string_view marks =
       separator == Separator::kBlanks ? ",;" : (separator == Separator::kComma ? " \t;" : " \t,");
-  if (word.find_first_of(marks) != std::string_view::npos) {
-    fail_at_line(line, name, " is ", quoted(word),
-                 ", which is not a number with a decimal point (the columns of this file are "
-                 "separated by ",
-                 name_of(separator), ")");
-  }
-  if (kind == NumberKind::kGarbage && layout.title_line != 0 && !word.empty()) {
-    fail_at_line(line, name, " is ", quoted(word),
-                 ", which is not a number (the first three columns are read, since line ", layout.title_line,
-                 " names no columns x, y and z)");
-  }
+  fail_at_line_if(word.find_first_of(marks) != std::string_view::npos, line, name, " is ", quoted(word),
+                  ", which is not a number with a decimal point (the columns of this file are "
+                  "separated by ",
+                  name_of(separator), ")");
+  fail_at_line_if(kind == NumberKind::kGarbage && layout.title_line != 0 && !word.empty(), line, name, " is ",
+                  quoted(word), ", which is not a number (the first three columns are read, since line ",
+                  layout.title_line, " names no columns x, y and z)");
   return finite_number(word, line, name);
 }
 
@@ -490,11 +486,10 @@ void check_columns(std::string_view line, std::uint64_t number, Layout& layout) 
   }
   // A header that names the columns has settled it by their number.
   const bool has_names = layout.model_line < layout.first_point_line;
-  if (!has_names && layout.separator == Separator::kComma && could_be_decimal_commas(line)) {
-    fail_at_line(number,
-                 "the commas may be decimal commas; write decimal points, or the same blanks after "
-                 "every comma");
-  }
+  fail_at_line_if(!has_names && layout.separator == Separator::kComma && could_be_decimal_commas(line),
+                  number,
+                  "the commas may be decimal commas; write decimal points, or the same blanks after "
+                  "every comma");
 }
 
 }  // namespace
@@ -540,19 +535,12 @@ Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progr
           layout.scale.see(is_good ? value : 0);
         }
       });
-  if (finite == 0) {
-    throw InputError(count == 0 ? "the file holds no points" : "no point of the file is finite");
-  }
-  if (layout.announced >= 0 && static_cast<std::uint64_t>(layout.announced) != count) {
-    throw InputError("the first line announces ", layout.announced, " points, but the file holds ", count);
-  }
+  fail_if(finite == 0, count == 0 ? "the file holds no points" : "no point of the file is finite");
+  fail_if(layout.announced >= 0 && static_cast<std::uint64_t>(layout.announced) != count,
+          "the first line announces ", layout.announced, " points, but the file holds ", count);
   if (names_color) {
-    if (bad_line != 0) {
-      fail_at_line(bad_line, "the color is missing, negative or not a number");
-    }
-    if (!layout.scale.is_valid()) {
-      throw InputError("the columns of the color hold values above 65535");
-    }
+    fail_at_line_if(bad_line != 0, bad_line, "the color is missing, negative or not a number");
+    fail_if(!layout.scale.is_valid(), "the columns of the color hold values above 65535");
     layout.has_color = true;
   } else {
     layout.has_color = columns >= 6 && bad_line == 0 && layout.scale.looks_like_colors();

@@ -55,17 +55,14 @@ std::vector<ZipMember> zip_members(const SharedBytes& archive) {
     const std::uint32_t local_offset = whole.u32();
     member.name = whole.text(name_bytes);
     whole.skip(extra_bytes);
-    if ((flags & 1U) != 0 || (method != 0 && method != 8) || member.size_bytes == UINT32_MAX ||
-        packed_bytes == UINT32_MAX || local_offset == UINT32_MAX) {
-      throw InputError("the member ", quoted(member.name),
-                       " is encrypted, larger than 4 GiB or packed in a way (", method, ") that is not read");
-    }
+    fail_if((flags & 1U) != 0 || (method != 0 && method != 8) || member.size_bytes == UINT32_MAX ||
+                packed_bytes == UINT32_MAX || local_offset == UINT32_MAX,
+            "the member ", quoted(member.name), " is encrypted, larger than 4 GiB or packed in a way (",
+            method, ") that is not read");
     member.is_deflated = method == 8;
     ByteReader local(file, "the member " + quoted(member.name));
     local.skip(local_offset);
-    if (local.u32() != kLocalSignature) {
-      local.fail("none is at byte offset ", local_offset);
-    }
+    local.fail_if(local.u32() != kLocalSignature, "none is at byte offset ", local_offset);
     local.skip(22);
     const std::uint64_t before = std::uint64_t{local.u16()} + local.u16();
     local.skip(before);
@@ -82,10 +79,8 @@ SharedBytes zip_unpack(const ZipMember& member) {
     const auto most = std::max<std::uint64_t>(1, member.size_bytes);
     file = inflate_bytes(member.packed.bytes, Deflated::kBare, most, place);
   }
-  if (file.bytes.size() != member.size_bytes) {
-    throw InputError(place, " has ", file.bytes.size(), " bytes, not the ", member.size_bytes,
-                     " of the directory");
-  }
+  fail_if(file.bytes.size() != member.size_bytes, place, " has ", file.bytes.size(), " bytes, not the ",
+          member.size_bytes, " of the directory");
   return file;
 }
 
