@@ -106,9 +106,8 @@ std::uint32_t boot_checksum(std::string_view bytes) {
 }
 
 Program read_elf(std::string_view file) {
-  if (file.size() < kElfHeaderBytes || file.substr(0, kElf32.size()) != kElf32) {
-    throw ImageError("is no ELF file of 32 bits, little-endian");
-  }
+  fail_if(file.size() < kElfHeaderBytes || file.substr(0, kElf32.size()) != kElf32,
+          "is no ELF file of 32 bits, little-endian");
   Program program;
   program.machine = static_cast<std::uint16_t>(get_number(file, 18, 2));
   program.entry = get_number(file, 24, 4);
@@ -116,10 +115,9 @@ Program read_elf(std::string_view file) {
   const std::size_t table = get_number(file, 28, 4);
   const std::size_t entry_bytes = get_number(file, 42, 2);
   const std::size_t entries = get_number(file, 44, 2);
-  if (entry_bytes < kProgramHeaderBytes || table > file.size() ||
-      entries * entry_bytes > file.size() - table) {
-    throw ImageError("has program headers that lie outside the file");
-  }
+  fail_if(
+      entry_bytes < kProgramHeaderBytes || table > file.size() || entries * entry_bytes > file.size() - table,
+      "has program headers that lie outside the file");
   for (std::size_t i = 0; i < entries; ++i) {
     const std::size_t header = table + i * entry_bytes;
     Segment segment;
@@ -130,25 +128,19 @@ Program read_elf(std::string_view file) {
     if (get_number(file, header, 4) != kPtLoad || size == 0) {
       continue;
     }
-    if (segment.offset > file.size() || size > file.size() - segment.offset) {
-      throw ImageError("has a segment, " + std::to_string(i) + ", that lies outside the file");
-    }
+    fail_if(segment.offset > file.size() || size > file.size() - segment.offset,
+            "has a segment, " + std::to_string(i) + ", that lies outside the file");
     segment.bytes = file.substr(segment.offset, size);
     program.segments.push_back(std::move(segment));
   }
   std::sort(program.segments.begin(), program.segments.end(),
             [](const Segment& a, const Segment& b) { return a.address < b.address; });
-  for (std::size_t i = 1; i < program.segments.size(); ++i) {
-    if (program.segments[i].address < program.segments[i - 1].end()) {
-      throw ImageError("has two segments at one address");
-    }
-  }
-  if (program.segments.empty()) {
-    throw ImageError("holds nothing to load");
-  }
-  if (program.end() > UINT32_MAX) {
-    throw ImageError("has a segment beyond 4 GiB");
-  }
+  const auto meets = [](const Segment& a, const Segment& b) { return b.address < a.end(); };
+  fail_if(
+      std::adjacent_find(program.segments.begin(), program.segments.end(), meets) != program.segments.end(),
+      "has two segments at one address");
+  fail_if(program.segments.empty(), "holds nothing to load");
+  fail_if(program.end() > UINT32_MAX, "has a segment beyond 4 GiB");
   return program;
 }
 
@@ -197,9 +189,7 @@ std::string elf_of(const Program& program) {
 
 std::string bin_of(const Program& program) {
   const std::uint64_t start = program.segments.front().address;
-  if (program.end() - start > kMostBytes) {
-    throw ImageError("has segments more than 64 MiB apart");
-  }
+  fail_if(program.end() - start > kMostBytes, "has segments more than 64 MiB apart");
   std::string file(static_cast<std::size_t>(program.end() - start), '\0');
   for (const Segment& segment : program.segments) {
     file.replace(static_cast<std::size_t>(segment.address - start), segment.bytes.size(), segment.bytes);

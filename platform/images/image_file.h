@@ -15,6 +15,11 @@ class ImageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+inline void fail_if(bool is_wrong, const std::string& what) {
+  if (is_wrong) {
+    throw ImageError(what);
+  }
+}
 
 /// Bytes that a loader brings to an address.
 struct Segment {

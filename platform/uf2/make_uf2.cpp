@@ -16,6 +16,7 @@
 
 namespace {
 
+using thimble::platform::fail_if;
 using thimble::platform::ImageError;
 using thimble::platform::Program;
 using thimble::platform::Segment;
@@ -34,15 +35,11 @@ bool seal(std::string& elf, Segment& first) {
   if (first.address != kFlashStart) {
     return false;
   }
-  if (first.bytes.size() < kStageBytes) {
-    throw ImageError("has " + std::to_string(first.bytes.size()) +
-                     " bytes in its first segment; the second stage takes 256");
-  }
+  fail_if(first.bytes.size() < kStageBytes, "has " + std::to_string(first.bytes.size()) +
+                                                " bytes in its first segment; the second stage takes 256");
   const std::uint32_t crc = thimble::platform::boot_checksum(first.bytes.substr(0, kSealedBytes));
   const std::uint32_t there = thimble::platform::get_number(first.bytes, kSealedBytes, 4);
-  if (there != 0 && there != crc) {
-    throw ImageError("has code where the checksum of the second stage goes");
-  }
+  fail_if(there != 0 && there != crc, "has code where the checksum of the second stage goes");
   thimble::platform::put_number(first.bytes, kSealedBytes, crc);
   thimble::platform::put_number(elf, first.offset + kSealedBytes, crc);
   return true;

@@ -6,50 +6,26 @@
 
 extern "C" uint8_t __heap_base;  // the linker's: the end of constants and variables
 
-namespace thimble::web {
-namespace {
-
-void field(const char* name, uint32_t value) {
-  apps::put(name);
-  apps::put(uint64_t{value});
-}
-
-void text_field(const char* name, const char* value) {
-  apps::put(name);
-  apps::put(value);
-  apps::put("\"");
-}
-
-}  // namespace
-}  // namespace thimble::web
-
 extern "C" {
 
 // Writes the table of boards (boards/board_table.h) as JSON.
 [[clang::export_name("boards")]] void thimble_boards() {
   using namespace thimble;
-  using web::field;
-  using web::text_field;
   const char* between = "[";
   for (const platform::BoardFacts& board : platform::boards()) {
-    apps::put(between);
-    text_field("{\"name\":\"", board.name);
-    text_field(",\"title\":\"", board.title);
     // Of the file that is downloaded: what its drive or its emulators take.
-    text_field(",\"ending\":\"", board.uf2_family != 0        ? "uf2"
-                                 : board.image_ending[0] != 0 ? board.image_ending
-                                                              : "hex");
-    field(",\"ram\":", board.ram_bytes);
-    field(",\"flash\":", board.flash_bytes);
-    field(",\"stack\":", board.stack_bytes);
-    field(",\"screen\":", static_cast<uint32_t>(board.screen));
-    field(",\"format\":", static_cast<uint32_t>(board.format));
-    field(",\"row_bytes\":", static_cast<uint32_t>(row_bytes(board.format, board.width_px)));
-    field(",\"rows_together\":", static_cast<uint32_t>(band_row_multiple(board.format)));
-    field(",\"width\":", static_cast<uint32_t>(board.width_px));
-    field(",\"height\":", static_cast<uint32_t>(board.height_px));
-    field(",\"buttons\":", static_cast<uint32_t>(board.buttons));
-    apps::put("}");
+    const char* const ending = board.uf2_family != 0        ? "uf2"
+                               : board.image_ending[0] != 0 ? board.image_ending
+                                                            : "hex";
+    const auto number = [](auto value) { return static_cast<uint64_t>(value); };
+    apps::put(between, "{\"name\":\"", board.name, "\",\"title\":\"", board.title, "\",\"ending\":\"", ending,
+              "\",\"ram\":", number(board.ram_bytes), ",\"flash\":", number(board.flash_bytes),
+              ",\"stack\":", number(board.stack_bytes), ",\"screen\":", number(board.screen),
+              ",\"format\":", number(board.format),
+              ",\"row_bytes\":", number(row_bytes(board.format, board.width_px)),
+              ",\"rows_together\":", number(band_row_multiple(board.format)),
+              ",\"width\":", number(board.width_px), ",\"height\":", number(board.height_px),
+              ",\"buttons\":", number(board.buttons), "}");
     between = ",\n";
   }
   apps::put("]");

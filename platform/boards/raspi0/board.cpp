@@ -49,40 +49,18 @@ constexpr uint32_t kPitchWord = 28;
 alignas(16) volatile uint32_t message[32];
 
 bool ask_for_framebuffer() {
+  // clang-format off
   constexpr uint32_t kQuestion[32] = {
-      sizeof(message),
-      0,  // bytes, request
-      0x00048003,
-      8,
-      0,
-      kWidth,
-      kHeight,  // size on the screen
-      0x00048004,
-      8,
-      0,
-      kWidth,
-      kHeight,  // size in memory
-      0x00048005,
-      4,
-      0,
-      kDepthBits,  // bits a pixel
-      0x00048006,
-      4,
-      0,
-      kOrderRgb,  // order of the colours
-      0x00040001,
-      8,
-      0,
-      4096,
-      0,  // framebuffer: its alignment; answers with address and bytes
-      0x00040008,
-      4,
-      0,
-      0,  // bytes of a row
-      0,
-      0,
-      0,  // end
+      sizeof(message), 0,                  // bytes, request
+      0x00048003, 8, 0, kWidth, kHeight,   // size on the screen
+      0x00048004, 8, 0, kWidth, kHeight,   // size in memory
+      0x00048005, 4, 0, kDepthBits,        // bits a pixel
+      0x00048006, 4, 0, kOrderRgb,         // order of the colours
+      0x00040001, 8, 0, 4096, 0,           // framebuffer: its alignment; answers with address and bytes
+      0x00040008, 4, 0, 0,                 // bytes of a row
+      0, 0, 0,                             // end
   };
+  // clang-format on
   for (uint32_t i = 0; i < 32; ++i) {
     message[i] = kQuestion[i];
   }
