@@ -128,10 +128,10 @@ class PlyHeaderParser {
       header_.encoding = PlyEncoding::kAscii;
     } else if (word == "binary_little_endian") {
       header_.encoding = PlyEncoding::kLittleEndian;
-    } else if (word == "binary_big_endian") {
-      header_.encoding = PlyEncoding::kBigEndian;
     } else {
-      fail_if(true, "the format ", quoted(word), " is not ascii, binary_little_endian or binary_big_endian");
+      fail_if(word != "binary_big_endian", "the format ", quoted(word),
+              " is not ascii, binary_little_endian or binary_big_endian");
+      header_.encoding = PlyEncoding::kBigEndian;
     }
     has_format_ = true;
   }
