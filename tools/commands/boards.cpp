@@ -61,7 +61,7 @@ BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& sourc
   BakingOptions options;
   options.name = scene_name(command.scene.arguments.scene);
   options.camera = [&](const CompactTree& tree) {
-    return frame_scene({}, source, tree.level(), tree.bounds()).kept;
+    return frame_scene({}, source, {tree.level(), tree.bounds()}).kept;
   };
   const Baked baked = bake_scene(source, options, progress);
   // A depth deeper every voxel beside a block becomes a node below the nodes that are there. Few of those

@@ -152,7 +152,7 @@ class EffectsStudio {
       : built_(built),
         lit_(options.effects.lighting(source.lighting())),
         used_(used_materials(built.compact())),
-        framing_(frame_scene(options.view, source, built.level(), built.bounds())),
+        framing_(frame_scene(options.view, source, {built.level(), built.bounds()})),
         camera_(framing_.camera) {
     lit_.find_glow(built.compact());
     *note = framing_.note;

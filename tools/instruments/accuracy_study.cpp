@@ -210,7 +210,7 @@ class AccuracyStudio {
  public:
   AccuracyStudio(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options)
       : source_(source), built_(*built), options_(options) {
-    camera_ = frame_scene(options.view, source, built->level(), built->bounds()).camera;
+    camera_ = frame_scene(options.view, source, {built->level(), built->bounds()}).camera;
     shading_ = scene_shading(options.shade, {built->palette().data(), built->palette().size()}, camera_,
                              built->bounds());
     Quality cutting;
@@ -222,9 +222,9 @@ class AccuracyStudio {
   Prepared prepare(const Setting& setting) const {
     ViewWishes view = options_.view;
     view.direction_bits = setting.direction_bits;
-    const Camera camera = frame_scene(view, source_, built_.level(), built_.bounds()).camera;
+    const Camera camera = frame_scene(view, source_, {built_.level(), built_.bounds()}).camera;
     const Camera fine =
-        frame_scene(finer(view, setting.quality.across), source_, built_.level(), built_.bounds()).camera;
+        frame_scene(finer(view, setting.quality.across), source_, {built_.level(), built_.bounds()}).camera;
     return {camera, fine, QualityFrame(built_, setting.quality, camera, fine, shading_, colors_)};
   }
 

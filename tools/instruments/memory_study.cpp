@@ -321,7 +321,7 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
 
   // The deepest one is the judge: all pictures are of its rays, so that nothing but the scene differs.
   DepthScene own(blocks, own_depth, 0, false);
-  const Framing framing = frame_scene(options.view, source, own_depth, own.compact.bounds());
+  const Framing framing = frame_scene(options.view, source, {own_depth, own.compact.bounds()});
   const Camera& camera = framing.camera;
   study.note = framing.note;
   study.pixels =

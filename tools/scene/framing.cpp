@@ -476,16 +476,17 @@ Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   return framing;
 }
 
-Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, int level, const VoxelBox& bounds) {
+Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape) {
   if (wishes.placed || source.camera() == nullptr) {
-    return frame_box(wishes, level, bounds);
+    return frame_shape(wishes, shape);
   }
   Framing framing;
   framing.kept = *source.camera();
   if (wishes.direction_bits != 0) {
     framing.kept.direction_bits = static_cast<std::uint8_t>(wishes.direction_bits);
   }
-  const Status status = set_camera(framing.kept, wishes.width_px, wishes.height_px, level, &framing.camera);
+  const Status status =
+      set_camera(framing.kept, wishes.width_px, wishes.height_px, shape.level, &framing.camera);
   fail_if(status != Status::kOk, "the scene's own camera does not suit a picture of ", wishes.width_px, "x",
           wishes.height_px, ": ", status_text(status),
           "; another --size, or a camera of your own (--eye, --target, --span), helps");
@@ -521,11 +522,6 @@ Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
     framing.note.clear();  // what its box lacks holds nothing
   }
   return framing;
-}
-
-Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape) {
-  return wishes.placed || source.camera() == nullptr ? frame_shape(wishes, shape)
-                                                     : frame_scene(wishes, source, shape.level, shape.bounds);
 }
 
 Framing frame_round(const ViewWishes& wishes, const SceneSource& source, const SceneShape& shape) {

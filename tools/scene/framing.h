@@ -98,9 +98,6 @@ struct Framing {
 /// arguments alone. Throws InputError where rays cannot start or go as wished; the sentence names the option.
 Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds);
 
-/// The camera that the scene brings along, unless `wishes.placed` or it has none; then the one above.
-Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, int level, const VoxelBox& bounds);
-
 /// As a person would frame it: from `wishes.side`, turned and tilted on by `wishes.onward`, what is occupied in
 /// the middle of the picture, filling kPictureFill of its tighter side. With an eye, a target or kPaper: as
 /// `frame_box`, in that direction. A function of its arguments alone. Throws InputError as above.

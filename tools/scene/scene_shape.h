@@ -18,7 +18,7 @@ struct SceneShape {
   VoxelBox bounds;
   /// Corners of voxels whose convex hull is that of everything occupied; the corners of `bounds` where no
   /// compact tree was built. Empty where nothing is occupied.
-  std::vector<Vec3i> corners;
+  std::vector<Vec3i> corners{};
   /// Null where another structure was built.
   const CompactTree* tree = nullptr;
   int threads = 1;                            ///< that may look for a place
