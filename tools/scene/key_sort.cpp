@@ -98,8 +98,10 @@ void sort_bucket(Span<Key> keys, int bits, Span<Key> scratch) {
   }
 }
 
+}  // namespace
+
 template <class Key>
-void sort_all(Span<Key> keys, int key_bits, Bytes scratch, int threads) {
+void sort_keys_fast(Span<Key> keys, int key_bits, Bytes scratch, int threads) {
   const Span<Key> room(reinterpret_cast<Key*>(scratch.data), scratch.size / sizeof(Key));
   if (keys.size < kShortList || key_bits <= kDealBits || room.size == 0) {
     sort_keys(keys, key_bits);
@@ -107,22 +109,14 @@ void sort_all(Span<Key> keys, int key_bits, Bytes scratch, int threads) {
   }
   const int bits = key_bits - kDealBits;
   const BucketBounds bounds = deal(keys, bits);
-  const auto sort_one = [&](std::size_t bucket, Span<Key> own) {
-    sort_bucket(keys.subspan(bounds[bucket], bounds[bucket + 1] - bounds[bucket]), bits, own);
-  };
-  if (threads <= 1) {
-    for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
-      sort_one(bucket, room);
-    }
-    return;
-  }
   const std::size_t share = room.size / static_cast<std::size_t>(threads);
   each_task(kBuckets, threads, [&](std::size_t bucket, std::size_t worker) {
-    sort_one(bucket, room.subspan(worker * share, share));
+    sort_bucket(keys.subspan(bounds[bucket], bounds[bucket + 1] - bounds[bucket]), bits,
+                room.subspan(worker * share, share));
   });
 }
-
-}  // namespace
+template void sort_keys_fast(Span<std::uint32_t> keys, int key_bits, Bytes scratch, int threads);
+template void sort_keys_fast(Span<std::uint64_t> keys, int key_bits, Bytes scratch, int threads);
 
 std::size_t key_sort_scratch_bytes(std::size_t keys, int threads) {
   if (keys < kShortList) {
@@ -130,13 +124,6 @@ std::size_t key_sort_scratch_bytes(std::size_t keys, int threads) {
   }
   return std::min(keys, kMostScratch * static_cast<std::size_t>(threads)) / sizeof(std::uint64_t) *
          sizeof(std::uint64_t);
-}
-
-void sort_keys_fast(Span<std::uint32_t> keys, int key_bits, Bytes scratch, int threads) {
-  sort_all(keys, key_bits, scratch, threads);
-}
-void sort_keys_fast(Span<std::uint64_t> keys, int key_bits, Bytes scratch, int threads) {
-  sort_all(keys, key_bits, scratch, threads);
 }
 
 }  // namespace thimble::tools

@@ -15,7 +15,8 @@ std::size_t key_sort_scratch_bytes(std::size_t keys, int threads);
 /// buckets by their highest 8 bits, and a bucket that fits the scratch (or is dealt again until it does) goes
 /// there and back in passes of 11 bits, lowest first. Buckets are shared out among `threads`, 1 or more.
 /// `scratch` is aligned for keys and overwritten; with none, or for short lists, it is `sort_keys`.
-void sort_keys_fast(Span<std::uint32_t> keys, int key_bits, Bytes scratch, int threads);
-void sort_keys_fast(Span<std::uint64_t> keys, int key_bits, Bytes scratch, int threads);
+/// Key: std::uint32_t or std::uint64_t.
+template <class Key>
+void sort_keys_fast(Span<Key> keys, int key_bits, Bytes scratch, int threads);
 
 }  // namespace thimble::tools
