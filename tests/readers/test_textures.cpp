@@ -125,11 +125,10 @@ std::map<Place, Rgb> voxels_of(const Source& source, int level = 4) {
   const auto& mesh = std::get<TriangleMesh>(source);
   const PaletteMap colors(mesh_colors(mesh, level, false));
   std::map<Place, Rgb> voxels;
-  voxelise(mesh, level, false, &colors,
-           [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-             CHECK(y == 1 << (level - 1));
-             voxels[{x, z}] = colors.palette()[material].color;
-           });
+  voxelise(mesh, level, false, &colors, [&](const UnitPoint& at, int, std::uint8_t material) {
+    CHECK(at[1] == 1 << (level - 1));
+    voxels[{at[0], at[2]}] = colors.palette()[material].color;
+  });
   return voxels;
 }
 
@@ -464,7 +463,7 @@ TEST_CASE(
     const auto& mesh = std::get<TriangleMesh>(source);
     const PaletteMap colors(mesh_colors(mesh, 4, false));
     Glow glow(std::string(16, ' '), 0);
-    voxelise(mesh, 4, false, &colors, [&](std::int32_t x, std::int32_t, std::int32_t, std::uint8_t material) {
+    voxelise(mesh, 4, false, &colors, [&](const UnitPoint& at, int, std::uint8_t material) {
       const Material& entry = colors.palette()[material];
       const bool glows = entry.kind == SurfaceKind::kEmit && entry.emission == 1;
       glow.second = glows ? std::exp2(entry.flux) : glow.second;
@@ -472,7 +471,7 @@ TEST_CASE(
                                  : entry.color == kGreen ? 1
                                  : entry.color == kBlue  ? 2
                                                          : 3;
-      glow.first[static_cast<std::size_t>(x)] = (glows ? "RGB?" : "rgb?")[letter];
+      glow.first[static_cast<std::size_t>(at[0])] = (glows ? "RGB?" : "rgb?")[letter];
     });
     return glow;
   };
@@ -543,9 +542,7 @@ TEST_CASE("texture: clear beside a mesh's part of it -> no voxel of the mesh's r
   auto& mesh = std::get<TriangleMesh>(source);
   const auto voxels = [&] {
     std::vector<std::array<std::int32_t, 3>> all;
-    voxelise(mesh, 5, false, nullptr, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
-      all.push_back({x, y, z});
-    });
+    voxelise(mesh, 5, false, nullptr, [&](const UnitPoint& at, int, std::uint8_t) { all.push_back(at); });
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;

@@ -152,7 +152,7 @@ using VoxelSet = std::set<std::array<int, 3>>;
 
 VoxelSet voxels_of(const TriangleMesh& mesh, int level, bool z_up = false) {
   VoxelSet voxels;
-  voxelise(mesh, level, z_up, nullptr, [&](int x, int y, int z, std::uint8_t) { voxels.insert({x, y, z}); });
+  voxelise(mesh, level, z_up, nullptr, [&](const UnitPoint& at, int, std::uint8_t) { voxels.insert(at); });
   return voxels;
 }
 
@@ -390,9 +390,7 @@ TEST_CASE(
     }
     const PaletteMap colors(mesh_colors(mesh, 6, true));
     std::map<std::array<std::int32_t, 3>, std::uint8_t> last;
-    voxelise(mesh, 6, true, &colors, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t m) {
-      last[{x, y, z}] = m;
-    });
+    voxelise(mesh, 6, true, &colors, [&](const UnitPoint& at, int, std::uint8_t m) { last[at] = m; });
     CHECK_FALSE(last.empty());
     for (const auto& [voxel, material] : last) {
       CHECK(material == colors.index(red_last ? red : blue));
@@ -406,14 +404,13 @@ TEST_CASE("voxelise: few large triangles -> progress is reported between them") 
   mesh.triangles = {{0, 1, 2}, {1, 2, 3}, {0, 2, 3}};
   std::vector<double> told;
   voxelise(
-      mesh, 10, true, nullptr, [](auto, auto, auto, auto) {}, [&](double done) { told.push_back(done); });
+      mesh, 10, true, nullptr, [](auto, auto, auto) {}, [&](double done) { told.push_back(done); });
   CHECK(told.size() == 3);
   CHECK(std::is_sorted(told.begin(), told.end()));
 }
 
 TEST_CASE("voxelise: a sink that throws -> the exception comes through") {
-  CHECK_THROWS_AS(voxelise(tetrahedron(), 3, false, nullptr, [](int, int, int, std::uint8_t) { throw 1; }),
-                  int);
+  CHECK_THROWS_AS(voxelise(tetrahedron(), 3, false, nullptr, [](auto, auto, auto) { throw 1; }), int);
 }
 
 TEST_CASE("voxelise_cells: random triangles -> what each of them meets, with the last one's material") {

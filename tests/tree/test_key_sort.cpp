@@ -85,12 +85,11 @@ class Voxels : public tools::SceneSource {
     std::uint8_t material;
   };
   Voxels(int level, const std::vector<Voxel>& voxels, bool single)
-      : SceneSource(facts_of(level, voxels.size(), single),
-                    [voxels](const tools::VoxelSink& sink, const tools::Progress&) {
-                      for (const Voxel& voxel : voxels) {
-                        sink(voxel.at.x, voxel.at.y, voxel.at.z, voxel.material);
-                      }
-                    }) {}
+      : SceneSource(facts_of(level, voxels.size(), single), [voxels](const tools::VoxelSink& sink) {
+          for (const Voxel& voxel : voxels) {
+            sink(voxel.at.x, voxel.at.y, voxel.at.z, voxel.material);
+          }
+        }) {}
 
  private:
   static tools::SourceFacts facts_of(int level, std::size_t points, bool single) {
@@ -228,7 +227,7 @@ TEST_CASE("points in parts: points that repeat -> no more memory than a grid of 
   facts.points = 4'000'000;
   facts.is_point_set = true;
   facts.single_material = true;
-  const tools::SceneSource source(std::move(facts), [](const tools::VoxelSink& sink, const tools::Progress&) {
+  const tools::SceneSource source(std::move(facts), [](const tools::VoxelSink& sink) {
     for (std::int32_t i = 0; i < 4'000'000; ++i) {
       const std::int32_t place = i % (kSide * kSide * kSide);
       sink(100 + place % kSide, 100 + place / kSide % kSide, 100 + place / kSide / kSide, 0);

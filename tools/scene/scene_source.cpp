@@ -18,17 +18,27 @@
 namespace thimble::tools {
 namespace {
 
-// `sink`, and `progress` with the part done once every so many of `total` voxels.
-VoxelSink metered(const VoxelSink& sink, const Progress& progress, std::uint64_t total) {
-  return [&sink, &progress, total, done = std::uint64_t{0}](std::int32_t x, std::int32_t y, std::int32_t z,
-                                                            std::uint8_t material) mutable {
+// Tells `progress` the part done of what a source streams, once every so many voxels.
+class Meter {
+ public:
+  Meter(const SourceFacts& facts, Progress progress)
+      : progress_(std::move(progress)),
+        total_(facts.points != 0 ? facts.points : std::uint64_t{1} << (3 * facts.level - 3)) {}
+  void add(std::uint64_t voxels) {
     constexpr std::uint64_t kEvery = 1 << 16;
-    sink(x, y, z, material);
-    if (++done % kEvery == 0 && progress && total != 0) {
-      progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
+    done_ += voxels;
+    if (done_ - told_ >= kEvery && progress_) {
+      told_ = done_;
+      progress_(std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)));
     }
-  };
-}
+  }
+
+ private:
+  Progress progress_;
+  std::uint64_t total_;
+  std::uint64_t done_ = 0;
+  std::uint64_t told_ = 0;
+};
 
 std::unique_ptr<SceneSource> generated_scene(const GeneratorSpec& spec) {
   constexpr std::array kNames{"points", "cluster", "spheres", "water", "demo"};  // by GeneratorKind
@@ -42,11 +52,8 @@ std::unique_ptr<SceneSource> generated_scene(const GeneratorSpec& spec) {
   facts.palette = generator_palette(spec.kind);
   facts.camera = generator_camera(spec);
   facts.lighting = generator_lighting(spec);
-  const std::uint64_t total = is_points ? spec.count : std::uint64_t{1} << (3 * spec.depth - 3);
   return std::make_unique<SceneSource>(std::move(facts),
-                                       [spec, total](const VoxelSink& sink, const Progress& progress) {
-                                         generate(spec, metered(sink, progress, total));
-                                       });
+                                       [spec](const VoxelSink& sink) { generate(spec, sink); });
 }
 
 // The level of a world for voxels that lie where they lie: the smallest, or `depth` where that is enough.
@@ -71,18 +78,15 @@ std::unique_ptr<SceneSource> model_scene(std::unique_ptr<VoxelModel> read, std::
   model->for_each([&](auto, auto, auto, auto) { ++facts.points; });
   facts.is_scalable = false;
   facts.palette = model->palette();
-  const std::uint64_t voxels = facts.points;
   if (facts.frames > 1) {
     SourceFacts all = facts;
     all.points = 0;
     model->for_each_in_frames([&](auto, auto, auto, auto) { ++all.points; });
     facts.in_frames = std::make_shared<SceneSource>(
-        std::move(all), [model](const VoxelSink& sink, const Progress&) { model->for_each_in_frames(sink); });
+        std::move(all), [model](const VoxelSink& sink) { model->for_each_in_frames(sink); });
   }
   return std::make_unique<SceneSource>(std::move(facts),
-                                       [model, voxels](const VoxelSink& sink, const Progress& progress) {
-                                         model->for_each(metered(sink, progress, voxels));
-                                       });
+                                       [model](const VoxelSink& sink) { model->for_each(sink); });
 }
 
 // Puts voxels together to cubes of 4 a side of one material, so that a solid grid is built in few steps. Voxels of one
@@ -162,9 +166,7 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
   facts.is_scalable = false;
   facts.palette = colors->palette();
   facts.color_error = colors->error();
-  const std::uint64_t voxels = facts.points;
-  const auto stream = [grid, colors, voxels](const VoxelSink& sink, const Progress& progress) {
-    const VoxelSink take = metered(sink, progress, voxels);
+  const auto stream = [grid, colors](const VoxelSink& sink) {
     Rgb last;
     std::uint8_t material = colors->index(last);  // 0 of a grid without colours
     grid->for_each([&](std::int32_t x, std::int32_t y, std::int32_t z, Rgb color) {
@@ -172,13 +174,13 @@ std::unique_ptr<SceneSource> grid_scene(std::unique_ptr<VoxelGrid> read, std::op
         last = color;
         material = colors->index(color);
       }
-      take(x, y, z, material);
+      sink(x, y, z, material);
     });
   };
   return std::make_unique<SceneSource>(
-      std::move(facts), stream, [stream](const VisitBlock& visit, const Progress& progress) {
+      std::move(facts), stream, [stream](const VisitBlock& visit, const Progress& /*progress*/) {
         CubeGather cubes(visit);
-        stream([&](auto x, auto y, auto z, auto m) { cubes.add(x, y, z, m); }, progress);
+        stream([&](auto x, auto y, auto z, auto m) { cubes.add(x, y, z, m); });
         cubes.end();
       });
 }
@@ -225,13 +227,12 @@ std::unique_ptr<SceneSource> point_scene(std::unique_ptr<PointCloud> read, const
   facts.palette = points->colors.palette();
   facts.color_error = points->colors.error();
   const int level = facts.level;
-  auto scene = std::make_unique<SceneSource>(
-      std::move(facts), [points, as_voxels, level](const VoxelSink& sink, const Progress& progress) {
-        const VoxelSink counted = metered(sink, progress, points->survey.points);
+  auto scene =
+      std::make_unique<SceneSource>(std::move(facts), [points, as_voxels, level](const VoxelSink& sink) {
         if (as_voxels) {
-          place_points(*points->cloud, level, &points->colors, counted);
+          place_points(*points->cloud, level, &points->colors, sink);
         } else {
-          fit_points(*points->cloud, points->survey, level, &points->colors, counted);
+          fit_points(*points->cloud, points->survey, level, &points->colors, sink);
         }
       });
   const Bounds& world = points->survey.world;
@@ -271,11 +272,7 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
   }
   const int level = facts.level;
   return std::make_unique<SceneSource>(
-      std::move(facts),
-      [mesh, colors, level, z_up](const VoxelSink& sink, const Progress& progress) {
-        voxelise(*mesh, level, z_up, colors.get(), sink, progress);
-      },
-      [mesh, colors, level, z_up](const VisitBlock& visit, const Progress& progress) {
+      std::move(facts), [mesh, colors, level, z_up](const VisitBlock& visit, const Progress& progress) {
         const BlockSink sink = [&](const UnitPoint& voxel, int block_level, std::uint8_t material) {
           visit({voxel[0], voxel[1], voxel[2]}, block_level, material);
         };
@@ -344,19 +341,10 @@ std::unique_ptr<SceneSource> baked_scene(BakedFile read, std::optional<int> dept
   }
   facts.look_note = read_look_note(scene.section(SectionKind::kLook));
   facts.baked = file;
-  return std::make_unique<SceneSource>(
-      std::move(facts),
-      [file](const VoxelSink& sink, const Progress& progress) {
-        const CompactTree& voxels = file->scene.tree();
-        const VoxelSink counted = metered(sink, progress, voxels.voxel_count());
-        for_each_block(voxels, [&](const Vec3i& corner, int level, std::uint8_t material) {
-          for_voxels(corner, level,
-                     [&](std::int32_t x, std::int32_t y, std::int32_t z) { counted(x, y, z, material); });
-        });
-      },
-      [file](const VisitBlock& visit, const Progress& /*progress*/) {
-        for_each_block(file->scene.tree(), visit);
-      });
+  return std::make_unique<SceneSource>(std::move(facts),
+                                       [file](const VisitBlock& visit, const Progress& /*progress*/) {
+                                         for_each_block(file->scene.tree(), visit);
+                                       });
 }
 
 SceneSource::SceneSource(SourceFacts facts, Stream stream, StreamBlocks blocks)
@@ -381,14 +369,37 @@ std::array<std::int32_t, 3> SceneSource::extent() const {
   return facts_.extent.value_or(std::array{side, side, side});
 }
 
-void SceneSource::stream_blocks(const VisitBlock& visit, const Progress& progress) const {
-  if (blocks_) {
-    blocks_(visit, progress);
+void SceneSource::stream(const VoxelSink& sink, const Progress& progress) const {
+  if (!stream_) {
+    stream_blocks(
+        [&](const Vec3i& corner, int level, std::uint8_t material) {
+          for_voxels(corner, level,
+                     [&](std::int32_t x, std::int32_t y, std::int32_t z) { sink(x, y, z, material); });
+        },
+        progress);
     return;
   }
-  stream_(
-      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-        visit({x, y, z}, 0, material);
+  Meter meter(facts_, progress);
+  stream_([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+    sink(x, y, z, material);
+    meter.add(1);
+  });
+}
+
+void SceneSource::stream_blocks(const VisitBlock& visit, const Progress& progress) const {
+  if (!blocks_) {
+    stream(
+        [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
+          visit({x, y, z}, 0, material);
+        },
+        progress);
+    return;
+  }
+  Meter meter(facts_, facts_.is_mesh ? Progress{} : progress);
+  blocks_(
+      [&](const Vec3i& corner, int level, std::uint8_t material) {
+        visit(corner, level, material);
+        meter.add(std::uint64_t{1} << (3 * level));
       },
       progress);
 }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "readers/oct.h"
@@ -53,10 +54,12 @@ class SceneSource {
  public:
   /// Calls the sink for each voxel. Where a position repeats, the last one counts; in a point set the one with the
   /// greatest material.
-  using Stream = std::function<void(const VoxelSink& sink, const Progress& progress)>;
+  using Stream = std::function<void(const VoxelSink& sink)>;
+  /// The same in blocks, for a source that has larger ones than voxels. Only a mesh's tells `progress` itself.
   using StreamBlocks = std::function<void(const VisitBlock& visit, const Progress& progress)>;
-  /// `blocks`: the same in blocks, for a source that has larger ones than voxels.
   SceneSource(SourceFacts facts, Stream stream, StreamBlocks blocks = nullptr);
+  SceneSource(SourceFacts facts, StreamBlocks blocks)
+      : SceneSource(std::move(facts), nullptr, std::move(blocks)) {}
 
   const std::string& kind() const { return facts_.kind; }
   int level() const { return facts_.level; }
@@ -95,7 +98,7 @@ class SceneSource {
   /// What their readers left out or had to decide (readers/source.h), each with the file's name.
   const Notes& notes() const { return notes_; }
   void add_notes(const Notes& notes);
-  void stream(const VoxelSink& sink, const Progress& progress) const { stream_(sink, progress); }
+  void stream(const VoxelSink& sink, const Progress& progress) const;
   void stream_blocks(const VisitBlock& visit, const Progress& progress) const;
 
  private:

@@ -125,29 +125,18 @@ class TextScene {
     }
   }
 
-  void stream_blocks(const VisitBlock& visit, const Progress& progress) const {
-    std::uint64_t done = 0;
-    std::uint64_t told = 0;
-    const VisitBlock counted = [&](const Vec3i& at, int level, std::uint8_t material) {
-      visit(at, level, material);
-      constexpr std::uint64_t kEvery = 1 << 16;
-      done += std::uint64_t{1} << (3 * level);
-      if (done - told >= kEvery && progress) {
-        told = done;
-        progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(facts_.points)));
-      }
-    };
+  void stream_blocks(const VisitBlock& visit) const {
     std::size_t model = 0;
     for (std::size_t i = 0; i < text_.parts.size(); ++i) {
       switch (text_.parts[i].kind) {
         case SceneText::PartKind::kModel:
-          stream_model(models_[model++], counted);
+          stream_model(models_[model++], visit);
           break;
         case SceneText::PartKind::kBox:
-          stream_box(text_.parts[i], part_material_[i], counted);
+          stream_box(text_.parts[i], part_material_[i], visit);
           break;
         case SceneText::PartKind::kBall:
-          stream_ball(text_.parts[i], part_material_[i], counted);
+          stream_ball(text_.parts[i], part_material_[i], visit);
           break;
       }
     }
@@ -476,15 +465,7 @@ std::unique_ptr<SceneSource> open_text_scene(const SceneText& text, const SceneA
   all->path.pop_back();
   auto source = std::make_unique<SceneSource>(
       scene->facts(),
-      [scene](const VoxelSink& sink, const Progress& report) {
-        scene->stream_blocks(
-            [&](const Vec3i& at, int level, std::uint8_t material) {
-              for_voxels(at, level,
-                         [&](std::int32_t x, std::int32_t y, std::int32_t z) { sink(x, y, z, material); });
-            },
-            report);
-      },
-      [scene](const VisitBlock& visit, const Progress& report) { scene->stream_blocks(visit, report); });
+      [scene](const VisitBlock& visit, const Progress& /*progress*/) { scene->stream_blocks(visit); });
   scene->add_models_to(source.get());
   return source;
 }

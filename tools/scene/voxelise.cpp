@@ -307,13 +307,4 @@ void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* 
   voxelise_triangles(mesh.triangles.size(), 1, triangle_at, level, {}, sink, progress);
 }
 
-void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,
-              const Progress& progress) {
-  const BlockSink blocks = [&](const UnitPoint& voxel, int block_level, std::uint8_t material) {
-    for_voxels({voxel[0], voxel[1], voxel[2]}, block_level,
-               [&](std::int32_t x, std::int32_t y, std::int32_t z) { sink(x, y, z, material); });
-  };
-  voxelise(mesh, level, z_up, colors, blocks, progress);
-}
-
 }  // namespace thimble::tools

@@ -122,9 +122,6 @@ bool is_shaded(const TriangleMesh& mesh);
 /// their own (mesh_shade.h), and none comes where all is clear.
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress = {});
-/// The same, voxel by voxel.
-void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const VoxelSink& sink,
-              const Progress& progress = {});
 
 // Triangles to voxels cell by cell, for a mesh whose triangles cover each other many times over: a voxel is
 // asked for until one triangle has it, and a cell until it is full, however many triangles meet it.

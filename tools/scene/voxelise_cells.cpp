@@ -6,8 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "scene/world_fit.h"
-
 namespace thimble::tools {
 namespace {
 
