@@ -216,9 +216,7 @@ void CrcSum::add(std::string_view text) {
 
 void CrcSum::add(std::int64_t number) {
   std::array<std::uint8_t, 8> bytes{};
-  for (unsigned i = 0; i < bytes.size(); ++i) {
-    bytes[i] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(number) >> (8 * i));
-  }
+  put_little(bytes.data(), static_cast<std::uint64_t>(number), bytes.size());
   add(bytes);
 }
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "host/packed_picture.h"
 #include "host/y4m.h"
 #include "output/output_file.h"
+#include "output/units.h"
 #include "scene/palette.h"
 #include "thimble/picture/pixel.h"
 
@@ -24,14 +24,6 @@ namespace {
 // and its pixels, one byte an index, by LZW in blocks of at most 255 bytes; at the end 0x3B. LZW: codes from 9 to 12
 // bits, lowest bit first; 256 clears the table, 257 ends the frame, new words count from 258; a full table is cleared.
 using GifPalette = std::array<Rgb8, 256>;
-
-void put(std::string* out, unsigned byte) {
-  out->push_back(static_cast<char>(byte & 0xFFU));
-}
-void put_16(std::string* out, std::int32_t value) {
-  put(out, static_cast<unsigned>(value));
-  put(out, static_cast<unsigned>(value) >> 8);
-}
 
 // Codes of a changing number of bits, in blocks that begin with their length.
 class Codes {
@@ -54,12 +46,12 @@ class Codes {
     if (!block_.empty()) {
       end_block();
     }
-    put(out_, 0);
+    out_->push_back(0);
   }
 
  private:
   void end_block() {
-    put(out_, static_cast<unsigned>(block_.size()));
+    append_little(out_, block_.size(), 1);
     *out_ += block_;
     block_.clear();
   }
@@ -108,39 +100,33 @@ void compress(const std::vector<std::uint8_t>& indices, std::string* out) {
   codes.end();
 }
 
+void put_size(std::string* out, const Image& image) {
+  append_little(out, static_cast<std::uint64_t>(image.width_px), 2);
+  append_little(out, static_cast<std::uint64_t>(image.height_px), 2);
+}
+
 /// What stands in front of the frames. Sides of 1 .. 65,535 pixels.
-std::string gif_header(std::int32_t width_px, std::int32_t height_px, const GifPalette& palette) {
+std::string gif_header(const Image& image, const GifPalette& palette) {
   std::string out = "GIF89a";
-  put_16(&out, width_px);
-  put_16(&out, height_px);
-  put(&out, 0xF7);  // a palette of 2^8 colours, 8 bits a channel
-  put(&out, 0);     // the background's index
-  put(&out, 0);     // pixels are square
+  put_size(&out, image);
+  append_little(&out, 0xF7, 3);  // a palette of 2^8 colours, 8 bits a channel; background 0; square pixels
   for (const Rgb8& color : palette) {
-    put(&out, color.r);
-    put(&out, color.g);
-    put(&out, color.b);
+    for (const std::uint8_t channel : {color.r, color.g, color.b}) {
+      append_little(&out, channel, 1);
+    }
   }
   out += "\x21\xFF\x0BNETSCAPE2.0\x03\x01";
-  put_16(&out, 0);  // for ever
-  put(&out, 0);
+  append_little(&out, 0, 3);  // for ever
   return out;
 }
 
 /// A frame: a palette index for each pixel, row by row from the top; shown for so many hundredths of a second.
-std::string gif_frame(std::int32_t width_px, std::int32_t height_px, const std::vector<std::uint8_t>& indices,
-                      int hundredths) {
-  std::string out = "\x21\xF9\x04\x04";  // what was drawn stays
-  put_16(&out, hundredths);
-  put(&out, 0);  // no colour is transparent
-  put(&out, 0);
-  put(&out, 0x2C);
-  put_16(&out, 0);
-  put_16(&out, 0);
-  put_16(&out, width_px);
-  put_16(&out, height_px);
-  put(&out, 0);  // the palette of all; rows in order
-  put(&out, 8);  // bits of an index
+std::string gif_frame(const Image& image, const std::vector<std::uint8_t>& indices, int hundredths) {
+  std::string out = "\x21\xF9\x04\x04";                            // what was drawn stays
+  append_little(&out, static_cast<std::uint64_t>(hundredths), 4);  // no colour is transparent
+  append_little(&out, 0x2C, 5);                                    // at the upper left
+  put_size(&out, image);
+  append_little(&out, 0x800, 2);  // the palette of all; rows in order; 8 bits an index
   compress(indices, &out);
   return out;
 }
@@ -272,7 +258,7 @@ Film::Film(OutputFile* file, const std::string& path, PartKind kind, std::size_t
     GifColors::count(frame(i * frames / kSamples), &histogram);
   }
   colors_ = std::make_unique<GifColors>(histogram);
-  file_->write(gif_header(first.width_px, first.height_px, colors_->palette()));
+  file_->write(gif_header(first, colors_->palette()));
 }
 
 Film::~Film() = default;
@@ -286,7 +272,7 @@ void Film::add(const Image& image) {
     return;
   }
   file_->write(colors_ != nullptr
-                   ? gif_frame(image.width_px, image.height_px, colors_->indices(image), times_.hundredths)
+                   ? gif_frame(image, colors_->indices(image), times_.hundredths)
                    : host::y4m_color_frame({image.pixels.data(), image.width_px, image.height_px}));
 }
 

@@ -369,9 +369,7 @@ class MaskPyramid {
 std::uint64_t complete_tree(const CompactShape& shape, const VoxelBox& bounds, std::uint64_t in_blocks,
                             std::uint8_t material, Bytes tree) {
   const auto store = [&](std::size_t at, std::uint64_t value, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i) {
-      tree[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
-    }
+    put_little(tree.data + at, value, size);
   };
   const std::uint8_t* const masks = tree.data + kCompactHeaderBytes;
   const std::size_t ranks = kCompactHeaderBytes + ((std::size_t{shape.nodes} + 3) & ~std::size_t{3});

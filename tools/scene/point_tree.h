@@ -1,7 +1,6 @@
 /// Many strewn points as a compact tree, in less memory than a list of their keys takes.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 #include "readers/progress.h"
