@@ -133,8 +133,6 @@ int main(int argc, char** argv) {
   } catch (const thimble::tools::UsageError& error) {
     sentence = subject() + error.what();
     status = kUsageStatus;
-  } catch (const thimble::tools::InputError& error) {
-    sentence = subject() + error.what();
   } catch (const thimble::tools::OutputError& error) {
     sentence = error.what();
   } catch (const std::bad_alloc&) {

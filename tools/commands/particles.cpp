@@ -400,13 +400,7 @@ void run(const ParticlesCommand& given) {
   if (!command.play.quiet) {
     note_coarse_steps(world_options);
   }
-  PlayResult result;
-  try {
-    result = ParticleSession(populated.get(), command.play).run();
-  } catch (const host::ScreenError& error) {
-    throw OutputError(error.what());
-  }
-
+  const PlayResult result = ParticleSession(populated.get(), command.play).run();
   write_files(command, *populated, result, outputs);
   outputs.commit();
   if (!command.play.quiet) {

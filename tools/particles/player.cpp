@@ -129,7 +129,7 @@ Player::Player(PopulatedWorld* world, std::int32_t rate)
     : world_(world), settings_(world->options()), rate_(rate) {
   std::transform(kTools.begin(), kTools.end(), reach_.begin(),
                  [](const ToolFacts& tool) { return tool.reach; });
-  strong_gravity_ = settings_.gravity_q16 == Vec2i{} ? kDefaultGravityQ16 : settings_.gravity_q16;
+  strong_gravity_ = settings_.gravity_q16 == Vec2i{} ? WorldOptions{}.gravity_q16 : settings_.gravity_q16;
 }
 
 // The left button has the tool that was chosen; the others have one each.

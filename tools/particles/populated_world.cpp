@@ -16,17 +16,10 @@ constexpr std::int32_t kSearchCells = 64;
 constexpr std::uint32_t kSpareBalls = 1000;
 
 ParticleConfig config_of(const WorldOptions& options) {
-  ParticleConfig config;
-  config.width = options.width;
-  config.height = options.height;
+  ParticleConfig config = options;
   config.capacity = std::min(kMaxBalls, std::max(2 * options.count, kSpareBalls));
-  config.least_diameter = options.least_diameter;
   config.most_diameter = kMaxBallDiameter;  // so that larger ones can come later
   config.restitution_q16 = restitution_q16(options.bounciness);
-  config.gravity_q16 = options.gravity_q16;
-  config.seed = options.seed;
-  config.substeps_log2 = options.substeps_log2;
-  config.subpixel_bits = options.subpixel_bits;
   return config;
 }
 

@@ -34,22 +34,11 @@ struct Bodies {
 /// of 0 or less, and fewer or more lines than announced.
 Bodies read_bodies(std::string_view text);
 
-/// The gravity of the paper's world in this project: 0.1 cells a step a step, down the picture.
-inline constexpr Vec2i kDefaultGravityQ16{0, 6554};
-
-/// How a world begins.
-struct WorldOptions {
-  std::int32_t width = 800;
-  std::int32_t height = 600;
+/// How a world begins: capacity and restitution follow from what is said here.
+struct WorldOptions : ParticleConfig {
   std::uint32_t count = 693;
-  std::int32_t least_diameter = 2;
-  std::int32_t most_diameter = 12;
   double bounciness = 0.8;
-  Vec2i gravity_q16 = kDefaultGravityQ16;
-  std::uint32_t seed = 1;
   double speed = 3;  ///< of random balls on each axis, of the fastest body; cells a step
-  std::int32_t substeps_log2 = 0;
-  std::int32_t subpixel_bits = 15;
 };
 
 /// What became of the bodies of a file.
