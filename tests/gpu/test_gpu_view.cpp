@@ -24,7 +24,7 @@ std::shared_ptr<const FinishedLook> look_by(const std::string& engine, const std
   viewer::LookWishes wishes;
   wishes.engine = engine;
   wishes.at_edges = at_edges;
-  wishes.across = at_edges ? std::optional<int>(kEdgeGrid) : std::nullopt;
+  wishes.across = at_edges ? kEdgeGrid : 0;
   return std::make_shared<const FinishedLook>(reading.take(), wishes);
 }
 

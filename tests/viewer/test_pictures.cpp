@@ -294,9 +294,7 @@ TEST_CASE(
     wishes.shade = wish.shade;
     wishes.shade_word = "normal";
     if (wish.has_effects) {
-      wishes.effects =
-          EffectChoice{false, Effect::kDirectLight | Effect::kShadows | Effect::kAmbientOcclusion};
-      wishes.effects_word = "direct-light,shadows,ambient-occlusion";
+      wishes.effects.choice = parse_effects("direct-light,shadows,ambient-occlusion").value();
     }
     const auto look = std::make_shared<const FinishedLook>(scene_of(wish.scene), wishes);
     std::vector<std::string> words{"render", wish.scene, "--size", "97x61", "--quiet", "-o"};

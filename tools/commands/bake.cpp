@@ -266,10 +266,8 @@ std::string baked_text(const BakeCommand& command, const BakingOptions& options,
 Stats baked_stats(const BakeCommand& command, const SceneSource& source, const Baked& baked,
                   std::optional<std::uint64_t> limit) {
   const CompactTree& tree = baked.scene.tree();
-  Stats stats;
-  stats.scene = command.scene.arguments.scene;
+  Stats stats(command.scene, source);
   stats.depth = tree.level();
-  stats.points = source.points();
   stats.voxels = tree.voxel_count();
   stats.nodes = tree.node_count();
   stats.tree_bytes = tree.size_bytes();
@@ -279,9 +277,6 @@ Stats baked_stats(const BakeCommand& command, const SceneSource& source, const B
   stats.build_seconds = baked.seconds;
   stats.baked_bytes = baked.bytes.size();
   stats.baked_crc32 = crc_text(baked.scene.crc32());
-  if (command.scene.board != nullptr) {
-    stats.board = command.scene.board->name;
-  }
   return stats;
 }
 
@@ -344,7 +339,7 @@ void add_bake_options(CLI::App& app, const std::shared_ptr<BakeCommand>& command
       "sky, for a mesh smooth-normals, and for a board's display of few greys edges instead of the sky; the "
       "ground, which is no voxels, and the gentle end of bright tones are drawn by thimble render, for the "
       "baked scene as for its file, and never by a chip)",
-      false);
+      "");
   add_text_option(
       app, "--name", "IDENT",
       [command](const std::string& text) {

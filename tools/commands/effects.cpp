@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -60,14 +59,21 @@ struct EffectRow : MedianTime {  ///< times: of the differences, frame by frame
   std::int64_t all_rays() const { return std::accumulate(rays.begin(), rays.end(), std::int64_t{0}); }
 };
 
+// Milliseconds and counts of frames with one set of effects.
+struct Variant {
+  LitScene scene;
+  LitCounts counts;
+  std::vector<double> ms;
+
+  double median_ms() const { return quantile(ms, 0.5); }
+};
+
 struct EffectsStudy {
   EffectSet effects = Effect::kNone;
   std::array<EffectRow, Effect::kCount> rows;  ///< in the order of the bits
-  LitCounts lit;                               ///< the whole frame
-  LitCounts plain;                             ///< the frame without effects
-  double lit_ms = 0;
-  double plain_ms = 0;
-  std::uint64_t state_bytes = 0;  ///< all of it, as --memory counts it
+  Variant lit;                                 ///< the whole frame
+  Variant plain;                               ///< the frame without effects
+  std::uint64_t state_bytes = 0;               ///< all of it, as --memory counts it
   std::string note;
 };
 
@@ -138,13 +144,6 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
   }
 }
 
-// Milliseconds and counts of frames with one set of effects.
-struct Variant {
-  LitScene scene;
-  LitCounts counts;
-  std::vector<double> ms;
-};
-
 class EffectsStudio {
  public:
   EffectsStudio(const SceneSource& source, const BuiltScene& built, const EffectsOptions& options,
@@ -200,7 +199,7 @@ class EffectsStudio {
     const Status status =
         render_lit_band(effects, built_.compact(), camera_, shading_, variant->scene, band, &variant->counts);
     variant->ms.push_back(watch.ms());
-    fail_if(status != Status::kOk, "its lights or surfaces are beyond the limits of a lit picture");
+    check_lit_limits(status);
   }
 
   const BuiltScene& built_;
@@ -231,8 +230,8 @@ void fill(const EffectsStudio& studio, EffectRow* row) {
   for (std::size_t frame = 0; frame < with.ms.size(); ++frame) {
     more.push_back(with.ms[frame] - without.ms[frame]);
   }
-  row->with_ms = quantile(with.ms, 0.5);
-  row->without_ms = quantile(without.ms, 0.5);
+  row->with_ms = with.median_ms();
+  row->without_ms = without.median_ms();
   row->set_times(more);
   row->ram_bytes = lit_state_bytes(with.scene, row->with) - lit_state_bytes(without.scene, row->without) -
                    (row->without == Effect::kNone ? kBaseRamBytes : 0);
@@ -270,13 +269,9 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
       fill(studio, &row);
     }
   }
-  const Variant& whole = studio.of(study.effects);
-  const Variant& plain = studio.of(Effect::kNone);
-  study.lit = whole.counts;
-  study.plain = plain.counts;
-  study.lit_ms = quantile(whole.ms, 0.5);
-  study.plain_ms = quantile(plain.ms, 0.5);
-  study.state_bytes = lit_state_bytes(whole.scene, study.effects);
+  study.lit = studio.of(study.effects);
+  study.plain = studio.of(Effect::kNone);
+  study.state_bytes = lit_state_bytes(study.lit.scene, study.effects);
   return study;
 }
 
@@ -345,9 +340,9 @@ std::string rays_table(const EffectsStudy& study) {
       rows.back().push_back(signed_count(static_cast<std::int64_t>(number)));
     }
   };
-  add("frame without any", study.plain.rays);
+  add("frame without any", study.plain.counts.rays);
   if (study.effects != Effect::kNone) {
-    add("frame with all", study.lit.rays);
+    add("frame with all", study.lit.counts.rays);
   }
   for (const EffectRow& row : study.rows) {
     if (row.called_for) {
@@ -358,9 +353,9 @@ std::string rays_table(const EffectsStudy& study) {
 }
 
 std::string frame_lines(const EffectsStudy& study) {
-  std::string text = "\na frame without effects takes " + fixed(study.plain_ms, 2) + " ms";
+  std::string text = "\na frame without effects takes " + fixed(study.plain.median_ms(), 2) + " ms";
   if (study.effects != Effect::kNone) {
-    text += ", with these " + fixed(study.lit_ms, 2) + " ms and " + grouped(study.state_bytes) +
+    text += ", with these " + fixed(study.lit.median_ms(), 2) + " ms and " + grouped(study.state_bytes) +
             " bytes beside\ntree and band; a lit picture takes " + grouped(kBaseRamBytes) +
             " bytes of RAM and " + grouped(kLitBaseFlashBytes) +
             " of flash before its first effect; what\neffects share is counted with each (flash) or with "

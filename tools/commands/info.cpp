@@ -164,14 +164,11 @@ void run(const SceneOptions& options) {
     fail_if(fault != nullptr, "the compact tree is not sound at ", place, ": ", fault);
     row("compact tree", "sound");
   }
-  Stats stats(options.arguments.scene, *source, built);
+  Stats stats(options, *source, built);
   if (const BakedScene* baked = source->baked()) {
     describe(*baked, row);
     stats.baked_bytes = baked->bytes().size;
     stats.baked_crc32 = crc_text(baked->crc32());
-  }
-  if (options.board != nullptr) {
-    stats.board = options.board->name;
   }
   outputs.write(0, stats_text(stats));
   outputs.commit();

@@ -81,7 +81,8 @@ EffectChoice effect_choice(const RenderCommand& command) {
   if (command.look.shade_name.empty() || command.effects.named()) {
     return command.effects.choice;
   }
-  return command.effects.given && command.look.shade == ShadeMode::kColor ? command.effects.choice : kNone;
+  return command.effects.choice.is_given && command.look.shade == ShadeMode::kColor ? command.effects.choice
+                                                                                    : kNone;
 }
 
 // What a lit picture cannot honour.
@@ -242,9 +243,8 @@ Painting paint_lit(const Subject& subject, const Light& light, GpuEngine* gpu, c
   const bool needs_work = picture.streams == nullptr || subject.command.quality.across != 1;
   const Sampler sampler = lit_sampler(subject.built, subject.shading, picture);
   Painting painting;
-  fail_if(paint_with(painter_of(subject, sampler, needs_work ? subject.built.band() : Bytes()), subject,
-                     progress, &painting) != Status::kOk,
-          "its lights or surfaces are beyond the limits of a lit picture");
+  check_lit_limits(paint_with(painter_of(subject, sampler, needs_work ? subject.built.band() : Bytes()),
+                              subject, progress, &painting));
   painting.preparation_seconds = picture.streams != nullptr ? picture.streams->seconds() : 0;
   return painting;
 }
@@ -274,7 +274,7 @@ Image inked(const Subject& subject, const Image& tones, PixelFormat format, cons
 Stats stats_of(const Subject& subject, const SceneSource& source, const Light& light,
                const Painting& painting) {
   const RenderCommand& command = subject.command;
-  Stats stats(command.scene.arguments.scene, source, subject.built);
+  Stats stats(command.scene, source, subject.built);
   stats.take(painting);
   stats.effects = light.effects;
   if (light.effects != Effect::kNone) {
@@ -290,7 +290,6 @@ Stats stats_of(const Subject& subject, const SceneSource& source, const Light& l
     stats.max_depth = command.quality.max_depth;
   }
   if (command.scene.board != nullptr) {
-    stats.board = command.scene.board->name;
     stats.display_crc32 = crc_of(painting.image.pixels);
   }
   return stats;
@@ -510,7 +509,7 @@ void write_frame(const RenderCommand& command, ImageKind kind, const Image& imag
 }
 
 bool takes_look(const RenderCommand& command) {
-  return command.look.shade_name.empty() && !command.effects.given &&
+  return command.look.shade_name.empty() && !command.effects.choice.is_given &&
          command.scene.structure == StructureKind::kCompact &&
          (command.engine.name == "auto" || command.engine.name == "gpu") && !command.quality.cuts() &&
          command.scene.board == nullptr;

@@ -73,8 +73,7 @@ class LookStudio {
   }
   Painting paint(const Progress& progress) const {
     Painting painting;
-    fail_if(paint_look(canvas_, measured_->exposure_q8, progress, &painting) != Status::kOk,
-            "its lights or surfaces are beyond the limits of a lit picture");
+    check_lit_limits(paint_look(canvas_, measured_->exposure_q8, progress, &painting));
     return painting;
   }
   const LookMeasure& measured() const { return *measured_; }
@@ -167,7 +166,7 @@ void print_look(const RenderCommand& command, const SceneSource& source, const L
 
 Stats stats_of(const RenderCommand& command, const SceneSource& source, LookStudio& studio,
                const Painting& painting) {
-  Stats stats(command.scene.arguments.scene, source, studio.built());
+  Stats stats(command.scene, source, studio.built());
   stats.take(painting);
   stats.build_seconds += studio.preparation_seconds();
   if (studio.look().kind == LookKind::kLit) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <sstream>
 #include <thread>
 #include <vector>
@@ -221,29 +220,23 @@ void add_engine(CLI::App& app, std::string* name, const std::vector<std::string>
 
 }  // namespace
 
-void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, bool names_default) {
+void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, const std::string& usual,
+                     const std::string& value) {
   add_text_option(
-      app, "--effects", "LIST", [choice](const std::string& text) { return take_effects(text, choice); },
-      help)
-      ->default_str(names_default ? "auto" : "")
+      app, "--effects", value, [choice](const std::string& text) { return take_effects(text, choice); }, help)
+      ->default_str(usual)
       ->check(offering(offered()));
   add_normals(app, choice);
 }
 
 void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more,
                         const std::string& usual) {
-  add_text_option(
-      app, "--effects", "auto|none|all|LIST",
-      [wishes](const std::string& text) {
-        wishes->given = true;
-        return take_effects(text, &wishes->choice);
-      },
+  add_effect_list(
+      app, &wishes->choice,
       "what light does: auto (what the scene's materials, lights, water and sky call for), none, all (that, "
       "light, shadows, occlusion, glow and smooth normals), or with commas between them any of " +
-          joined(effect_list(Effect::kAll), ", ") + more)
-      ->default_str(usual)
-      ->check(offering(offered()));
-  add_normals(app, &wishes->choice);
+          joined(effect_list(Effect::kAll), ", ") + more,
+      usual, "auto|none|all|LIST");
   add_whole_option(app, "--bounces", "N", 0, kMaxBounces, &wishes->bounces,
                    concat("rays that follow one another from a pixel by mirrors, glass and water, 0 to ",
                           kMaxBounces, " (default: the scene's own, else ", kDefaultBounces, ")"));

@@ -66,8 +66,8 @@ void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& 
                         const std::string& usual = "auto");
 
 /// --effects (auto, none, all or a list) and --normals alone.
-/// `names_default`: the help ends with "(default: auto)".
-void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help, bool names_default = true);
+void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& help,
+                     const std::string& usual = "auto", const std::string& value = "LIST");
 
 // --engine and --threads: what draws. The pictures are the same.
 

@@ -1,6 +1,5 @@
 // thimble sim: the firmware's own application in the host simulator.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -378,7 +377,7 @@ void add_sim(CLI::App& app) {
       "what the scene is baked for: auto (what it calls for), none, or effects with commas between them "
       "(default: auto, for a file that states no light a sun over the viewer's shoulder with shadows, and "
       "for a display of few greys dark edges)",
-      false);
+      "");
   add_display_options(*sub, command);
   add_file_options(*sub, command);
   command->engine.add_board_engines_to(*sub);

@@ -1,23 +1,32 @@
 #include "commands/stats.h"
 
+#include "boards/board_table.h"
 #include "commands/arguments.h"
+#include "commands/scene_options.h"
 #include "output/tables.h"
 #include "scene/lit_description.h"
 #include "scene/painter.h"
 
 namespace thimble::tools {
 
-Stats::Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built)
-    : scene(scene_name),
-      depth(built.level()),
-      points(source.points()),
-      voxels(built.voxels()),
-      nodes(built.nodes()),
-      tree_bytes(built.tree_bytes()),
-      budget_bytes(built.budget_bytes()),
-      high_water_bytes(built.high_water_bytes()),
-      solid_added(built.solid_added()),
-      build_seconds(built.build_seconds()) {}
+Stats::Stats(const SceneOptions& options, const SceneSource& source)
+    : scene(options.arguments.scene), points(source.points()) {
+  if (options.board != nullptr) {
+    board = options.board->name;
+  }
+}
+
+Stats::Stats(const SceneOptions& options, const SceneSource& source, const BuiltScene& built)
+    : Stats(options, source) {
+  depth = built.level();
+  voxels = built.voxels();
+  nodes = built.nodes();
+  tree_bytes = built.tree_bytes();
+  budget_bytes = built.budget_bytes();
+  high_water_bytes = built.high_water_bytes();
+  solid_added = built.solid_added();
+  build_seconds = built.build_seconds();
+}
 
 void Stats::take(const Painting& painting) {
   build_seconds += painting.preparation_seconds;

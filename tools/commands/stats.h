@@ -20,6 +20,7 @@ class App;
 namespace thimble::tools {
 
 struct Painting;
+struct SceneOptions;
 
 struct Stats {
   std::string scene;
@@ -57,7 +58,8 @@ struct Stats {
   std::optional<LitCounts> lit_counts;  ///< of a lit picture: rays and visits by kind of ray
 
   Stats() = default;
-  Stats(const std::string& scene_name, const SceneSource& source, const BuiltScene& built);
+  Stats(const SceneOptions& options, const SceneSource& source);
+  Stats(const SceneOptions& options, const SceneSource& source, const BuiltScene& built);
   /// What drawing took and counted; what it wanted made first counts as building.
   void take(const Painting& painting);
 };

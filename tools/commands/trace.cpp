@@ -274,7 +274,7 @@ void run(const TraceCommand& command) {
     return RayFile(load_file(command.rays_path, kFileLimitBytes, look),
                    {built.level(), command.direction_bits, command.engine.name == "ray32"});
   });
-  Stats stats(command.scene.arguments.scene, *source, built);
+  Stats stats(command.scene, *source, built);
   stats.rays = judge(command, file);
   FirstHits wide;
   if (stats.rays >= kRaysForMap && command.engine.name == "auto" && command.scene.board == nullptr) {
@@ -285,9 +285,6 @@ void run(const TraceCommand& command) {
   const auto gpu = command.engine.gpu(built);
   stats.engine = command.engine.resolved(wide != nullptr);
   stats.threads = command.threads;
-  if (command.scene.board != nullptr) {
-    stats.board = command.scene.board->name;
-  }
   const HitRows rows(command.output, false, built.structure() != StructureKind::kDense);
   output.write(rows.beginning(stats.rays));
   ProgressBar bar("tracing", command.scene.quiet);

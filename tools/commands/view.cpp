@@ -6,7 +6,6 @@
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/view_options.h"
-#include "output/output_file.h"
 #include "thimble/picture/shading.h"
 #include "viewer/controls.h"
 #include "viewer/viewer.h"
@@ -17,12 +16,9 @@ namespace {
 struct ViewCommand {
   SceneOptions scene;
   viewer::ViewerOptions viewer;
-  EffectWishes effects;
   EngineOptions engine;
   ShadeMode shade = ShadeMode::kDepth;
   int bench_frames = 0;
-  int across = 2;  ///< --samples, where it is given
-  bool at_edges = false;
 };
 
 void run(const ViewCommand& command) {
@@ -32,18 +28,10 @@ void run(const ViewCommand& command) {
   if (!look.shade_word.empty()) {
     look.shade = command.shade;
   }
-  if (command.effects.given) {
-    look.effects = command.effects.choice;
-    look.effects_word = look.effects->automatic ? "auto"
-                        : look.effects->on_top  ? "all"
-                                                : effects_text(look.effects->effects);
-  }
-  look.bounces = command.effects.bounces;
   look.engine = command.engine.name;
-  refuse_if(look.engine == "gpu" && (look.shade || look.effects),
+  refuse_if(look.engine == "gpu" && (look.shade || look.effects.choice.is_given),
             "--engine gpu draws the scene's own look, without --shade and --effects");
-  look.smooth = command.effects.choice.smooth;
-  refuse_if(command.effects.named() && look.shade && command.shade != ShadeMode::kColor, "--shade ",
+  refuse_if(look.effects.named() && look.shade && command.shade != ShadeMode::kColor, "--shade ",
             look.shade_word, " shows no light, and so no --effects");
   if (command.bench_frames != 0) {
     std::printf("%s\n%s\n", viewer::kBenchColumns,
@@ -70,15 +58,9 @@ void add_view_command(CLI::App& app) {
                     &options.display, "where; auto: an X11 window where DISPLAY works, else the terminal");
   add_shade(*sub, &command->shade, "as for render; without it and --effects the scene decides, as there",
             &options.look.shade_word);
-  add_effect_options(*sub, &command->effects, {}, "the scene's own look; none with --shade");
-  add_samples(*sub, &command->across, &command->at_edges, "in the picture at rest",
+  add_effect_options(*sub, &options.look.effects, {}, "the scene's own look; none with --shade");
+  add_samples(*sub, &options.look.across, &options.look.at_edges, "in the picture at rest",
               "those of the scene's own look, else 4");
-  also_check(*sub, [sub, command] {
-    if (is_given(*sub, "--samples")) {
-      command->viewer.look.across = command->across;
-      command->viewer.look.at_edges = command->at_edges;
-    }
-  });
   command->engine.add_view_engines_to(*sub);
   add_threads(*sub, &options.threads, "threads that read and draw");
   add_whole_option(

@@ -183,6 +183,10 @@ EffectSet called_for(const LitDescription& lit, const UsedMaterials& used) {
   return (set & Effect::kDirectLight) != 0 ? set : set & ~Effect::kShadows;
 }
 
+void check_lit_limits(Status status) {
+  fail_if(status != Status::kOk, "its lights or surfaces are beyond the limits of a lit picture");
+}
+
 LitDescription EffectWishes::lighting(LitDescription lit) const {
   lit.rest.bounces = bounces.value_or(lit.rest.bounces);
   return lit;

@@ -101,6 +101,9 @@ LitDescription describe_palette(const Palette& palette);
 /// The same as light of its own, with no other light.
 LitDescription describe_unlit(const Palette& palette);
 
+/// Throws InputError where that is the status of drawing light.
+void check_lit_limits(Status status);
+
 /// What a baked scene holds, with the rest of its palette as plain surfaces. The set that it was baked for is
 /// what it calls for, no more and no less.
 LitDescription describe_baked(const BakedLighting& lighting, const Palette& palette);
@@ -122,7 +125,6 @@ struct EffectChoice {
 /// What --effects, --normals and --bounces say.
 struct EffectWishes {
   EffectChoice choice;
-  bool given = false;  ///< --effects
   std::optional<std::uint8_t> bounces;
 
   /// Whether effects are named.

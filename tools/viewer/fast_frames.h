@@ -2,7 +2,6 @@
 /// animation, with all of their light.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -12,17 +12,11 @@
 #include "thimble/tree/octree.h"
 
 namespace thimble::tools::viewer {
-namespace {
-
-void check(Status status) {
-  fail_if(status != Status::kOk, "its lights or surfaces are beyond the limits of a lit picture");
-}
-
-}  // namespace
 
 FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWishes& wishes)
-    : scene_(std::move(scene)), engine_(wishes.engine), lighting_(scene_->source->lighting()) {
-  lighting_.rest.bounces = wishes.bounces.value_or(lighting_.rest.bounces);
+    : scene_(std::move(scene)),
+      engine_(wishes.engine),
+      lighting_(wishes.effects.lighting(scene_->source->lighting())) {
   lighting_.find_glow(scene_->tree());
   used_ = used_materials(scene_->tree());
   choose(wishes);
@@ -38,34 +32,34 @@ FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWis
 }
 
 void FinishedLook::choose(const LookWishes& wishes) {
-  EffectChoice choice = wishes.effects.value_or(EffectChoice{});
-  choice.smooth = wishes.smooth;
-  if (wishes.effects) {
-    words_.insert(words_.end(), {"--effects", wishes.effects_word});
-  } else {
-    choice = {false, Effect::kNone};  // a --shade that is given shows no light
+  const EffectChoice& choice = wishes.effects.choice;
+  if (choice.is_given) {
+    words_.insert(words_.end(), {"--effects", choice.automatic ? "auto"
+                                              : choice.on_top  ? "all"
+                                                               : effects_text(choice.effects)});
   }
   if (wishes.shade) {
     words_.insert(words_.end(), {"--shade", wishes.shade_word});
   }
-  if (!wishes.effects && !wishes.shade) {
+  if (!choice.is_given && !wishes.shade) {
     own_ = facts_of(*scene_->source, lighting_, scene_->shape);
-    own_wishes_.across = wishes.across.value_or(0);
+    own_wishes_.across = wishes.across;
     own_wishes_.at_edges = wishes.at_edges;
-    own_wishes_.smooth = wishes.smooth;
+    own_wishes_.smooth = choice.smooth;
   }
-  if (wishes.smooth) {
-    words_.insert(words_.end(), {"--normals", *wishes.smooth ? "smooth" : "face"});
+  if (choice.smooth) {
+    words_.insert(words_.end(), {"--normals", *choice.smooth ? "smooth" : "face"});
   }
-  effects_ = chosen_effects(lighting_, used_, choice);
+  // A --shade that is given shows no light.
+  effects_ = choice.is_given ? chosen_effects(lighting_, used_, choice) : Effect::kNone;
   mode_ = wishes.shade.value_or(ShadeMode::kDepth);
-  if (wishes.bounces) {
-    words_.insert(words_.end(), {"--bounces", std::to_string(*wishes.bounces)});
+  if (wishes.effects.bounces) {
+    words_.insert(words_.end(), {"--bounces", std::to_string(*wishes.effects.bounces)});
   }
-  across_ = own_ ? 1 : wishes.across.value_or(2);
+  const int across = wishes.across != 0 ? wishes.across : 2;
+  across_ = own_ ? 1 : across;
   at_edges_ = !own_ && wishes.at_edges;
-  if (!own_ || wishes.across) {
-    const int across = wishes.across.value_or(2);
+  if (!own_ || wishes.across != 0) {
     words_.insert(words_.end(), {"--samples", wishes.at_edges ? "auto" : std::to_string(across * across)});
   }
 }
@@ -89,8 +83,8 @@ void FinishedLook::try_gpu(const Look& look, const Camera& camera, const Shading
     const Band band{Bytes(pixels[by_gpu].data(), pixels[by_gpu].size()), PixelFormat::kRgb888, 0, 0,
                     thin.height_px()};
     const LitScene scene = look.lit_scene();
-    check(by_gpu != 0 ? gpu->render({look.effects, thin, shading, scene}, band, nullptr)
-                      : render_lit_band(look.effects, scene_->tree(), thin, shading, scene, band));
+    check_lit_limits(by_gpu != 0 ? gpu->render({look.effects, thin, shading, scene}, band, nullptr)
+                                 : render_lit_band(look.effects, scene_->tree(), thin, shading, scene, band));
   }
   if (pixels[0] == pixels[1]) {
     gpu_ = std::move(gpu);
@@ -239,7 +233,7 @@ bool paint_into(std::int32_t width_px, std::int32_t height_px, bool are_rows, st
     }
   };
   try {
-    check(paint(show, &painting));
+    check_lit_limits(paint(show, &painting));
   } catch (const Ended&) {
     return false;
   }
@@ -381,7 +375,7 @@ bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std
   for (std::int32_t first = 0; first < image.height_px;) {
     const auto start = std::chrono::steady_clock::now();
     const std::int32_t count = std::min(chunk, image.height_px - first);
-    check(draw_pass(rows, fine_, own_->across, step, first, count, kept, &image));
+    check_lit_limits(draw_pass(rows, fine_, own_->across, step, first, count, kept, &image));
     std::memcpy(rgb->data() + line * static_cast<std::size_t>(first),
                 image.pixels.data() + line * static_cast<std::size_t>(first),
                 line * static_cast<std::size_t>(count));
@@ -439,7 +433,7 @@ void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* r
   const CompactTree& tree = look_->scene_->tree();
   const EffectSet quick = own_ && own_->kind == LookKind::kStars ? Effect::kNone : effects() & kQuickEffects;
   if (quick == Effect::kNone) {
-    check(render_band(tree, thin, quick_shading_, row_of(thin, row, rgb)));
+    check_lit_limits(render_band(tree, thin, quick_shading_, row_of(thin, row, rgb)));
     return;
   }
   constexpr Rgb8 kBehind{1, 0, 2};  // no surface's colour by chance
@@ -454,7 +448,7 @@ void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* r
   if (moving_water_) {
     scene.water = *moving_water_;
   }
-  check(render_lit_band(quick, tree, thin, shading, scene, row_of(thin, row, rgb)));
+  check_lit_limits(render_lit_band(quick, tree, thin, shading, scene, row_of(thin, row, rgb)));
   for (std::int32_t x = 0; own_ && x < thin.width_px(); ++x, rgb += 3) {
     const bool is_behind = own_->has_backdrop && Rgb8{rgb[0], rgb[1], rgb[2]} == kBehind;
     const Rgb8 color = is_behind ? backdrop_color(own_->background, row, thin.height_px())
@@ -472,8 +466,8 @@ void FinishedPicture::draw_behind_row(int step, std::int32_t row, std::uint8_t* 
     }
     return;
   }
-  check(render_lit_band(Effect::kSky, look_->empty_, thin, quick_shading_,
-                        own_ ? own_->lit_scene() : look_->lit_, row_of(thin, row, rgb)));
+  check_lit_limits(render_lit_band(Effect::kSky, look_->empty_, thin, quick_shading_,
+                                   own_ ? own_->lit_scene() : look_->lit_, row_of(thin, row, rgb)));
   if (own_) {
     std::transform(rgb, rgb + 3 * static_cast<std::size_t>(thin.width_px()), rgb,
                    [this](std::uint8_t channel) { return quick_tone_[channel]; });

@@ -43,13 +43,10 @@ struct KeptSamples {
 struct LookWishes {
   std::optional<ShadeMode> shade;  ///< --shade
   std::string shade_word;
-  std::optional<EffectChoice> effects;  ///< --effects
-  std::string effects_word;
-  std::optional<std::uint8_t> bounces;  ///< --bounces
-  std::optional<bool> smooth;           ///< --normals
-  std::optional<int> across;            ///< --samples are its square
-  bool at_edges = false;                ///< --samples auto; `across` is then kEdgeGrid
-  std::string engine = "auto";          ///< --engine: of the scene's own look
+  EffectWishes effects;
+  int across = 0;               ///< --samples are its square; 0: not given
+  bool at_edges = false;        ///< --samples auto; `across` is then kEdgeGrid
+  std::string engine = "auto";  ///< --engine: of the scene's own look
 };
 
 /// What a scene's pictures have in common, whatever the camera.
