@@ -17,6 +17,15 @@ class Subcommand : public CLI::App {
   std::vector<std::function<void()>> checks;
 };
 
+// The number that all of `text` is.
+template <class Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc{} && next == end ? std::optional(number) : std::nullopt;
+}
+
 constexpr std::size_t kHelpColumn = 30;
 constexpr char kOffered[] = "offered";  // the name of a check that keeps words
 
@@ -82,23 +91,13 @@ std::string wrapped(const std::string& text, std::size_t column, std::size_t wid
 }
 
 std::optional<std::int64_t> parse_whole(std::string_view text, std::int64_t low, std::int64_t high) {
-  std::int64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto [next, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || next != end || number < low || number > high) {
-    return std::nullopt;
-  }
-  return number;
+  const auto number = number_in<std::int64_t>(text);
+  return number && *number >= low && *number <= high ? number : std::nullopt;
 }
 
 std::optional<double> parse_real(std::string_view text) {
-  double number = 0;
-  const char* end = text.data() + text.size();
-  const auto [next, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || next != end || !std::isfinite(number)) {
-    return std::nullopt;
-  }
-  return number;
+  const auto number = number_in<double>(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 bool parse_reals(std::string_view text, std::span<double> numbers) {

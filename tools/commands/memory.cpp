@@ -2,7 +2,6 @@
 // smaller depth or budget does to its picture.
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 
 #include "commands/arguments.h"

@@ -1,7 +1,6 @@
 #include "instruments/accuracy_study.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "output/plot.h"

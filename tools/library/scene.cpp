@@ -1,8 +1,6 @@
 // The command's parts behind one object (thimble/files.h).
 #include <CLI/CLI.hpp>
 #include <mutex>
-#include <optional>
-#include <utility>
 
 #include "commands/arguments.h"
 #include "commands/bake_command.h"

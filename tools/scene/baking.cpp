@@ -1,7 +1,6 @@
 #include "scene/baking.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstring>
 
