@@ -101,15 +101,13 @@ std::optional<double> parse_real(std::string_view text) {
 }
 
 bool parse_reals(std::string_view text, std::span<double> numbers) {
-  for (double& number : numbers) {
-    const bool is_last = &number == &numbers.back();
-    const std::size_t comma = text.find(',');
-    const auto parsed = parse_real(text.substr(0, comma));
-    if (!parsed || (comma == std::string_view::npos) != is_last) {
+  const std::vector<std::string> words = CLI::detail::split(std::string(text) + ',', ',');
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto parsed = words.size() == numbers.size() ? parse_real(words[i]) : std::nullopt;
+    if (!parsed) {
       return false;
     }
-    number = *parsed;
-    text.remove_prefix(is_last ? 0 : comma + 1);
+    numbers[i] = *parsed;
   }
   return true;
 }

@@ -277,15 +277,12 @@ void add_table(CLI::App& app) {
       *sub, "--points", "N,N,...",
       [command](const std::string& text) -> std::string {
         command->points.clear();
-        for (std::size_t at = 0; at <= text.size();) {
-          const std::size_t comma = std::min(text.find(',', at), text.size());
-          const auto number = parse_whole(std::string_view(text).substr(at, comma - at), 0,
-                                          static_cast<std::int64_t>(kMaxGeneratorPoints));
+        for (const std::string& word : CLI::detail::split(text + ',', ',')) {
+          const auto number = parse_whole(word, 0, static_cast<std::int64_t>(kMaxGeneratorPoints));
           if (!number) {
             return "is not a list of whole numbers from 0 to " + std::to_string(kMaxGeneratorPoints);
           }
           command->points.push_back(static_cast<std::uint64_t>(*number));
-          at = comma + 1;
         }
         return {};
       },

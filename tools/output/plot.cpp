@@ -381,18 +381,22 @@ std::string scatter_text(const Scatter& scatter) {
     svg += label(axes.left + 6, axes.top - 6, "start", scatter.infinite_name, " font-size=\"11\"");
   }
   svg += axes.names(scatter.x_label, scatter.y_label);
+  const auto place = [&](const auto& point) {
+    const auto [x, y] = point;
+    return std::pair{scales.x_at(x), scales.y_at(y)};
+  };
+  std::vector<std::pair<double, double>> rings;
+  for (const FrontPoint& point : scatter.front) {
+    rings.push_back(place(std::pair{point.x, point.y}));
+  }
   if (!scatter.front.empty()) {
-    svg += polyline("class=\"front\"", scatter.front, [&](const FrontPoint& point) {
-      return std::pair{scales.x_at(point.x), scales.y_at(point.y)};
-    });
+    svg += polyline("class=\"front\"", rings, [](const auto& ring) { return ring; });
   }
   for (std::size_t i = 0; i < scatter.clouds.size(); ++i) {
     const std::string fill = std::string("fill=\"") + kColors[i % kColors.size()] + "\"";
     if (scatter.clouds[i].joined) {
       svg += polyline("fill=\"none\" stroke=\"" + std::string(kColors[i % kColors.size()]) + "\"",
-                      scatter.clouds[i].points, [&](const auto& point) {
-                        return std::pair{scales.x_at(point.first), scales.y_at(point.second)};
-                      });
+                      scatter.clouds[i].points, place);
     }
     for (const auto& [x, y] : scatter.clouds[i].points) {
       svg += circle(scales.x_at(x), scales.y_at(y), 4, fill);
@@ -405,21 +409,15 @@ std::string scatter_text(const Scatter& scatter) {
   if (!scatter.front.empty()) {
     svg += label(axes.left, names + kLineHeight / 2, "start", scatter.front_name, " font-weight=\"bold\"");
   }
-  std::vector<std::pair<double, double>> rings;
-  for (const FrontPoint& point : scatter.front) {
-    rings.emplace_back(scales.x_at(point.x), scales.y_at(point.y));
-  }
   Numbers numbers(rings);
   for (std::size_t i = 0; i < scatter.front.size(); ++i) {
-    const FrontPoint& point = scatter.front[i];
-    const double x = scales.x_at(point.x);
-    const double y = scales.y_at(point.y);
+    const auto& [x, y] = rings[i];
     svg += circle(x, y, 6, "class=\"ring\"");
     svg += numbers.label_at(x, y, std::to_string(i + 1));
     const std::size_t name_column = i / name_rows;
     const double column = axes.left + static_cast<double>(name_column) * axes.width() / 2;
     svg += label(column, names + kLineHeight * (static_cast<double>(i % name_rows) + 1.5), "start",
-                 std::to_string(i + 1) + "  " + point.name, " font-size=\"11\"");
+                 std::to_string(i + 1) + "  " + scatter.front[i].name, " font-size=\"11\"");
   }
   return svg + "</svg>\n";
 }
