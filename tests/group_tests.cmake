@@ -35,6 +35,30 @@ function(thimble_group_tests)
   endforeach()
 endfunction()
 
+# thimble_add_cases(NAME PROGRAM SOURCE): the cases of a file as a test. A sanitized command takes four times as long, and slow
+# cases start it thousands of times; a GPU is not sanitized at all: the optimised build alone has these.
+file(READ slow_cases.txt THIMBLE_SLOW_CASES)
+string(REGEX REPLACE "[,;]" "?" THIMBLE_SLOW_CASES "${THIMBLE_SLOW_CASES}")
+string(REGEX REPLACE "(^|\n)#[^\n]*|\n~" "\n" THIMBLE_SLOW_CASES "${THIMBLE_SLOW_CASES}")
+string(STRIP "${THIMBLE_SLOW_CASES}" THIMBLE_SLOW_CASES)
+string(REGEX REPLACE "\n+" "*," THIMBLE_SLOW_CASES "${THIMBLE_SLOW_CASES}")
+function(thimble_add_cases name program source)
+  get_filename_component(file ${source} NAME)
+  get_filename_component(folder ${source} DIRECTORY)
+  get_filename_component(group ${folder} NAME)
+  set(without)
+  if(THIMBLE_SANITIZE AND source MATCHES "/commands/|/test_gpu_(command|device|light|view)[.]")
+    set(without "--test-case-exclude=${THIMBLE_SLOW_CASES}*")
+  endif()
+  add_test(NAME ${name} COMMAND ${program} --source-file=*/${group}/${file} ${without})
+  set_tests_properties(${name} PROPERTIES TIMEOUT 900
+    ENVIRONMENT "UBSAN_OPTIONS=print_stacktrace=1;ASAN_OPTIONS=handle_sigill=1")
+  # doctest passes when nothing matches; here that means that a file holds no test.
+  if(NOT without)
+    set_property(TEST ${name} APPEND PROPERTY FAIL_REGULAR_EXPRESSION "test cases: +0 ")
+  endif()
+endfunction()
+
 # thimble_label(NAME): a row that draws on a GPU does so under the validation layer, which must say nothing; it is skipped where
 # there is no device.
 function(thimble_label name)
