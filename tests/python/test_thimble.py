@@ -146,6 +146,8 @@ class Pictures(unittest.TestCase):
                                   ({"rows": "0:3"}, "only the command writes")):
             with self.assertRaisesRegex(thimble.Error, sentence):
                 scene.render(32, 32, **options)
+        with self.assertRaisesRegex(thimble.Error, "--size"):
+            scene.render(2**31, 1)
         with self.assertRaisesRegex(thimble.Error, "--z-up takes no value"):
             thimble.open("castle", z_up=1)
         with self.assertRaisesRegex(thimble.Error, "only the command writes"):

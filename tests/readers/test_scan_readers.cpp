@@ -312,6 +312,12 @@ TEST_CASE(
     CHECK(read_points(read_las, file)[0].color == wanted);
     CHECK(notes_hold(source_of(read_las, file), "12 bits") == (red == 4080 || red == 4095));
     CHECK((red != 65535 || notes_of(source_of(read_las, file)).empty()));
+    const auto of_bytes = [](const SharedBytes& bytes, const ReadOptions& options, const Progress& progress) {
+      ReadOptions stated = options;
+      stated.full_color = 255;
+      return read_las(bytes, stated, progress);
+    };
+    CHECK(read_points(of_bytes, file)[0].color.r == 255);  // what is above is full
   }
 }
 

@@ -149,7 +149,7 @@ class LasCloud final : public PointCloud {
     return static_cast<std::uint16_t>(load_bits(color + 2 * channel, 2, false));
   }
   std::uint8_t byte_of(std::uint16_t component) const {
-    return static_cast<std::uint8_t>((component * 255U + full_ / 2) / full_);
+    return static_cast<std::uint8_t>(std::min((component * 255U + full_ / 2) / full_, 255U));
   }
 
   SharedBytes file_;

@@ -40,6 +40,11 @@ def _threads(given: Optional[int]) -> int:
     return _THREADS if given is None else given
 
 
+def _side(pixels: Any) -> int:
+    """A side of a picture; what no 32 bits hold is as far out of range as what they just hold, and refused as that."""
+    return max(-2**31, min(int(pixels), 2**31 - 1))
+
+
 def _words(options: Dict[str, Any]) -> List[bytes]:
     """Keywords as the words of the command line, in the bytes of the system's paths."""
     words = []
@@ -195,11 +200,11 @@ class Scene:
         "mono" | "ink", effects="none" | "shadows,sky", samples, background, ground, engine and threads;
         `thimble render --help` has all.
         """
-        return self._built.render(int(width), int(height), _words(options))
+        return self._built.render(_side(width), _side(height), _words(options))
 
     def png(self, width: int = 800, height: int = 600, **options: Any) -> bytes:
         """The same as the bytes of a PNG."""
-        return self._built.render_png(int(width), int(height), _words(options))
+        return self._built.render_png(_side(width), _side(height), _words(options))
 
     def depth_image(self, width: int = 800, height: int = 600, *, threads: Optional[int] = None,
                     **options: Any) -> _np.ndarray:
@@ -207,7 +212,7 @@ class Scene:
 
         The camera is that of `render` with the same options.
         """
-        return self._built.depth_image(int(width), int(height), _words(options), _threads(threads))
+        return self._built.depth_image(_side(width), _side(height), _words(options), _threads(threads))
 
     def voxels(self) -> Voxels:
         """All that is solid, as arrays."""
