@@ -28,6 +28,13 @@ constexpr uint8_t kBgr = 0x08;
 constexpr uint8_t kResetMs = 120;
 constexpr uint8_t kSleepMs = 120;
 
+// The code of a format on controllers with 12 and 16 bits; 0: it has none.
+constexpr uint8_t code_of(PixelFormat format, uint8_t upper) {
+  return format == PixelFormat::kRgb565Be ? static_cast<uint8_t>(upper | 5)
+         : format == PixelFormat::kRgb444 ? static_cast<uint8_t>(upper | 3)
+                                          : 0;
+}
+
 }  // namespace
 
 bool ColorPanel::command(uint8_t code, const uint8_t* bytes, size_t count) {
@@ -140,17 +147,6 @@ bool ColorPanel::sleep(bool on) {
   bus_.wait_ms(bus_.context, kSleepMs);
   return command(kDisplayOn, nullptr, 0);
 }
-
-namespace {
-
-// The code of a format on controllers with 12 and 16 bits; 0: it has none.
-constexpr uint8_t code_of(PixelFormat format, uint8_t upper) {
-  return format == PixelFormat::kRgb565Be ? static_cast<uint8_t>(upper | 5)
-         : format == PixelFormat::kRgb444 ? static_cast<uint8_t>(upper | 3)
-                                          : 0;
-}
-
-}  // namespace
 
 bool St7735::begin(const PanelBus& bus, const ColorGeometry& geometry, PixelFormat format,
                    Rotation rotation) {

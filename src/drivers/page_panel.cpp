@@ -140,6 +140,10 @@ bool PagePanel::sleep(bool on) {
   return commands({on ? kOff : kOn});
 }
 
+bool PagePanel::contrast(uint8_t level) {
+  return (kind_ != Kind::kSt7567 || level < 64) && commands({kContrast, level});
+}
+
 bool PagePanel::begin_oled(const Oled& oled, const PageGeometry& geometry, Rotation rotation) {
   const bool turned = rotation == Rotation::k180;
   if (!commands({kClock,
@@ -180,17 +184,11 @@ bool Ssd1306::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation 
          (geometry.width_px != 72 || geometry.height_px != 40 || commands({kReference, 0x30})) &&
          begin_oled(kOled, geometry, rotation);
 }
-bool Ssd1306::contrast(uint8_t level) {
-  return commands({kContrast, level});
-}
 
 bool Sh1106::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation rotation) {
   constexpr Oled kOled{0x50, {kConverter, 0x8B, kPumpVoltage | 2, kOff}, 0x80, 0x22, 0x35};  // it is off
   return PagePanel::begin(Kind::kSh1106, bus, geometry, rotation) && commands({kOff}) &&
          begin_oled(kOled, geometry, rotation);
-}
-bool Sh1106::contrast(uint8_t level) {
-  return commands({kContrast, level});
 }
 
 bool St7567::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation rotation) {
@@ -212,9 +210,6 @@ bool St7567::begin(const PanelBus& bus, const PageGeometry& geometry, Rotation r
     wait(50);
   }
   return clear() && commands({kFromMemory, kNormal, kOn});
-}
-bool St7567::contrast(uint8_t level) {
-  return level < 64 && commands({kContrast, level});
 }
 
 }  // namespace thimble::drivers

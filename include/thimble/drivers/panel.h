@@ -116,6 +116,8 @@ class PagePanel {
   bool inverse(bool on);
   /// The display off, with its memory kept, and on again.
   bool sleep(bool on);
+  /// False, and nothing sent, above 63 on an ST7567, whose electronic volume it is.
+  bool contrast(uint8_t level);
 
   int32_t width_px() const { return geometry_.width_px; }
   int32_t height_px() const { return geometry_.height_px; }
@@ -154,22 +156,18 @@ class Ssd1306 : public PagePanel {
  public:
   /// Sets the panel up, clears it and turns it on. False also for a geometry or a rotation that it does not have.
   bool begin(const PanelBus& bus, const PageGeometry& geometry, Rotation rotation = Rotation::kNone);
-  bool contrast(uint8_t level);
 };
 
 /// 128 x 64 in 132 columns.
 class Sh1106 : public PagePanel {
  public:
   bool begin(const PanelBus& bus, const PageGeometry& geometry, Rotation rotation = Rotation::kNone);
-  bool contrast(uint8_t level);
 };
 
 /// An LCD of 128 x 64 in 132 columns.
 class St7567 : public PagePanel {
  public:
   bool begin(const PanelBus& bus, const PageGeometry& geometry, Rotation rotation = Rotation::kNone);
-  /// The electronic volume, 0 .. 63.
-  bool contrast(uint8_t level);
 };
 
 // --- Colour displays: ST7735, ST7789, ILI9341; PixelFormat::kRgb565Be, or kRgb444 where the controller has 12 bits.
