@@ -7,18 +7,24 @@ namespace {
 
 static_assert(kMaxBalls <= INT32_MAX && static_cast<uint32_t>(THIMBLE_NO_PARTICLE) == kNoBall);
 
+// All but gravity, which is a vector in the core.
+template <class From, class To>
+void copy_config(const From& from, To* to) {
+  to->width = from.width;
+  to->height = from.height;
+  to->capacity = from.capacity;
+  to->least_diameter = from.least_diameter;
+  to->most_diameter = from.most_diameter;
+  to->restitution_q16 = from.restitution_q16;
+  to->seed = from.seed;
+  to->substeps_log2 = from.substeps_log2;
+  to->subpixel_bits = from.subpixel_bits;
+}
+
 ParticleConfig config_of(const thimble_particle_config_t& from) {
   ParticleConfig config;
-  config.width = from.width;
-  config.height = from.height;
-  config.capacity = from.capacity;
-  config.least_diameter = from.least_diameter;
-  config.most_diameter = from.most_diameter;
-  config.restitution_q16 = from.restitution_q16;
+  copy_config(from, &config);
   config.gravity_q16 = {from.gravity_x_q16, from.gravity_y_q16};
-  config.seed = from.seed;
-  config.substeps_log2 = from.substeps_log2;
-  config.subpixel_bits = from.subpixel_bits;
   return config;
 }
 
@@ -59,17 +65,9 @@ extern "C" void thimble_particle_config_default(thimble_particle_config_t* confi
     return;
   }
   const ParticleConfig from;
-  config->width = from.width;
-  config->height = from.height;
-  config->capacity = from.capacity;
-  config->least_diameter = from.least_diameter;
-  config->most_diameter = from.most_diameter;
-  config->restitution_q16 = from.restitution_q16;
+  copy_config(from, config);
   config->gravity_x_q16 = from.gravity_q16.x;
   config->gravity_y_q16 = from.gravity_q16.y;
-  config->seed = from.seed;
-  config->substeps_log2 = from.substeps_log2;
-  config->subpixel_bits = from.subpixel_bits;
 }
 
 extern "C" size_t thimble_particles_bytes(const thimble_particle_config_t* config) {
