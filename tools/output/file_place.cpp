@@ -39,6 +39,22 @@ bool is_same_inode(const struct stat& a, const struct stat& b) {
   return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
+// By device and inode, and where nothing stands yet by folder and name.
+bool is_one_file(const FilePlace& a, const FilePlace& b) {
+  if (a.path == b.path || (a.descriptor >= 0 && a.descriptor == b.descriptor)) {
+    return true;
+  }
+  if (a.error == 0 || b.error == 0) {
+    return a.error == 0 && b.error == 0 && is_same_inode(a.info, b.info);
+  }
+  const std::filesystem::path first = a.target;
+  const std::filesystem::path second = b.target;
+  struct stat folder {};
+  struct stat other {};
+  return first.filename() == second.filename() && ::stat((first.parent_path() / ".").c_str(), &folder) == 0 &&
+         ::stat((second.parent_path() / ".").c_str(), &other) == 0 && is_same_inode(folder, other);
+}
+
 // Whether writing to `output` spoils what `input` has. A socket may be both ends.
 bool spoils(const FilePlace& output, const FilePlace& input) {
   return !is_device(output) && !(output.error == 0 && S_ISSOCK(output.info.st_mode)) &&
@@ -89,21 +105,6 @@ FilePlace::FilePlace(const std::string& given) : path(given), target(given) {
     at = at.parent_path() / next;  // `next` alone where it begins at the root
   }
   error = ::stat(path.c_str(), &info) == 0 ? 0 : errno;
-}
-
-bool is_one_file(const FilePlace& a, const FilePlace& b) {
-  if (a.path == b.path || (a.descriptor >= 0 && a.descriptor == b.descriptor)) {
-    return true;
-  }
-  if (a.error == 0 || b.error == 0) {
-    return a.error == 0 && b.error == 0 && is_same_inode(a.info, b.info);
-  }
-  const std::filesystem::path first = a.target;
-  const std::filesystem::path second = b.target;
-  struct stat folder {};
-  struct stat other {};
-  return first.filename() == second.filename() && ::stat((first.parent_path() / ".").c_str(), &folder) == 0 &&
-         ::stat((second.parent_path() / ".").c_str(), &other) == 0 && is_same_inode(folder, other);
 }
 
 OutputClaim::OutputClaim(const std::vector<std::string>& paths, const std::vector<std::string>& inputs,

@@ -20,9 +20,6 @@ struct FilePlace {
   struct stat info {};
 };
 
-/// Whether they are one file: by device and inode, and where nothing stands yet by folder and name.
-bool is_one_file(const FilePlace& a, const FilePlace& b);
-
 /// The outputs of a run, which are not to be what it reads, nor one another.
 class OutputClaim {
  public:

@@ -1,6 +1,5 @@
 #include "output/units.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdio>

@@ -50,25 +50,20 @@ namespace {
 constexpr Rgb8 kGround{10, 12, 18};
 constexpr Rgb8 kText{228, 232, 238};
 
-void put(std::vector<std::uint8_t>* rgb, std::size_t pixel, Rgb8 color) {
-  std::uint8_t* const at = rgb->data() + 3 * pixel;
-  at[0] = color.r;
-  at[1] = color.g;
-  at[2] = color.b;
-}
-
 }  // namespace
 
 void draw_world(const PopulatedWorld& populated, std::vector<std::uint8_t>* rgb) {
   const ParticleWorld& world = populated.world();
   const BitField& field = world.field();
-  const auto width = static_cast<std::size_t>(field.width());
-  rgb->resize(3 * width * static_cast<std::size_t>(field.height()));
+  const std::size_t row_bytes = 3 * static_cast<std::size_t>(field.width());
+  rgb->resize(row_bytes * static_cast<std::size_t>(field.height()));
+  const auto put = [&](std::int32_t x, std::int32_t y, Rgb8 color) {
+    store_pixel(rgb->data() + row_bytes * static_cast<std::size_t>(y), x, y, PixelFormat::kRgb888, color);
+  };
   for (std::int32_t y = 0; y < field.height(); ++y) {
     for (std::int32_t x = 0; x < field.width(); ++x) {
       const bool is_set = (field.cells_32(x >> 5, y) >> (x & 31) & 1U) != 0;
-      put(rgb, static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x),
-          is_set ? apps::kWallColor : kGround);
+      put(x, y, is_set ? apps::kWallColor : kGround);
     }
   }
   for_each_ball(world, [&](const Particle& ball) {
@@ -77,10 +72,7 @@ void draw_world(const PopulatedWorld& populated, std::vector<std::uint8_t>* rgb)
     for (std::int32_t row = 0; row < ball.diameter; ++row) {
       for (std::int32_t column = 0; column < ball.diameter; ++column) {
         if ((rows[row] >> column & 1U) != 0) {
-          put(rgb,
-              static_cast<std::size_t>(ball.corner.y + row) * width +
-                  static_cast<std::size_t>(ball.corner.x + column),
-              color);
+          put(ball.corner.x + column, ball.corner.y + row, color);
         }
       }
     }
@@ -97,7 +89,7 @@ void draw_figures(std::int32_t width_px, std::int32_t height_px, std::string_vie
   host::draw_text(&canvas, 5 * scale, 5 * scale, scale, kText, text);
   for (std::size_t pixel = 0; pixel < canvas.pixels.size(); ++pixel) {
     if (canvas.pixels[pixel] == kText) {
-      put(rgb, pixel, kText);
+      store_pixel(rgb->data() + 3 * pixel, 0, 0, PixelFormat::kRgb888, kText);
     }
   }
 }

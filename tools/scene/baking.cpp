@@ -10,7 +10,6 @@
 #include "scene/built_scene.h"
 #include "scene/default_look.h"
 #include "scene/generators.h"
-#include "scene/host_memory.h"
 #include "scene/named_scenes.h"
 #include "scene/tone_table.h"
 #include "thimble/light/render.h"

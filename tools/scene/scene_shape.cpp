@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <iterator>
 
 #include "scene/built_scene.h"
 #include "scene/scene_source.h"

@@ -21,6 +21,16 @@ NamedView side_of(Action view) {
   return kSides[static_cast<std::size_t>(view) - static_cast<std::size_t>(Action::kFront)];
 }
 
+constexpr double kRightAngle = 1.57079632679489661923;
+constexpr double kLeastDistance = 0.25;  // in voxels
+// Within the -4 .. 5 worlds from which rays may start.
+constexpr double kLowWorlds = -3.99;
+constexpr double kHighWorlds = 4.99;
+
+double rounded(double value, double steps) {
+  return std::round(value * steps) / steps;
+}
+
 }  // namespace
 
 ViewWishes CameraState::wishes(std::int32_t width_px, std::int32_t height_px) const {
@@ -100,20 +110,6 @@ void CameraState::change_scene(const OpenScene& scene) {
     orbit_ = Orbit(orbit_->eye(), orbit_->target(), orbit_->up(), scene.side());
   }
 }
-
-namespace {
-
-constexpr double kRightAngle = 1.57079632679489661923;
-constexpr double kLeastDistance = 0.25;  // in voxels
-// Within the -4 .. 5 worlds from which rays may start.
-constexpr double kLowWorlds = -3.99;
-constexpr double kHighWorlds = 4.99;
-
-double rounded(double value, double steps) {
-  return std::round(value * steps) / steps;
-}
-
-}  // namespace
 
 Orbit::Orbit(const Real3& eye, const Real3& target, const Real3& up, double side)
     : target_(target), side_(side) {

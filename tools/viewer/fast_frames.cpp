@@ -13,6 +13,10 @@ constexpr std::size_t kMostListBytes = std::size_t{2} << 30;
 constexpr Rgb8 kNothing{1, 0, 2};
 constexpr int kBehindStep = kMostStep;
 
+constexpr int kTrialStep = 4;
+constexpr int kFramesToSharpen = 6;  // so many that were fast enough
+constexpr double kSpare = 0.8;       // of the time, for a finer step
+
 }  // namespace
 
 FastFrames::FastFrames(std::shared_ptr<const OpenScene> scene, bool is_plain, int threads)
@@ -140,14 +144,6 @@ void FastFrames::put_behind(const FinishedPicture& picture, int step) {
     }
   }
 }
-
-namespace {
-
-constexpr int kTrialStep = 4;
-constexpr int kFramesToSharpen = 6;  // so many that were fast enough
-constexpr double kSpare = 0.8;       // of the time, for a finer step
-
-}  // namespace
 
 void LitPace::take(double seconds, double most_seconds) {
   if (seconds > most_seconds && step_ == 1) {

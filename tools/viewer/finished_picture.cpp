@@ -9,6 +9,7 @@
 
 #include "scene/magnify.h"
 #include "thimble/light/render.h"
+#include "thimble/picture/render.h"
 #include "thimble/tree/octree.h"
 
 namespace thimble::tools::viewer {
@@ -200,19 +201,9 @@ constexpr std::chrono::milliseconds kChunkTime{40};
 constexpr std::int32_t kMostRowsAThread = 8;
 constexpr std::int32_t kEdgeRowsAThread = 8;  // many samples are drawn together
 
-void put(Rgb8 color, std::uint8_t* to) {
-  to[0] = color.r;
-  to[1] = color.g;
-  to[2] = color.b;
-}
-
 Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
   return {Bytes(rgb, row_bytes(PixelFormat::kRgb888, camera.width_px())), PixelFormat::kRgb888, 0, row, 1};
 }
-
-}  // namespace
-
-namespace {
 
 // A picture by `paint`, of which `rgb` gets rows as they come where there `are_rows`. False where `goes_on` ended it.
 template <class Paint>
@@ -453,16 +444,16 @@ void FinishedPicture::draw_quick_row(int step, std::int32_t row, std::uint8_t* r
     const bool is_behind = own_->has_backdrop && Rgb8{rgb[0], rgb[1], rgb[2]} == kBehind;
     const Rgb8 color = is_behind ? backdrop_color(own_->background, row, thin.height_px())
                                  : Rgb8{quick_tone_[rgb[0]], quick_tone_[rgb[1]], quick_tone_[rgb[2]]};
-    put(color, rgb);
+    store_pixel(rgb, 0, row, PixelFormat::kRgb888, color);
   }
 }
 
 void FinishedPicture::draw_behind_row(int step, std::int32_t row, std::uint8_t* rgb) const {
   const Camera thin = camera().thinned(step);
   if (own_ && own_->has_backdrop) {
-    for (std::int32_t x = 0; x < thin.width_px(); ++x, rgb += 3) {
-      const Rgb8 color = backdrop_color(own_->background, row, thin.height_px());
-      put(color, rgb);
+    const Rgb8 color = backdrop_color(own_->background, row, thin.height_px());
+    for (std::int32_t x = 0; x < thin.width_px(); ++x) {
+      store_pixel(rgb, x, row, PixelFormat::kRgb888, color);
     }
     return;
   }

@@ -24,7 +24,6 @@
 #include "scene/lit_description.h"
 #include "scene/lit_streams.h"
 #include "scene/look_picture.h"
-#include "thimble/picture/render.h"
 #include "viewer/open_scene.h"
 #include "wide/threads.h"
 
@@ -54,8 +53,6 @@ class FinishedLook {
  public:
   /// Throws InputError for what the scene does not take.
   FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWishes& wishes);
-  FinishedLook(const FinishedLook&) = delete;
-  FinishedLook& operator=(const FinishedLook&) = delete;
 
   /// The options of `thimble render` that look so.
   const std::vector<std::string>& words() const { return words_; }

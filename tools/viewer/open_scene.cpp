@@ -71,7 +71,9 @@ FileWatch::Mark FileWatch::look(const std::string& path) {
   if (::stat(path.c_str(), &status) != 0) {
     return {};
   }
-  return {true, status.st_ino, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+  return {std::uint64_t{status.st_ino}, static_cast<std::uint64_t>(status.st_size),
+          static_cast<std::uint64_t>(status.st_mtim.tv_sec),
+          static_cast<std::uint64_t>(status.st_mtim.tv_nsec)};
 }
 
 void FileWatch::watch(const std::vector<std::string>& paths) {
@@ -95,7 +97,7 @@ bool FileWatch::has_changed(double seconds) {
   for (Watched& file : files_) {
     const Mark now = look(file.path);
     // One that is gone may come back: editors write a new file beside the old one.
-    rest = rest && now == file.last && (now.exists || !file.known.exists);
+    rest = rest && now == file.last && (now != Mark{} || file.known == Mark{});
     changed = changed || now != file.known;
     file.last = now;
   }

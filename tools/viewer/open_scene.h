@@ -1,6 +1,7 @@
 /// A scene as the viewer has it, and the thread that reads one while the screen stays alive.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -30,9 +31,6 @@ struct OpenScene {
 class BackgroundTask {
  public:
   virtual ~BackgroundTask() = default;
-  BackgroundTask() = default;
-  BackgroundTask(const BackgroundTask&) = delete;
-  BackgroundTask& operator=(const BackgroundTask&) = delete;
 
   /// Makes it end soon, with nothing; takes no time.
   void cancel() { cancelled_.store(true); }
@@ -84,18 +82,11 @@ class FileWatch {
   bool has_changed(double seconds);
 
  private:
-  struct Mark {
-    bool exists = false;
-    std::uint64_t inode = 0;
-    std::int64_t bytes = 0;
-    std::int64_t seconds = 0;
-    std::int64_t nanoseconds = 0;
-    friend bool operator==(const Mark&, const Mark&) = default;
-  };
+  using Mark = std::array<std::uint64_t, 4>;  // inode, bytes, seconds and nanoseconds; of no file all 0
   struct Watched {
     std::string path;
-    Mark known;
-    Mark last;
+    Mark known{};
+    Mark last{};
   };
   static Mark look(const std::string& path);
 

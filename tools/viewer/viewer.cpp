@@ -17,7 +17,6 @@
 #include "scene/moving_pool.h"
 #include "viewer/camera_state.h"
 #include "viewer/fast_frames.h"
-#include "viewer/finished_picture.h"
 #include "viewer/open_scene.h"
 #include "viewer/picking.h"
 #include "viewer/saving.h"

@@ -27,6 +27,11 @@ std::map<std::string, std::span<const std::uint8_t>>& files() {
 std::string own_file;  // the first that is loaded
 std::string model;     // the last one beside it
 
+// Those that are free again. Pages of a WebAssembly memory take none of the machine's until they are written, but they
+// are never given back: the next frame of an animation is built where the one before was.
+std::vector<Bytes> kept_memory;
+std::vector<const std::uint8_t*> large_memory;  // free or not
+
 }  // namespace
 
 std::string model_at_fault() {
@@ -125,13 +130,6 @@ HostMemory::HostMemory(std::size_t size) : size_(size) {
     }
   }
 }
-
-// Those that are free again. Pages of a WebAssembly memory take none of the machine's until they are written, but they
-// are never given back: the next frame of an animation is built where the one before was.
-namespace {
-std::vector<Bytes> kept_memory;
-std::vector<const std::uint8_t*> large_memory;  // free or not
-}  // namespace
 
 HostMemory HostMemory::largest() {
   HostMemory memory;

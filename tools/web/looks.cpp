@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "scene/default_look.h"
 #include "scene/framing.h"
 #include "scene/look_picture.h"
 #include "web/look_block.h"

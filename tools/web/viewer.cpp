@@ -104,12 +104,6 @@ Bytes row_of_picture(int32_t y) {
   return viewer.picture.subspan(stride * static_cast<size_t>(y), stride);
 }
 
-void put(Rgb8 color, uint8_t* to) {
-  to[0] = color.r;
-  to[1] = color.g;
-  to[2] = color.b;
-}
-
 Shading shading_of(const Camera& camera, Span<const Rgb8> palette) {
   Shading shading;
   shading.mode = ShadeMode::kColor;
@@ -150,9 +144,10 @@ Status draw_quick(const Camera& camera, int32_t first, int32_t rows, Bytes pixel
     const Rgb8 behind = backdrop_color(look.background, y, camera.height_px());
     for (int32_t x = 0; x < camera.width_px(); ++x, pixel += kPixelBytes) {
       if (shows_behind && pixel[0] == kBehind.r && pixel[1] == kBehind.g && pixel[2] == kBehind.b) {
-        put(behind, pixel);
+        store_pixel(pixel, 0, y, PixelFormat::kRgb888, behind);
       } else if (is_lit) {
-        put({look.quick_tone[pixel[0]], look.quick_tone[pixel[1]], look.quick_tone[pixel[2]]}, pixel);
+        store_pixel(pixel, 0, y, PixelFormat::kRgb888,
+                    {look.quick_tone[pixel[0]], look.quick_tone[pixel[1]], look.quick_tone[pixel[2]]});
       }
     }
   }
@@ -237,7 +232,7 @@ Status draw_lit(const Camera& camera, int32_t y, int32_t across, Bytes to) {
   const Status status = trace_samples(camera, y * across, across, nullptr);
   const Rgb8 behind = backdrop_color(viewer.look.background, y, camera.height_px() / across);
   for (int32_t x = 0; x < camera.width_px() / across; ++x) {
-    put(finished(camera, x, across, behind), to.data + kPixelBytes * static_cast<size_t>(x));
+    store_pixel(to.data, x, y, PixelFormat::kRgb888, finished(camera, x, across, behind));
   }
   return status;
 }
@@ -534,8 +529,8 @@ extern "C" {
   finish.step = pixels;
   finish.samples_width = camera.width_px();
   finish.last_row = rows > 1 ? rows - 1 : 1;
-  put(backdrop_color(look.background, 0, 2), finish.top);
-  put(backdrop_color(look.background, 1, 2), finish.bottom);
+  store_pixel(finish.top, 0, 0, PixelFormat::kRgb888, backdrop_color(look.background, 0, 2));
+  store_pixel(finish.bottom, 0, 0, PixelFormat::kRgb888, backdrop_color(look.background, 1, 2));
   finish.tone = viewer.tone;
   return &frame;
 }
