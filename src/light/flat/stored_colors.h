@@ -12,13 +12,12 @@ namespace {
 using namespace bricks;
 
 // How a colour becomes a format's pixel.
-enum class Storing : uint8_t { kGrays, kHalfwords, kBytes, kAny };
+enum class Storing : uint8_t { kNibbles, kBits, kHalfwords, kBytes, kAny };
 
 Storing storing_of(PixelFormat format) {
-  if (format == PixelFormat::kMono1 || format == PixelFormat::kGray4) {
-    return Storing::kGrays;
-  }
-  return is_halfword(format)                                               ? Storing::kHalfwords
+  return format == PixelFormat::kGray4                                     ? Storing::kNibbles
+         : format == PixelFormat::kMono1                                   ? Storing::kBits
+         : is_halfword(format)                                             ? Storing::kHalfwords
          : format == PixelFormat::kGray8 || format == PixelFormat::kRgb888 ? Storing::kBytes
                                                                            : Storing::kAny;
 }
@@ -35,10 +34,9 @@ constexpr Thresholds thresholds() {
   return result;
 }
 constexpr Thresholds kDither = thresholds();
-constexpr uint32_t kNoDither = kWhite - 64 * kWhite / 128;
 
-// A colour as it is stored. kGrays: the step below it, and the rest, out of kWhite. kHalfwords: the pixel of the steps
-// below it, and each channel's rest. kBytes: the pixel. kAny: the colour itself.
+// A colour as it is stored. kNibbles, kBits: the step below it, and the rest, out of kWhite. kHalfwords: the pixel of the
+// steps below it, and each channel's rest. kBytes: the pixel. kAny: the colour itself.
 struct FlatInk {
   uint32_t low;
   uint16_t rest[3];
@@ -54,8 +52,8 @@ class StoredPixels {
  protected:
   StoredPixels(const Frame& frame, const Band& band, size_t stride)
       : frame_(frame), band_(band), stride_(stride), storing_(storing_of(band.format)) {
-    is_whole_ = storing_ == Storing::kHalfwords && frame.options.dither &&
-                ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
+    is_whole_ =
+        storing_ == Storing::kHalfwords && ((reinterpret_cast<size_t>(band.pixels.data) | stride) & 1U) == 0;
   }
 
   uint8_t* line_of(int32_t y) const { return lit::line_of(band_, stride_, y); }
@@ -95,16 +93,18 @@ class StoredPixels {
                      : uint32_t{stored.r} | uint32_t{stored.g} << 8 | uint32_t{stored.b} << 16;
       return;
     }
-    if (storing_ == Storing::kGrays) {
+    const bool is_gray = storing_ <= Storing::kBits;
+    if (is_gray) {
       channel[0] = (77 * channel[0] + 150 * channel[1] + 29 * channel[2]) >> 8;
     }
-    for (int i = 0; i < (storing_ == Storing::kGrays ? 1 : 3); ++i) {
-      const uint32_t levels = storing_ == Storing::kHalfwords       ? (i == 1 ? 63 : 31)
-                              : band_.format == PixelFormat::kGray4 ? 15
-                                                                    : 1;
-      const uint32_t value = channel[is_format<PixelFormat::kBgr565>(band_.format) ? 2 - i : i] * levels;
-      ink->low |= value / kWhite << (storing_ == Storing::kGrays || i == 2 ? 0 : i == 1 ? 5 : 11);
-      ink->rest[i] = static_cast<uint16_t>(value % kWhite);
+    // Without dither the nearest step is stored, and no rest is left.
+    const bool dithers = frame_.options.dither;
+    for (int i = 0; i < (is_gray ? 1 : 3); ++i) {
+      const uint32_t levels = !is_gray ? (i == 1 ? 63 : 31) : storing_ == Storing::kNibbles ? 15 : 1;
+      const uint32_t value = channel[is_format<PixelFormat::kBgr565>(band_.format) ? 2 - i : i] * levels +
+                             (dithers ? 0 : kWhite / 2);
+      ink->low |= value / kWhite << (is_gray || i == 2 ? 0 : i == 1 ? 5 : 11);
+      ink->rest[i] = dithers ? static_cast<uint16_t>(value % kWhite) : 0;
     }
   }
 
@@ -117,17 +117,15 @@ class StoredPixels {
 
   [[gnu::always_inline]] void store(int32_t x, int32_t y, const FlatInk& ink) {
     uint8_t* line = line_of(y);
-    const uint32_t limit = frame_.options.dither ? kDither.at[(y & 7) << 3 | (x & 7)] : kNoDither;
-    if (storing_ == Storing::kGrays) {
-      const uint32_t step = ink.low + (ink.rest[0] >= limit ? 1U : 0U);
-      if (band_.format == PixelFormat::kGray4) {
-        line[x >> 1] = static_cast<uint8_t>(line[x >> 1] | step << ((x & 1) != 0 ? 0 : 4));
-      } else {
-        line[x >> 3] = static_cast<uint8_t>(line[x >> 3] | step << (7 - (x & 7)));
-      }
-      return;
+    const uint32_t limit = kDither.at[(y & 7) << 3 | (x & 7)];
+    const uint32_t step = ink.low + (ink.rest[0] >= limit ? 1U : 0U);  // of a grey
+    if (storing_ == Storing::kNibbles) {
+      line[x >> 1] = static_cast<uint8_t>(line[x >> 1] | step << ((x & 1) != 0 ? 0 : 4));
+    } else if (storing_ == Storing::kBits) {
+      line[x >> 3] = static_cast<uint8_t>(line[x >> 3] | step << (7 - (x & 7)));
+    } else {
+      store_color(line, x, y, limit, ink);
     }
-    store_color(line, x, y, limit, ink);
   }
 
   // Stores an ink in the pixels of a tile that a mask selects.
