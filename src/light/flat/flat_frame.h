@@ -132,7 +132,8 @@ class FlatSink : StoredPixels,
     store(x, y, ink_of_face(material_of(course.landing.voxel), face, lights));
   }
 
-  void miss(int32_t x, int32_t y) {
+  // Not inlined, as ask: the loop over pixels has no registers for what few of them take.
+  [[gnu::noinline]] void miss(int32_t x, int32_t y) {
     if constexpr (kIsWet<kSet>) {
       if (!this->is_dry(frame_.camera.ray(x, y).direction)) {
         this->note(pixel_at(x, y), kNothing);
@@ -210,7 +211,7 @@ class FlatSink : StoredPixels,
     }
   }
 
-  void ask(int32_t x, int32_t y) {
+  [[gnu::noinline]] void ask(int32_t x, int32_t y) {
     const uint32_t pixel = pixel_at(x, y);
     asked_[pixel >> 5] |= 1U << (pixel & 31U);
   }

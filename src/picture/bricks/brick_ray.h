@@ -124,13 +124,15 @@ class BrickRay {
     }
   enter:  // a brick, by a plane of axis_
     if (seldom((left_ & kSpecial) != 0)) {
-      if ((left_ & kLeft) != 0) {
+      if (kFromFace || (left_ & kLeft) != 0) {
         return kMissed;
       }
-      if (!begin_brick()) {
-        return kFromFace ? kMissed : kAsk;
+      if constexpr (!kFromFace) {
+        if (!begin_brick()) {
+          return kAsk;
+        }
+        goto entered;
       }
-      goto entered;
     }
     if (!find_brick() || !skip_air()) {
       return kMissed;
@@ -204,11 +206,7 @@ class BrickRay {
     }
     goto enter;
   hit:
-    if constexpr (OneCourse::kAim == Aim::kInk) {
-      return name_axis() ? ink() : kAsk;
-    } else {
-      return answer();
-    }
+    return answer();
   }
 
  private:
@@ -356,16 +354,13 @@ class BrickRay {
   }
   [[gnu::always_inline]] bool solid() const { return (half_at(at_, 0) >> shift_ & 1U) != 0; }
 
-  // Finds the brick that the ray has entered. For rays of shadow it is known where nothing behind a brick is solid:
-  // there it returns false if the brick is empty, and else sets kInside, so that the ray ends with this brick.
+  // Finds the brick that the ray has entered. Returns false where a ray of shadow ends: the brick is empty, and it is
+  // known that nothing behind it is solid.
   [[gnu::always_inline]] bool find_brick() {
     if constexpr (OneCourse::kAim == Aim::kShadow && !kEnds) {
       const uint32_t number = number_at<false>(course_.directory, cell_);
-      if (course_.is_free(cell_)) {
-        if (number == 0) {
-          return false;
-        }
-        left_ |= kInside;
+      if (number == 0 && course_.is_free(cell_)) {
+        return false;
       }
       at_ = brick_at(number);
     } else {
@@ -415,9 +410,11 @@ class BrickRay {
     return true;
   }
 
-  // The result for every Aim but kInk.
+  // The result for a ray that meets something.
   [[gnu::always_inline]] int32_t answer() {
-    if constexpr (OneCourse::kAim == Aim::kShadow) {
+    if constexpr (OneCourse::kAim == Aim::kInk) {
+      return name_axis() ? ink() : kAsk;
+    } else if constexpr (OneCourse::kAim == Aim::kShadow) {
       return kShadowed;
     } else {
       // Aim::kNear asks only for t, which is the same for all faces entered there.
@@ -433,28 +430,24 @@ class BrickRay {
 
   // Enters a brick in the unusual cases: the ray waits outside of the box, or starts here.
   [[gnu::always_inline]] bool begin_brick() {
-    if constexpr (kFromFace) {
-      return false;
-    } else {
-      if ((left_ & kInside) != 0) {
-        rest_a_ -= course_.behind * d_a_;
-        rest_b_ -= course_.behind * d_b_;
-      }
-      // A count of 512 - bricks is the box's near side; below it the ray is still outside and waits.
-      const Vec3i& side = course_.frame->side;
-      uint32_t number = 0;
-      if ((left_ & kWaiting) == 0 || (count_of(left_, kA) >= 512U - static_cast<uint32_t>(side[kA]) &&
-                                      count_of(left_, kB) >= 512U - static_cast<uint32_t>(side[kB]))) {
-        left_ &= ~kWaiting;
-        number = number_at<OneCourse::kDeep>(course_.directory, cell_);
-      }
-      at_ = brick_at(number);
-      if ((left_ & kInside) != 0 && solid()) {
-        return false;
-      }
-      left_ &= ~kInside;
-      return true;
+    if ((left_ & kInside) != 0) {
+      rest_a_ -= course_.behind * d_a_;
+      rest_b_ -= course_.behind * d_b_;
     }
+    // A count of 512 - bricks is the box's near side; below it the ray is still outside and waits.
+    const Vec3i& side = course_.frame->side;
+    uint32_t number = 0;
+    if ((left_ & kWaiting) == 0 || (count_of(left_, kA) >= 512U - static_cast<uint32_t>(side[kA]) &&
+                                    count_of(left_, kB) >= 512U - static_cast<uint32_t>(side[kB]))) {
+      left_ &= ~kWaiting;
+      number = number_at<OneCourse::kDeep>(course_.directory, cell_);
+    }
+    at_ = brick_at(number);
+    if ((left_ & kInside) != 0 && solid()) {
+      return false;
+    }
+    left_ &= ~kInside;
+    return true;
   }
 
   // Goes to the next voxel on an axis; returns whether it lies in the next brick.
@@ -491,9 +484,6 @@ class BrickRay {
   // Crosses the planes that the ray reaches at the same time; it spends no time in the voxels between them. Returns
   // false when closest_hit must say what the ray hits, or when the ray ends here.
   [[gnu::always_inline]] bool cross_together() {
-    if constexpr (OneCourse::kAim == Aim::kShadow && !kEnds) {
-      left_ &= ~kInside;  // the ray may stay in its brick, which is then found again
-    }
     if (rest_a_ == 0 || rest_b_ == 0) {  // with the plane of c
       if (ends()) {
         return false;

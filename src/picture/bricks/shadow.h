@@ -118,6 +118,9 @@ struct FacePoint {
   bool faces_up;  // the face looks to larger coordinates
 };
 
+// The fields of counts of bricks on some axes, a bit each.
+constexpr uint32_t kFields[8] = {0, 0x3FF, 0xFFC00, 0xFFFFF, 0x3FF00000, 0x3FF003FF, 0x3FFFFC00, 0x3FFFFFFF};
+
 // Where a ray towards a light starts: counts of bricks in its numbering, the voxel, and the place in that voxel, mirrored.
 struct ShadowStart {
   uint32_t left;
@@ -146,7 +149,7 @@ template <int kC, class OneCourse>
 
 // Whether a ray meets something solid.
 template <bool kDeep>
-bool is_shadowed(const ShadowCourse<kDeep>& course, ShadowStart& start) {
+bool is_shadowed(const ShadowCourse<kDeep>& course, const ShadowStart& start) {
   if constexpr (kDeep) {
     int32_t at[3];
     for (int k = 0; k < 3; ++k) {
@@ -163,11 +166,8 @@ bool is_shadowed(const ShadowCourse<kDeep>& course, ShadowStart& start) {
     course.planes = static_cast<uint32_t>(slabs - 1);
   }
   const uint32_t number = number_at<kDeep>(course.directory, start.cell);
-  if (course.is_free(start.cell)) {
-    if (number == 0) {
-      return false;
-    }
-    start.left |= kInside;
+  if (number == 0 && course.is_free(start.cell)) {
+    return false;
   }
   const int32_t answer = course.c == 0   ? shadow_along<0>(course, number, start)
                          : course.c == 1 ? shadow_along<1>(course, number, start)
@@ -208,28 +208,29 @@ bool is_shadowed(const ShadowCourse<kDeep>& course, const FacePoint& point) {
 template <bool kDeep, class Sight>
 bool is_shadowed(const ShadowCourse<kDeep>& light, const Sight& course, const FacePoint& point) {
   const auto& landing = course.landing;
-  ShadowStart start{landing.left, landing.cell, landing.voxel & 63U, {}};
-  const uint32_t differ = light.mirrored ^ course.mirrored;
-  const uint32_t fields = ((differ << 18 | differ << 9 | differ) & 0x100401U) * 1023;  // of counts of bricks
-  start.left += (light.both_left & fields) - 2 * (landing.left & fields);
+  const uint32_t fields = kFields[light.mirrored ^ course.mirrored];
+  uint32_t left = landing.left + (light.both_left & fields) - 2 * (landing.left & fields);
+  int32_t cell = landing.cell;
+  uint32_t place = landing.voxel & 63U;
+  uint32_t within[3];
 #pragma GCC unroll(kDivides ? 3 : 1)
   for (int i = 0; i < 3; ++i) {
     const auto in = static_cast<uint32_t>(point.within[i]);
-    if (in != 0) {
-      start.within[i] = light.goes_down(i) ? 256 - in : in;
-    } else if (i == point.axis || light.goes_down(i)) {
+    within[i] = light.goes_down(i) && in != 0 ? 256 - in : in;
+    if (in == 0 && (i == point.axis || light.goes_down(i))) {
       // Goes to the next voxel: across the face, or where a ray that goes down starts on a plane.
       const uint32_t field = 3U << 2 * i;
-      if ((start.place & field) == (light.goes_down(i) ? 0 : field)) {
-        start.place ^= field;
-        start.cell += light.next_brick[i];
-        start.left += 1U << 10 * i;
+      if ((place & field) == (light.goes_down(i) ? 0 : field)) {
+        place ^= field;
+        cell += light.next_brick[i];
+        left += 1U << 10 * i;
       } else {
-        start.place += light.goes_down(i) ? 0U - (1U << 2 * i) : 1U << 2 * i;
+        place += light.goes_down(i) ? 0U - (1U << 2 * i) : 1U << 2 * i;
       }
     }
   }
-  return (start.left & kLeft) == 0 && is_shadowed(light, start);
+  return (left & kLeft) == 0 &&
+         is_shadowed(light, ShadowStart{left, cell, place, {within[0], within[1], within[2]}});
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ template <int kAxis, class OneCourse, class Direction>
 [[gnu::always_inline]] inline void find_within(const OneCourse& course, const int32_t (&way)[3],
                                                const Direction& d, FacePoint* point) {
   const uint32_t speed = d[kAxis];
+#pragma GCC unroll(kDivides ? 3 : 1)
   for (int i = 0; i < 3; ++i) {
     if (i == kAxis) {
       point->within[i] = 0;
@@ -105,17 +106,17 @@ void find_point(const SightCourse<kDeep>& course, const Vec3<uint32_t>& d, FaceP
 }
 
 template <int kC, class OneCourse>
-[[gnu::noinline]] int32_t sight_along(const OneCourse& course, uint32_t d_a, uint32_t d_b, uint32_t d_c) {
-  return BrickRay<kC, kAnySigns, OneCourse>(course, d_a, d_b, d_c).trace();
+[[gnu::noinline]] int32_t sight_along(const OneCourse& course, const Vec3<uint32_t>& d) {
+  return BrickRay<kC, kAnySigns, OneCourse>(course, d[kOtherA<kC>], d[kOtherB<kC>], d[kC]).trace();
 }
 
 // Traces the ray of a pixel, of direction `d`, mirrored, and tells the sink what it meets.
 template <class Sink>
 [[gnu::always_inline]] inline void see(Sink& sink, const SightCourse<Sink::kDeep>& course, int32_t x,
                                        int32_t y, const Vec3<uint32_t>& d) {
-  const int32_t answer = course.c == 0   ? sight_along<0>(course, d.y, d.z, d.x)
-                         : course.c == 1 ? sight_along<1>(course, d.x, d.z, d.y)
-                                         : sight_along<2>(course, d.x, d.y, d.z);
+  const int32_t answer = course.c == 0   ? sight_along<0>(course, d)
+                         : course.c == 1 ? sight_along<1>(course, d)
+                                         : sight_along<2>(course, d);
   if (answer == kShadowed) {
     sink.hit(x, y, course, d);
   } else if (answer == kMissed) {
@@ -249,24 +250,25 @@ class SightPainter : public TilePainter<SightCourse<Sink::kDeep>, SightPainter<S
       return;
     }
     // Mirrored, and with a half added, the affine function is positive all over the quad, so rounding is cutting off.
-    Vec3<uint64_t> row;
+    Vec3<uint64_t> at;
+    Camera::Vec3Q32 next_row;  // the step from a row's last pixel
     for (int axis = 0; axis < 3; ++axis) {
-      row[axis] = static_cast<uint64_t>((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) +
-                  (uint64_t{1} << 31);
+      at[axis] = static_cast<uint64_t>((fan.mirrored >> axis & 1U) != 0 ? -value[axis] : value[axis]) +
+                 (uint64_t{1} << 31);
+      next_row[axis] = course_.step_y[axis] - wide_multiple(quad.x1 - quad.x0 - 1, course_.step_x[axis]);
     }
-    for (int32_t y = quad.y0; y < quad.y1; ++y) {
-      Vec3<uint64_t> at = row;
-      for (int32_t x = quad.x0; x < quad.x1; ++x) {
-        see(sink_, course_, x, y,
-            {static_cast<uint32_t>(at.x >> 32), static_cast<uint32_t>(at.y >> 32),
-             static_cast<uint32_t>(at.z >> 32)});
-        at.x += static_cast<uint64_t>(course_.step_x.x);
-        at.y += static_cast<uint64_t>(course_.step_x.y);
-        at.z += static_cast<uint64_t>(course_.step_x.z);
-      }
+    // One loop with one direction, for which the registers do.
+    for (int32_t x = quad.x0, y = quad.y0; y < quad.y1;) {
+      see(sink_, course_, x, y,
+          {static_cast<uint32_t>(at.x >> 32), static_cast<uint32_t>(at.y >> 32),
+           static_cast<uint32_t>(at.z >> 32)});
+      const bool ends = ++x == quad.x1;
+      const Camera::Vec3Q32& step = ends ? next_row : course_.step_x;
       for (int axis = 0; axis < 3; ++axis) {
-        row[axis] += static_cast<uint64_t>(course_.step_y[axis]);
+        at[axis] += static_cast<uint64_t>(step[axis]);
       }
+      x = ends ? quad.x0 : x;
+      y += ends ? 1 : 0;
     }
   }
 
