@@ -11,11 +11,6 @@ namespace {
 
 constexpr uint32_t kOpen = 1U << 12;  // occlusion: nothing is in the way
 
-constexpr int32_t kPatch = 4;  // voxels
-// In rays: what looking at a patch costs, and how much of it may be in vain.
-constexpr int32_t kCost = 12;
-constexpr int32_t kMostCredit = 1024;
-
 // The calls of ray_map.h refuse no ray here: each begins on a face of the world, and its direction has at most 15 bits
 // and is not 0. So their statuses are not looked at.
 
@@ -126,12 +121,7 @@ void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hi
 
 FaceLights::FaceLights(const lit::Frame& frame, const RayMap& map, const FaceLightsShape& shape,
                        ArrayArena* arena)
-    : frame_(frame),
-      once_(frame),
-      asking_(frame),
-      map_(map),
-      open_(map, frame.scene.occlusion, shape.around),
-      shape_(shape) {
+    : frame_(frame), once_(frame), asking_(frame), map_(map), shape_(shape) {
   parts_.lay_out(shape, arena);
   asking_.questions = parts_.questions;
   asking_.once = &once_;
@@ -180,48 +170,36 @@ uint32_t FaceLights::share_of(const RayPoint& met) {
   return distance_q8 < reach << 8 ? (distance_q8 << 4) / reach : kOpen;
 }
 
-// lit::occlude. Rays that can meet nothing are only counted. Those of one direction are traced together.
+// lit::occlude. Rays of one direction are traced together.
 void FaceLights::occlude() {
   const uint32_t around = shape_.around;
   const Occlusion& occlusion = frame_.scene.occlusion;
   uint32_t begin = 0;
   for (uint32_t face = 0; face < kInside && around != 0; ++face) {
-    const uint32_t end = face_ends_[face];
-    frame_.counts.rays[static_cast<int>(LitRayKind::kOcclusion)] += uint64_t{around} * (end - begin);
-    for (uint32_t i = begin; i < end; ++i) {
-      const uint32_t number = parts_.order[i];
-      parts_.open[number] = 0;
-      parts_.any[number] =
-          static_cast<uint8_t>(open_.rays_before(parts_.faces[number].at, static_cast<uint8_t>(face)));
-    }
+    const uint32_t* const faces = parts_.order + begin;
+    const uint32_t count = face_ends_[face] - begin;
+    frame_.counts.rays[static_cast<int>(LitRayKind::kOcclusion)] += uint64_t{around} * count;
+    std::fill_n(parts_.open, count, 0U);
     for (uint32_t n = 0; n < around; ++n) {
       const Vec3i direction =
           occlusion_direction(static_cast<int>(n), static_cast<int>(face) / 2, face % 2 == 0);
-      uint32_t asking = 0;
-      for (uint32_t i = begin; i < end; ++i) {
-        const uint32_t number = parts_.order[i];
-        if ((uint32_t{parts_.any[number]} >> n % 4 & 1U) != 0) {
-          parts_.rays[asking] = {parts_.faces[number].at, direction};
-          parts_.asking[asking++] = number;
-        } else {
-          parts_.open[number] += kOpen;
-        }
+      for (uint32_t i = 0; i < count; ++i) {
+        parts_.rays[i] = {parts_.faces[faces[i]].at, direction};
       }
-      (void)first_entry_before(map_, {parts_.rays, asking}, RayPoint{occlusion.reach, kOcclusionLength},
-                               {parts_.points, asking}, has_clear_ ? of_occlusion_ : nullptr);
-      for (uint32_t i = 0; i < asking; ++i) {
-        parts_.open[parts_.asking[i]] += share_of(parts_.points[i]);
+      (void)first_entry_before(map_, {parts_.rays, count}, RayPoint{occlusion.reach, kOcclusionLength},
+                               {parts_.points, count}, has_clear_ ? of_occlusion_ : nullptr);
+      for (uint32_t i = 0; i < count; ++i) {
+        parts_.open[i] += share_of(parts_.points[i]);
       }
     }
-    for (uint32_t i = begin; i < end; ++i) {
-      const uint32_t number = parts_.order[i];
-      const uint32_t closed = kOpen - parts_.open[number] / around;
+    for (uint32_t i = 0; i < count; ++i) {
+      const uint32_t closed = kOpen - parts_.open[i] / around;
       const uint32_t factor = kOpen - closed * occlusion.strength / 255;
-      for (uint32_t& channel : parts_.light[number].c) {
+      for (uint32_t& channel : parts_.light[faces[i]].c) {
         channel = (std::min<uint32_t>(channel, UINT16_MAX) * factor) >> 12;
       }
     }
-    begin = end;
+    begin = face_ends_[face];
   }
 }
 
@@ -441,68 +419,6 @@ void FaceLights::shine(uint32_t count) {
       add_sun(light);
     }
   }
-}
-
-OpenSpace::OpenSpace(const RayMap& map, const Occlusion& occlusion, uint32_t around)
-    : map_(map), around_(around), credit_(map.cells() == nullptr ? 0 : kMostCredit) {
-  int32_t across = 0;
-  int32_t along = 0;
-  for (uint32_t n = 0; n < around; ++n) {
-    const PatternDirection& way = kOcclusionPattern[n];
-    across = std::max({across, int32_t{way.x}, -int32_t{way.x}, int32_t{way.y}, -int32_t{way.y}});
-    along = std::max(along, int32_t{way.z});
-  }
-  across_ = across * occlusion.reach / kOcclusionLength + 1;
-  along_ = along * occlusion.reach / kOcclusionLength + 1;
-}
-
-unsigned OpenSpace::look_up(const Vec3Q8& at, uint8_t face) {
-  const int axis = face / 2;
-  Vec3i corner;
-  for (int a = 0; a < 3; ++a) {
-    const int32_t voxel = at[a].raw >> 8;
-    corner[a] = a == axis ? voxel : voxel & ~(kPatch - 1);
-  }
-  // Coordinates have 13 bits. No patch is 0.
-  const uint64_t patch = static_cast<uint64_t>(corner.x) << 46 | static_cast<uint64_t>(corner.y) << 33 |
-                         static_cast<uint64_t>(corner.z) << 20 | (uint64_t{face} + 1) << 4;
-  uint64_t& known = known_[(patch * 0x9E3779B97F4A7C15U) >> (64 - kKnownBits)];
-  if ((known & ~uint64_t{kAll}) != patch) {
-    known = patch | look(corner, face);
-    credit_ -= kCost;
-  }
-  const auto rays = static_cast<unsigned>(known & kAll);
-  const auto spared = static_cast<int32_t>((4 - static_cast<unsigned>(__builtin_popcount(rays))) * around_);
-  credit_ = std::min(credit_ + spared / 4, kMostCredit);
-  return rays;
-}
-
-// Ray n goes to larger coordinates on the next axis for n % 4 = 0 and 3, on the one after it for 0 and 1.
-unsigned OpenSpace::look(const Vec3i& corner, uint8_t face) const {
-  const int axis = face / 2;
-  const int next = axis == 2 ? 0 : axis + 1;
-  const int last = axis == 0 ? 2 : axis - 1;
-  VoxelBox all;
-  all.low[axis] = corner[axis] - (face % 2 == 0 ? along_ : 0);
-  all.high[axis] = corner[axis] + (face % 2 == 0 ? 0 : along_);
-  for (const int a : {next, last}) {
-    all.low[a] = corner[a] - across_;
-    all.high[a] = corner[a] + kPatch + across_;
-  }
-  if (map_.is_empty(all)) {
-    return 0;
-  }
-  unsigned rays = 0;
-  for (unsigned n = 0; n < 4; ++n) {
-    VoxelBox box = all;
-    const auto cut = [&](int a, bool is_up) {
-      (is_up ? box.low : box.high)[a] = corner[a] + (is_up ? 0 : kPatch);
-    };
-    cut(next, n == 0 || n == 3);
-    cut(last, n < 2);
-    rays |= map_.is_empty(box) ? 0U : 1U << n;
-  }
-  return rays;
 }
 
 }  // namespace thimble::wide

@@ -40,7 +40,7 @@ struct FaceLightsParts {
   RayPoint* points;    ///< where on the rays the lamp is; where rays of occlusion enter something
   lit::Color* bright;  ///< the light that the rays bring if nothing is in the way
   uint32_t* order;     ///< faces that look the same way stand side by side
-  uint32_t* open;      ///< by face, for occlusion
+  uint32_t* open;      ///< of faces that look the same way, for occlusion
   // For lamps, in that order.
   int32_t* at[3];
   int32_t* direction[3];
@@ -63,34 +63,6 @@ void put_hits(const Hit* hits, lit::Asked* asked, lit::Answer* answers);
 /// `hits` has room for as many as there are questions of a kind.
 void answer_ways(const RayMap& map, lit::Asked (&questions)[lit::kQuestions], Hit* hits,
                  lit::Answer* answers);
-
-/// Where rays of occlusion can meet nothing, so that none needs to be sent: before wide floors and walls, and on the
-/// side where a surface falls away. Looks at the space before a face once for each patch of 4 x 4 voxels, and remembers what
-/// it saw.
-class OpenSpace {
- public:
-  static constexpr unsigned kAll = 15;
-
-  /// `around` are the rays of occlusion from each point.
-  OpenSpace(const RayMap& map, const Occlusion& occlusion, uint32_t around);
-
-  /// Which of the rays from a point of a face (2 * axis, and 1 more where it looks to larger coordinates) may meet
-  /// something: bit n % 4 is set for ray n of kOcclusionPattern. Says kAll where looking costs more than it spares.
-  unsigned rays_before(const Vec3Q8& at, uint8_t face) { return credit_ > 0 ? look_up(at, face) : kAll; }
-
- private:
-  static constexpr int kKnownBits = 9;
-
-  unsigned look_up(const Vec3Q8& at, uint8_t face);
-  unsigned look(const Vec3i& corner, uint8_t face) const;
-
-  const RayMap& map_;
-  uint32_t around_;
-  int32_t across_;  // how far the rays go, in voxels
-  int32_t along_;   // the same along the face's axis
-  int32_t credit_;
-  uint64_t known_[1 << kKnownBits] = {};  // patches, and in the last four bits the rays
-};
 
 class FaceLights {
  public:
@@ -133,7 +105,6 @@ class FaceLights {
   lit::AskedFrame asking_;  // nobody reads its counts
   lit::KnownRay known_;
   const RayMap& map_;
-  OpenSpace open_;
   FaceLightsShape shape_;
   FaceLightsParts parts_;
   uint32_t count_ = 0;
