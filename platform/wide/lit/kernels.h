@@ -29,10 +29,9 @@ struct LampRays {
 /// Does as lit::light_ray for many points. Where a brightness is 0 the other results mean nothing.
 void aim_at(const LampRays& lamp, size_t count);
 
-/// Finds the gradient at a point as lit::surface_normal adds it up, from the columns of a slope's window
-/// (slope_table.h). `point` and `gradient` are along the columns, along their rows, and across; in 1/64 voxel of the
-/// window. Across the columns the point is in the window's sixth or seventh voxel.
-void find_gradient(const uint16_t* columns, const int32_t* point, int32_t* gradient);
+/// Finds the gradient at a point as lit::surface_normal adds it up, from the rows of a slope's window. `point` is in 1/64
+/// voxel of the window, on each axis in the sixth or seventh voxel.
+void find_gradient(const uint16_t* rows, const int32_t* point, int32_t* gradient);
 
 /// How many lanes of words `turn_words` turns.
 inline constexpr size_t kTurnLanes = 16;

@@ -14,13 +14,6 @@ constexpr int kSide = lit::kSlopeSide;
 constexpr int kColumns = lit::kSlopeColumns;
 constexpr unsigned kAll = (1U << kSide) - 1;
 
-int side_u_of(int axis) {
-  return axis == 0 ? 1 : 0;
-}
-int side_v_of(int axis) {
-  return axis == 2 ? 1 : 2;
-}
-
 constexpr std::array<uint16_t, kAll + 1> reversed_words() {
   std::array<uint16_t, kAll + 1> words{};
   for (unsigned word = 0; word <= kAll; ++word) {
@@ -32,48 +25,24 @@ constexpr std::array<uint16_t, kAll + 1> reversed_words() {
 }
 constexpr std::array<uint16_t, kAll + 1> kReversed = reversed_words();
 
-int turned(int place, bool upwards) {
-  return upwards ? place : kSide - 1 - place;
-}
-
-// Turns rows along x into columns along an axis; with kBack columns into rows.
-template <bool kBack, class Rows, class Columns>
-void turn(int axis, bool upwards, Rows* rows, Columns* columns) {
-  const auto copy = [](auto& row, auto& column) {
-    if constexpr (kBack) {
-      row = column;
-    } else {
-      column = row;
-    }
-  };
+// Makes of rows along x columns along an axis, or of such columns rows: the bits and the index of that axis change places.
+void turn(int axis, uint16_t (*rows)[kSide]) {
   if (axis == 0) {
-    for (int z = 0; z < kSide; ++z) {
-      for (int y = 0; y < kSide; ++y) {
-        uint16_t word = kBack ? columns->at[z][y] : rows[z][y];
-        word = upwards ? word : kReversed[word];
-        kBack ? copy(rows[z][y], word) : copy(word, columns->at[z][y]);
-      }
-    }
     return;
   }
   uint16_t words[16][kTurnLanes] = {};
-  const auto copy_rows = [&] {
-    for (int z = 0; z < kSide; ++z) {
-      for (int y = 0; y < kSide; ++y) {
-        copy(rows[z][y], axis == 1 ? words[turned(y, upwards)][z] : words[turned(z, upwards)][y]);
-      }
+  const auto word = [&](int k, int lane) -> uint16_t& { return axis == 1 ? rows[lane][k] : rows[k][lane]; };
+  for (int k = 0; k < kSide; ++k) {
+    for (int lane = 0; lane < kSide; ++lane) {
+      words[k][lane] = word(k, lane);
     }
-  };
-  const auto copy_columns = [&] {
-    for (int v = 0; v < kSide; ++v) {
-      for (int x = 0; x < kSide; ++x) {
-        copy(words[x][v], columns->at[v][x]);
-      }
-    }
-  };
-  kBack ? copy_columns() : copy_rows();
+  }
   turn_words(words);
-  kBack ? copy_rows() : copy_columns();
+  for (int k = 0; k < kSide; ++k) {
+    for (int lane = 0; lane < kSide; ++lane) {
+      word(k, lane) = words[k][lane];
+    }
+  }
 }
 
 // The order in which the surface is followed: ring by ring, the corners of a ring last. Three columns say which height
@@ -130,24 +99,46 @@ constexpr std::array<Step, kSteps> kOrder = all_steps();
 // branches on what is solid, which nobody can predict. Heights are -kColumns .. kColumns, middle_w is 4 .. 7: a place
 // above the window's lower end is -1 at the least, so words are looked at with a bit more below them.
 struct Columns {
-  ColumnBits* bits;
+  lit::SlopeWindow* window;
+  int axis;  // along them
+  bool upwards;
+  int side_u;  // the axes of their two indices, the first one last
+  int side_v;
   int middle_w;
   int middle_u;
   int middle_v;
-  int side_u;
-  int side_v;
   bool changed = false;
   bool has_edge = false;  // a column leaves the course
   int8_t heights[kAcross * kAcross] = {};
 
-  Columns(ColumnBits* of, const Vec3i& middle, int along, bool upwards)
-      : bits(of),
-        middle_w(turned(middle[along], upwards)),
-        middle_u(middle[side_u_of(along)]),
-        middle_v(middle[side_v_of(along)]),
-        side_u(side_u_of(along)),
-        side_v(side_v_of(along)) {}
+  // Until they end the window's rows are columns.
+  Columns(lit::SlopeWindow* of, const Vec3i& middle, int along, bool is_upwards)
+      : window(of),
+        axis(along),
+        upwards(is_upwards),
+        side_u(along == 1 ? 0 : 1),
+        side_v(along == 2 ? 0 : 2),
+        middle_w(is_upwards ? middle[along] : kSide - 1 - middle[along]),
+        middle_u(middle[side_u]),
+        middle_v(middle[side_v]) {
+    turn(axis, window->rows);
+    reverse();
+  }
+  ~Columns() {
+    reverse();
+    turn(axis, window->rows);
+  }
+  Columns(const Columns&) = delete;
+  Columns& operator=(const Columns&) = delete;
 
+  // Bit 0 is where they begin.
+  void reverse() const {
+    for (auto& row : window->rows) {
+      for (uint16_t& word : row) {
+        word = upwards ? word : kReversed[word];
+      }
+    }
+  }
   int height(int u, int v) const { return heights[place_of(u, v)]; }
   // Finds the height at which a column ends, from an expected height.
   int measure(unsigned word, int height) const {
@@ -172,7 +163,7 @@ struct Columns {
   // column beside the middle, in direction `out`, was cut off.
   template <bool kCuts>
   bool follow(const Vec3i& out) {
-    uint16_t* const middle = &bits->at[middle_v][middle_u];
+    uint16_t* const middle = &window->rows[middle_v][middle_u];
     const int top = measure(*middle, 0);
     heights[place_of(0, 0)] = static_cast<int8_t>(top);
     const unsigned of_middle = thickened(*middle, top);
@@ -188,7 +179,7 @@ struct Columns {
       const auto at_v = static_cast<unsigned>(middle_v + step.v);
       // Columns beside the window are empty, and what is made solid in them is dropped.
       uint16_t nothing = 0;
-      uint16_t* const column = at_u < kSide && at_v < kSide ? &bits->at[at_v][at_u] : &nothing;
+      uint16_t* const column = at_u < kSide && at_v < kSide ? &window->rows[at_v][at_u] : &nothing;
       const unsigned word = *column;
       const int found = measure(word, wanted);
       const unsigned edge = std::abs(found - wanted) >= lit::kEdgeStep ? 1U : 0U;
@@ -220,28 +211,26 @@ Vec3i middle_of(const Vec3i& voxel, const Face& face) {
   return middle;
 }
 
-// Finds the gradient at a point, in the order of the axes.
-Vec3i gradient_along(int axis, bool upwards, const ColumnBits& columns, const Vec3i& point) {
-  const int32_t turned_point[3] = {upwards ? point[axis] : kSide * lit::kSlopeUnit - point[axis],
-                                   point[side_u_of(axis)], point[side_v_of(axis)]};
-  int32_t turned_gradient[3];
-  find_gradient(columns.at[0], turned_point, turned_gradient);
-  Vec3i gradient;
-  gradient[axis] = upwards ? turned_gradient[0] : -turned_gradient[0];
-  gradient[side_u_of(axis)] = turned_gradient[1];
-  gradient[side_v_of(axis)] = turned_gradient[2];
-  return gradient;
+// Whether the voxel has nothing solid close behind it.
+bool is_shell(const lit::SlopeWindow& window, Vec3i voxel, const Face& face) {
+  bool is_thin = false;
+  for (int behind = 1; behind < lit::kSlopeShell; ++behind) {
+    voxel[face.axis] += face.negative ? 1 : -1;
+    is_thin = is_thin || !window.is_solid(voxel);
+  }
+  return is_thin;
+}
+
+Vec3i gradient_at(const lit::SlopeWindow& window, const Vec3i& point) {
+  const int32_t of_point[3] = {point.x, point.y, point.z};
+  int32_t gradient[3];
+  find_gradient(window.rows[0], of_point, gradient);
+  return {gradient[0], gradient[1], gradient[2]};
 }
 
 // Follows a face's surface along an axis.
 void follow(int along, bool upwards, const Face& face, KnownSlope* known) {
-  if (along == face.axis) {
-    known->cut = known->columns;
-  } else {
-    uint16_t rows[kSide][kSide];
-    turn<true>(face.axis, !face.negative, rows, &known->columns);
-    turn<false>(along, upwards, rows, &known->cut);
-  }
+  known->cut = known->window;
   Vec3i out;
   out[face.axis] = face.negative ? -1 : 1;
   Columns columns(&known->cut, middle_of(known->voxel, face), along, upwards);
@@ -295,11 +284,10 @@ KnownSlope& SlopeTable::find(const Vec3i& voxel, const Face& face, uint16_t inde
   }
   const KnownWindow& window = window_at(low, index_q12);
   known.visits = window.visits;
-  turn<false>(face.axis, !face.negative, window.window.rows, &known.columns);
-  Columns columns(&known.columns, middle_of(voxel, face), face.axis, !face.negative);
-  const unsigned behind = 3U << (columns.middle_w - 2);
-  static_assert(lit::kSlopeShell == 3);
-  if ((known.columns.at[columns.middle_v][columns.middle_u] & behind) != behind) {
+  known.window = window.window;
+  const Vec3i middle = middle_of(voxel, face);
+  if (is_shell(known.window, middle, face)) {
+    Columns columns(&known.window, middle, face.axis, !face.negative);
     columns.follow<false>({});
     if (!columns.has_edge) {
       // Following the surface along the face's axis again would take the same course, and has nothing left to make
@@ -321,7 +309,7 @@ Vec3i SlopeTable::normal(const Vec3Q8& at, const Face& face, uint16_t index_q12,
     const int32_t low = lit::slope_window_low(voxel[axis]) * Q8::kOne;
     point[axis] = (at[axis].raw - low) / (Q8::kOne / lit::kSlopeUnit);
   }
-  const Vec3i normal = gradient_along(face.axis, !face.negative, known.columns, point);
+  const Vec3i normal = gradient_at(known.window, point);
   const int along = lit::slope_axis(normal, face);
   if (along < 0) {
     return lit::unit_of_slope({}, face);
@@ -334,7 +322,7 @@ Vec3i SlopeTable::normal(const Vec3Q8& at, const Face& face, uint16_t index_q12,
   if (known.keeps_face) {
     return lit::unit_of_slope({}, face);
   }
-  return lit::unit_of_slope(known.is_cut ? gradient_along(along, upwards, known.cut, point) : normal, face);
+  return lit::unit_of_slope(known.is_cut ? gradient_at(known.cut, point) : normal, face);
 }
 
 }  // namespace thimble::wide

@@ -15,12 +15,6 @@
 
 namespace thimble::wide {
 
-/// The bits of a window along an axis, upwards or downwards: bit w of a column is the voxel w steps from the window's
-/// lower end, or from its upper end. The indices are the other two axes, the higher one first.
-struct ColumnBits {
-  uint16_t at[lit::kSlopeSide][lit::kSlopeSide];
-};
-
 /// What is known of a face.
 struct KnownSlope {
   static constexpr uint8_t kNone = 0xFF;
@@ -31,9 +25,9 @@ struct KnownSlope {
   uint8_t face = kNone;     ///< 2 * axis, and 1 more where it looks to larger coordinates
   uint8_t course = kNone;   ///< the way in which the surface was followed last, numbered like `face`
   bool keeps_face = false;  ///< on that course the normal is the face's own
-  bool is_cut = false;      ///< on that course `cut` differs from `columns`
-  ColumnBits columns;       ///< along the face's axis, outwards
-  ColumnBits cut;           ///< along the course
+  bool is_cut = false;      ///< on that course `cut` differs from `window`
+  lit::SlopeWindow window;  ///< with shells made solid
+  lit::SlopeWindow cut;     ///< with edges cut off on the course
 };
 
 /// A window as it was read, which eight voxels share.
