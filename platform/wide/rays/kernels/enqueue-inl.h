@@ -41,20 +41,12 @@ constexpr double kNever = 0x1p60;
 
 // The numbers of a ray. Doubles first, then words.
 enum Column : size_t {
-  kOriginX,  // mirrored and biased
-  kOriginY,
-  kOriginZ,
-  kPlaceX,  // where the ray is, biased
-  kPlaceY,
-  kPlaceZ,
-  kEnd,         // the t from which on nothing counts
-  kDirectionX,  // >= 0
-  kDirectionY,
-  kDirectionZ,
-  kInverseX,
-  kInverseY,
-  kInverseZ,
-  kDoubles,
+  kOrigin = 0,     // three, by axis, mirrored and biased
+  kPlace = 3,      // three: where the ray is, biased
+  kEnd = 6,        // the t from which on nothing counts
+  kDirection = 7,  // three, >= 0
+  kInverse = 10,
+  kDoubles = 13,
   kCellFlip =
       kDoubles,  // low 6 bits: xor with a leaf's or voxel's index, mirrored or not, gives the other; from bit 32 on:
                  // the ray's number
@@ -68,7 +60,7 @@ enum class Alike : uint8_t { kNothing, kOctant, kDirection };
 
 // How many columns differ from ray to ray: the others are set once.
 constexpr size_t own_doubles(Alike alike) {
-  return alike == Alike::kDirection ? size_t{kDirectionX} : size_t{kDoubles};
+  return alike == Alike::kDirection ? size_t{kDirection} : size_t{kDoubles};
 }
 constexpr size_t own_words(Alike alike) {
   return alike == Alike::kNothing ? kColumns - kDoubles : kTopFlip - kDoubles;
@@ -254,83 +246,15 @@ HWY_INLINE VF load_column(const Rows& rows, size_t column) {
 #endif
 }
 
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-// Where a column's numbers are among records of `kStep` numbers each: `first` picks from two vectors, `second` from the
-// result and a third vector.
-template <uint32_t kStep>
-struct ColumnTable {
-  alignas(64) uint32_t first[kStep][16];
-  alignas(64) uint32_t second[kStep][16];
-  constexpr ColumnTable() : first{}, second{} {
-    for (uint32_t column = 0; column < kStep; ++column) {
-      for (uint32_t lane = 0; lane < 8; ++lane) {
-        const uint32_t at = kStep * lane + column;
-        first[column][lane] = at % 32;
-        second[column][lane] = at < 32 ? lane : at - 16;
-      }
-    }
-  }
-};
-alignas(64) constexpr ColumnTable<6> kRayColumns;
-alignas(64) constexpr ColumnTable<2> kPointColumns;
-#endif
-
 // The first `kCount` of the six numbers of up to kLanes rays, one ray in each lane.
 template <size_t kCount>
 struct RayColumns {
   VF of[kCount];
   RayColumns(const Ray* rays, size_t count) {
-    const auto* const numbers = reinterpret_cast<const int32_t*>(rays);
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-    if (count == kLanes) {
-      const __m512i low = _mm512_loadu_si512(numbers);
-      const __m512i middle = _mm512_loadu_si512(numbers + 16);
-      const __m512i high = _mm512_loadu_si512(numbers + 32);
-      for (size_t column = 0; column < kCount; ++column) {
-        const __m512i some =
-            _mm512_permutex2var_epi32(low, _mm512_load_si512(kRayColumns.first[column]), middle);
-        const __m512i all =
-            _mm512_permutex2var_epi32(some, _mm512_load_si512(kRayColumns.second[column]), high);
-        of[column] = VF{_mm512_cvtepi32_pd(_mm512_castsi512_si256(all))};
-      }
-      return;
-    }
-#endif
-    const Rows rows(numbers, 6, count);
+    const Rows rows(reinterpret_cast<const int32_t*>(rays), 6, count);
     for (size_t column = 0; column < kCount; ++column) {
       of[column] = load_column(rows, column);
     }
-  }
-};
-
-// The numerators and denominators of the rays' points.
-struct PointColumns {
-  VF numerator;
-  VF denominator;
-  PointColumns(const Job& job, size_t first, size_t count) {
-    const F64 d;
-    const RayPoint* const points = job.points + first * job.point_step;
-    if (job.point_step == 0) {
-      numerator = hn::Set(d, static_cast<double>(points->t_numerator));
-      denominator = hn::Set(d, static_cast<double>(points->t_denominator));
-      return;
-    }
-    const auto* const numbers = reinterpret_cast<const int32_t*>(points);
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-    if (count == kLanes) {
-      const __m512i all = _mm512_loadu_si512(numbers);
-      const auto column = [&](size_t number) {
-        const __m512i found = _mm512_permutexvar_epi32(_mm512_load_si512(kPointColumns.first[number]), all);
-        return VF{_mm512_cvtepi32_pd(_mm512_castsi512_si256(found))};
-      };
-      numerator = column(0);
-      denominator = column(1);
-      return;
-    }
-#endif
-    const Rows rows(numbers, 2, count);
-    numerator = load_column(rows, 0);
-    denominator = load_column(rows, 1);
   }
 };
 
@@ -390,9 +314,10 @@ HWY_INLINE void add_axis(const Job& job, int axis, VF origin, NewRays* rays, VF*
 HWY_INLINE void add_bound(const Job& job, size_t first, size_t count, NewRays* rays) {
   static_assert(sizeof(RayPoint) == 8 && offsetof(RayPoint, t_denominator) == 4);
   const F64 d;
-  const PointColumns points(job, first, count);
-  const VF numerator = points.numerator;
-  const VF denominator = points.denominator;
+  const auto* const points = reinterpret_cast<const int32_t*>(job.points + first * job.point_step);
+  const Rows rows(points, 2 * job.point_step, count);
+  const VF numerator = load_column(rows, 0);
+  const VF denominator = load_column(rows, 1);
   if (job.bound == Bound::kBefore) {
     const VF t = hn::Div(numerator, denominator);
     rays->end = hn::Min(rays->end, hn::Mul(t, hn::Set(d, kJustAfter)));
@@ -472,11 +397,11 @@ HWY_INLINE void enqueue(Job* job, size_t first, size_t count, const Ways& shared
                queue->words[column - kDoubles] + at);
   };
   for (size_t axis = 0; axis < 3; ++axis) {
-    put(static_cast<Column>(kOriginX + axis), rays.origin[axis]);
-    put(static_cast<Column>(kPlaceX + axis), place[axis]);
+    put(static_cast<Column>(kOrigin + axis), rays.origin[axis]);
+    put(static_cast<Column>(kPlace + axis), place[axis]);
     if constexpr (kAlike != Alike::kDirection) {
-      put(static_cast<Column>(kDirectionX + axis), rays.ways.direction[axis]);
-      put(static_cast<Column>(kInverseX + axis), rays.ways.inverse[axis]);
+      put(static_cast<Column>(kDirection + axis), rays.ways.direction[axis]);
+      put(static_cast<Column>(kInverse + axis), rays.ways.inverse[axis]);
     }
   }
   put(kEnd, rays.end);

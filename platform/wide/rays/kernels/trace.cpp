@@ -191,7 +191,7 @@ HWY_INLINE void see_cube(const View& view, const Lanes& lanes, Sight* sight) {
   const U64 du;
   VU(&place)[3] = sight->place;
   for (size_t axis = 0; axis < 3; ++axis) {
-    place[axis] = hn::BitCast(du, hn::Load(d, lanes.doubles[kPlaceX + axis]));
+    place[axis] = hn::BitCast(du, hn::Load(d, lanes.doubles[kPlace + axis]));
   }
   const uint64_t within = (uint64_t{1} << view.bits) - 1;
   const VU x = hn::And(hn::ShiftRight<kCube>(place[0]), hn::Set(du, within));
@@ -262,8 +262,8 @@ HWY_INLINE VF leaves_at(const Lanes& lanes, size_t axis, VU place, const Box& bo
   const F64 d;
   const U64 du;
   const VU plane = hn::Add(hn::And(place, hn::Sub(hn::Zero(du), box.grain)), box.side);
-  return hn::Mul(hn::Sub(hn::BitCast(d, plane), hn::Load(d, lanes.doubles[kOriginX + axis])),
-                 hn::Load(d, lanes.doubles[kInverseX + axis]));
+  return hn::Mul(hn::Sub(hn::BitCast(d, plane), hn::Load(d, lanes.doubles[kOrigin + axis])),
+                 hn::Load(d, lanes.doubles[kInverse + axis]));
 }
 
 HWY_INLINE void put_hits(Job* job, const Lanes& lanes, uint32_t hits) {
@@ -276,7 +276,7 @@ HWY_INLINE void put_hits(Job* job, const Lanes& lanes, uint32_t hits) {
       continue;
     }
     const auto cell = [&](size_t axis) {
-      return static_cast<int32_t>(lanes.doubles[kPlaceX + axis][lane] - kBias);
+      return static_cast<int32_t>(lanes.doubles[kPlace + axis][lane] - kBias);
     };
     put_hit(job, number, {cell(0), cell(1), cell(2)}, static_cast<uint32_t>(lanes.visits[lane]));
   }
@@ -311,9 +311,9 @@ HWY_INLINE void advance(Job* job, const View& view, const Sight& sight, Lanes* l
     lanes->alive &= ~(hits | out);
   }
   for (size_t axis = 0; axis < 3; ++axis) {
-    hn::Store(hn::MulAdd(t, hn::Load(d, lanes->doubles[kDirectionX + axis]),
-                         hn::Load(d, lanes->doubles[kOriginX + axis])),
-              d, lanes->doubles[kPlaceX + axis]);
+    hn::Store(hn::MulAdd(t, hn::Load(d, lanes->doubles[kDirection + axis]),
+                         hn::Load(d, lanes->doubles[kOrigin + axis])),
+              d, lanes->doubles[kPlace + axis]);
   }
 }
 
@@ -337,8 +337,8 @@ void trace_alike(Job* job, const uint64_t* of_rays) {
   const Ways shared = ways_of(*job, RayColumns<6>(job->rays, 1).of + 3);
   for (Lanes& lanes : groups) {
     for (size_t axis = 0; axis < 3; ++axis) {
-      hn::Store(shared.direction[axis], d, lanes.doubles[kDirectionX + axis]);
-      hn::Store(shared.inverse[axis], d, lanes.doubles[kInverseX + axis]);
+      hn::Store(shared.direction[axis], d, lanes.doubles[kDirection + axis]);
+      hn::Store(shared.inverse[axis], d, lanes.doubles[kInverse + axis]);
     }
     hn::Store(shared.top_flip, du, lanes.words[kTopFlip - kDoubles]);
     hn::Store(shared.octant, du, lanes.words[kOctant - kDoubles]);
