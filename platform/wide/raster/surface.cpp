@@ -5,60 +5,27 @@ namespace {
 
 // The voxels of a word whose coordinate along an axis is 0, 1, 2 or 3. A word's bits are numbered x0 y0 z0 x1
 // y1 z1, the lowest first.
-constexpr uint64_t layer(unsigned axis, unsigned at) {
-  uint64_t bits = 0;
-  for (unsigned bit = 0; bit < 64; ++bit) {
-    const unsigned coordinate = (bit >> axis & 1U) | (bit >> (3 + axis) & 1U) << 1;
-    bits |= uint64_t{coordinate == at ? 1U : 0U} << bit;
-  }
-  return bits;
-}
 struct Layers {
   uint64_t of[3][4] = {};
   constexpr Layers() {
     for (unsigned axis = 0; axis < 3; ++axis) {
-      for (unsigned at = 0; at < 4; ++at) {
-        of[axis][at] = layer(axis, at);
+      for (unsigned bit = 0; bit < 64; ++bit) {
+        of[axis][(bit >> axis & 1U) | (bit >> (3 + axis) & 1U) << 1] |= uint64_t{1} << bit;
       }
     }
   }
 };
 constexpr Layers kLayers;
 
-// The voxels of a word whose upper neighbour along an axis is solid; `next` is the word above.
-template <unsigned kAxis>
-uint64_t with_upper(uint64_t word, uint64_t next) {
-  const uint64_t(&at)[4] = kLayers.of[kAxis];
-  constexpr unsigned kOne = 1U << kAxis;  // from 0 to 1, and from 2 to 3
-  constexpr unsigned kTwo = 7U << kAxis;  // from 1 to 2
-  constexpr unsigned kAll = 9U << kAxis;  // from 3 back to 0
-  return (word >> kOne & (at[0] | at[2])) | (word >> kTwo & at[1]) | (next << kAll & at[3]);
-}
-// The voxels whose lower neighbour along an axis is solid; `before` is the word below.
-template <unsigned kAxis>
-uint64_t with_lower(uint64_t word, uint64_t before) {
-  const uint64_t(&at)[4] = kLayers.of[kAxis];
-  constexpr unsigned kOne = 1U << kAxis;
-  constexpr unsigned kTwo = 7U << kAxis;
-  constexpr unsigned kAll = 9U << kAxis;
-  return (word << kOne & (at[1] | at[3])) | (word << kTwo & at[2]) | (before >> kAll & at[0]);
-}
-
-uint64_t with_beside(uint64_t word, uint64_t other, unsigned side) {
-  switch (side) {
-    case 0:
-      return with_lower<0>(word, other);
-    case 1:
-      return with_upper<0>(word, other);
-    case 2:
-      return with_lower<1>(word, other);
-    case 3:
-      return with_upper<1>(word, other);
-    case 4:
-      return with_lower<2>(word, other);
-    default:
-      return with_upper<2>(word, other);
-  }
+// The voxels of a word whose neighbour on a side is solid: below and above along x, y and z. `other` is the word there.
+inline uint64_t with_beside(uint64_t word, uint64_t other, unsigned side) {
+  const unsigned axis = side / 2;
+  const uint64_t(&at)[4] = kLayers.of[axis];
+  const unsigned one = 1U << axis;  // from 0 to 1, and from 2 to 3
+  const unsigned two = 7U << axis;  // from 1 to 2
+  const unsigned all = 9U << axis;  // from 3 back to 0
+  return side % 2 == 0 ? (word << one & (at[1] | at[3])) | (word << two & at[2]) | (other >> all & at[0])
+                       : (word >> one & (at[0] | at[2])) | (word >> two & at[1]) | (other << all & at[3]);
 }
 
 // For every mask of 2 x 2 x 2 voxels: how many have all three neighbours in the mask.
@@ -246,6 +213,7 @@ class SurfaceFinder {
   static Surface surface_between(uint64_t word, const uint64_t (&others)[6]) {
     uint64_t below[3];  // voxels whose neighbour on that side is solid
     uint64_t above[3];
+#pragma GCC unroll 3
     for (unsigned axis = 0; axis < 3; ++axis) {
       below[axis] = with_beside(word, others[2 * axis], 2 * axis);
       above[axis] = with_beside(word, others[2 * axis + 1], 2 * axis + 1);
@@ -272,8 +240,8 @@ class SurfaceFinder {
   }
 
   const CompactTree& tree_;
-  uint32_t next_node_[kMaxLevel + 1];  // the next node of each level
-  uint32_t voxels_ = 0;                // voxels in nodes of level 1 before this place
+  uint32_t next_node_[kMaxLevel + 1] = {};  // the next node of each level
+  uint32_t voxels_ = 0;                     // voxels in nodes of level 1 before this place
 };
 
 // Walks the surface of a tree.
