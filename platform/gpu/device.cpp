@@ -63,27 +63,22 @@ std::uint32_t compute_family(VkPhysicalDevice device, std::uint32_t* timestamp_b
   return family < count ? family : UINT32_MAX;
 }
 
+VkPhysicalDeviceProperties properties_of(VkPhysicalDevice device) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device, &properties);
+  return properties;
+}
+
 DeviceInfo info_of(const VkPhysicalDeviceProperties& properties) {
-  DeviceInfo info;
-  info.name = properties.deviceName;
-  info.is_software = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  return info;
+  return {properties.deviceName, properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU};
 }
 
 // A GPU of its own first, software last.
 int rank_of(VkPhysicalDevice device) {
-  VkPhysicalDeviceProperties properties;
-  vkGetPhysicalDeviceProperties(device, &properties);
-  switch (properties.deviceType) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return 0;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return 1;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return 2;
-    default:
-      return 3;
-  }
+  constexpr VkPhysicalDeviceType kOrder[] = {VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU,
+                                             VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,
+                                             VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU};
+  return static_cast<int>(std::ranges::find(kOrder, properties_of(device).deviceType) - kOrder);
 }
 
 // Those of Vulkan 1.1 with a queue for compute, the best first.
@@ -96,13 +91,11 @@ std::vector<VkPhysicalDevice> usable_devices(VkInstance instance) {
   devices.resize(count);
   const auto is_useless = [](VkPhysicalDevice device) {
     std::uint32_t bits = 0;
-    VkPhysicalDeviceProperties properties;
-    vkGetPhysicalDeviceProperties(device, &properties);
-    return properties.apiVersion < VK_API_VERSION_1_1 || compute_family(device, &bits) == UINT32_MAX;
+    return properties_of(device).apiVersion < VK_API_VERSION_1_1 ||
+           compute_family(device, &bits) == UINT32_MAX;
   };
-  devices.erase(std::remove_if(devices.begin(), devices.end(), is_useless), devices.end());
-  std::stable_sort(devices.begin(), devices.end(),
-                   [](VkPhysicalDevice a, VkPhysicalDevice b) { return rank_of(a) < rank_of(b); });
+  std::erase_if(devices, is_useless);
+  std::ranges::stable_sort(devices, {}, rank_of);
   return devices;
 }
 
@@ -132,14 +125,12 @@ Buffer::~Buffer() {
   }
 }
 
-std::vector<DeviceInfo> Device::list() {
+std::vector<DeviceInfo> devices() {
   std::vector<DeviceInfo> infos;
   try {
     VkInstance instance = make_instance();
     for (VkPhysicalDevice device : usable_devices(instance)) {
-      VkPhysicalDeviceProperties properties;
-      vkGetPhysicalDeviceProperties(device, &properties);
-      infos.push_back(info_of(properties));
+      infos.push_back(info_of(properties_of(device)));
     }
     vkDestroyInstance(instance, nullptr);
   } catch (const DeviceError&) {
@@ -149,14 +140,13 @@ std::vector<DeviceInfo> Device::list() {
 }
 
 Device::Device() : instance_(make_instance()) {
-  const std::vector<VkPhysicalDevice> devices = usable_devices(instance_);
-  if (devices.empty()) {
+  const std::vector<VkPhysicalDevice> usable = usable_devices(instance_);
+  if (usable.empty()) {
     vkDestroyInstance(instance_, nullptr);
     throw DeviceError("there is no Vulkan device");
   }
-  physical_ = devices.front();
-  VkPhysicalDeviceProperties properties;
-  vkGetPhysicalDeviceProperties(physical_, &properties);
+  physical_ = usable.front();
+  const VkPhysicalDeviceProperties properties = properties_of(physical_);
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
   info_ = info_of(properties);
   most_bytes_ = properties.limits.maxStorageBufferRange;

@@ -66,9 +66,6 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// `devices()` of renderer.h.
-  static std::vector<DeviceInfo> list();
-
   VkDevice get() const { return device_; }
   VkQueue queue() const { return queue_; }
   std::uint32_t family() const { return family_; }

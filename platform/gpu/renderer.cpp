@@ -1,13 +1,16 @@
 #include "gpu/renderer.h"
 
+#include <lit_pairs_spv.h>
+#include <lit_spv.h>
+#include <octree_pairs_spv.h>
+#include <octree_spv.h>
+
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <optional>
+#include <span>
 
 #include "gpu/device.h"
-#include "gpu/kernel/cpp.h"
-#include "gpu/kernels.h"
+#include "gpu/kernel/parameters.h"
 #include "thimble/light/host/asked.h"
 
 namespace thimble::gpu {
@@ -20,6 +23,9 @@ constexpr std::uint32_t kRaysAtATime = std::uint32_t{1} << 20;
 constexpr std::uint32_t kRaysARow = 1024;
 constexpr std::uint32_t kGroupSide = 8;  // threads of a group; kernel/frame.comp has it too
 constexpr std::uint64_t kForever = UINT64_MAX;
+
+// Kernels as SPIR-V: of lit pictures behind the others, in pairs of words behind those in words.
+constexpr std::span<const std::uint32_t> kKernels[] = {octree_spv, octree_pairs_spv, lit_spv, lit_pairs_spv};
 
 void begin_once(VkCommandBuffer commands) {
   auto info = vulkan<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
@@ -90,7 +96,7 @@ struct Renderer::State {
   VkDescriptorPool descriptors = VK_NULL_HANDLE;
   VkCommandPool commands = VK_NULL_HANDLE;
   VkQueryPool queries = VK_NULL_HANDLE;
-  VkPipeline pipelines[4] = {};
+  VkPipeline pipelines[std::size(kKernels)] = {};
 };
 
 Renderer::State::State(const CompactTree& tree, Span<const Rgb8> palette, const Options& chosen)
@@ -199,14 +205,14 @@ void Renderer::State::make(Slot* slot) {
 }
 
 VkPipeline Renderer::State::pipeline(bool lit, bool pairs) {
-  VkPipeline& made = pipelines[(lit ? 2 : 0) + (pairs ? 1 : 0)];
+  const std::size_t number = (lit ? 2U : 0U) + (pairs ? 1U : 0U);
+  VkPipeline& made = pipelines[number];
   if (made != VK_NULL_HANDLE) {
     return made;
   }
-  const Kernel kernel = kernel_of(lit, pairs);
   auto module = vulkan<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-  module.codeSize = 4 * kernel.words;
-  module.pCode = kernel.code;
+  module.codeSize = kKernels[number].size_bytes();
+  module.pCode = kKernels[number].data();
   VkShaderModule shader = VK_NULL_HANDLE;
   require(vkCreateShaderModule(device.get(), &module, nullptr, &shader), "take the kernel");
   auto info = vulkan<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
@@ -315,10 +321,6 @@ void Renderer::State::release() {
   vkDestroyDescriptorSetLayout(device.get(), set_layout, nullptr);
   slots.clear();
   scene = {};
-}
-
-std::vector<DeviceInfo> devices() {
-  return Device::list();
 }
 
 Renderer::Renderer(const CompactTree& tree, Span<const Rgb8> palette, const Options& options)
