@@ -49,22 +49,11 @@ void thimble_vectors();
 namespace thimble {
 namespace {
 
-enum Kind : uint32_t { kUndefined = 1, kSupervisorCall = 2, kPrefetchAbort = 3, kDataAbort = 4 };
-
-const char* name_of(uint32_t kind) {
-  switch (kind) {
-    case kUndefined:
-      return "undefined instruction";
-    case kSupervisorCall:
-      return "supervisor call without debugger";
-    case kPrefetchAbort:
-      return "prefetch abort";
-    case kDataAbort:
-      return "data abort";
-    default:
-      return "unexpected exception";
-  }
-}
+// By the number that a vector leaves.
+constexpr const char* kNames[] = {
+    "",           "undefined instruction", "supervisor call without debugger", "prefetch abort",
+    "data abort", "unexpected exception"};
+constexpr uint32_t kDataAbort = 4;
 
 }  // namespace
 }  // namespace thimble
@@ -72,5 +61,5 @@ const char* name_of(uint32_t kind) {
 void thimble_exception_report(uint32_t kind, uint32_t pc, uint32_t stack_pointer) {
   uint32_t address = 0;
   asm volatile("mrc p15, 0, %0, c6, c0, 0" : "=r"(address));  // data fault address
-  thimble::report_fault({thimble::name_of(kind), pc, address, kind == thimble::kDataAbort, stack_pointer});
+  thimble::report_fault({thimble::kNames[kind], pc, address, kind == thimble::kDataAbort, stack_pointer});
 }

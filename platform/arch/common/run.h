@@ -21,6 +21,8 @@ void raise_fence();
 /// Supplied by each kind of core: tells an emulator the exit status (semihosting), if thimble_semihosting says so;
 /// then stops.
 [[noreturn]] void finish(int status);
+inline constexpr uint32_t kSysExitExtended = 0x20;  ///< with a block of this reason and the status
+inline constexpr uint32_t kApplicationExit = 0x20026;
 
 /// What a fault handler found out.
 struct Fault {

@@ -10,22 +10,11 @@
 namespace thimble {
 namespace {
 
-enum Exception : uint32_t { kHardFault = 3, kMemManage = 4, kBusFault = 5, kUsageFault = 6 };
-
-const char* name_of(uint32_t exception) {
-  switch (exception) {
-    case kHardFault:
-      return "HardFault";
-    case kMemManage:
-      return "MemManage fault (memory that is not ours)";
-    case kBusFault:
-      return "BusFault (nothing at this address)";
-    case kUsageFault:
-      return "UsageFault (an instruction that cannot be)";
-    default:
-      return "unexpected exception";
-  }
-}
+constexpr uint32_t kHardFault = 3;
+constexpr const char* kNames[] = {"HardFault", "MemManage fault (memory that is not ours)",
+                                  "BusFault (nothing at this address)",
+                                  "UsageFault (an instruction that cannot be)"};
+constexpr uint32_t kFaults = sizeof kNames / sizeof kNames[0];
 
 }  // namespace
 }  // namespace thimble
@@ -34,7 +23,9 @@ const char* name_of(uint32_t exception) {
 extern "C" [[noreturn, gnu::used]] void thimble_fault_report(uint32_t stack_pointer, uint32_t exception,
                                                              uint32_t pc) {
   using namespace thimble;
-  Fault fault = {name_of(exception), pc, 0, false, stack_pointer};
+  const bool is_fault = exception - kHardFault < kFaults;
+  Fault fault = {is_fault ? kNames[exception - kHardFault] : "unexpected exception", pc, 0, false,
+                 stack_pointer};
 #if !defined(__ARM_ARCH_6M__)
   const uint32_t status = register32(cortex_m::kCfsr);
   if ((status & cortex_m::kCfsrMemAddressValid) != 0) {

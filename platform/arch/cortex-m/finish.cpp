@@ -4,13 +4,6 @@
 #include "common/run.h"
 
 namespace thimble {
-namespace {
-
-constexpr uint32_t kSysExitExtended = 0x20;
-constexpr uint32_t kApplicationExit = 0x20026;
-
-}  // namespace
-
 void finish(int status) {
   if (thimble_semihosting != 0) {
     const uint32_t block[2] = {kApplicationExit, static_cast<uint32_t>(status)};

@@ -6,9 +6,6 @@
 namespace thimble {
 namespace {
 
-constexpr uint32_t kSysExitExtended = 0x20;
-constexpr uint32_t kApplicationExit = 0x20026;
-
 // The three instructions are the sign; they must be whole words that lie in one page.
 [[gnu::noinline, gnu::aligned(16)]] void semihost(uint32_t operation, const uint32_t* block) {
   register uint32_t number asm("a0") = operation;

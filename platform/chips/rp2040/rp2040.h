@@ -128,7 +128,6 @@ inline constexpr uint32_t kDmaHalfwords = 1U << 2;
 inline constexpr uint32_t kDmaReadsOn = 1U << 4;    ///< the address it reads grows
 inline constexpr uint32_t kDmaForSpi1 = 18U << 15;  ///< paced by DREQ_SPI1_TX
 inline constexpr uint32_t kDmaQuiet = 1U << 21;     ///< no interrupt
-inline constexpr uint32_t kDmaSwapsBytes = 1U << 22;
 inline constexpr uint32_t kDmaBusy = 1U << 24;
 
 // The carriers' pins.

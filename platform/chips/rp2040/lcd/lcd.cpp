@@ -12,10 +12,6 @@
 namespace thimble {
 namespace {
 
-// What RAM holds of a pixel: the renderer's halfwords (kRgb565), or rp2040::kDmaSwapsBytes for bytes that
-// stand in the display's order already.
-constexpr uint32_t kByteOrder = 0;
-
 constexpr uint32_t pin_bit(uint32_t pin) {
   return 1U << pin;
 }
@@ -91,8 +87,8 @@ void begin_pixels(const uint8_t* from, size_t pixels, uint32_t reads_on) {
   register32(rp2040::kDmaRead) = static_cast<uint32_t>(reinterpret_cast<uintptr_t>(from));
   register32(rp2040::kDmaWrite) = rp2040::kSpiData;
   register32(rp2040::kDmaCount) = static_cast<uint32_t>(pixels);
-  register32(rp2040::kDmaControl) = rp2040::kDmaEnable | rp2040::kDmaHalfwords | reads_on |
-                                    rp2040::kDmaForSpi1 | rp2040::kDmaQuiet | kByteOrder;
+  register32(rp2040::kDmaControl) =
+      rp2040::kDmaEnable | rp2040::kDmaHalfwords | reads_on | rp2040::kDmaForSpi1 | rp2040::kDmaQuiet;
 }
 
 }  // namespace

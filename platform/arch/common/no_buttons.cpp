@@ -1,9 +1,0 @@
-#include "board.h"
-
-namespace thimble::board {
-
-uint32_t buttons() {
-  return 0;
-}
-
-}  // namespace thimble::board

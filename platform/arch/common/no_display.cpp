@@ -1,7 +1,0 @@
-#include "board.h"
-
-namespace thimble::board {
-
-void flush(const Band& /*band*/) {}
-
-}  // namespace thimble::board
