@@ -8,16 +8,14 @@ mkdir -p "$WORK/app/subprojects/packagefiles"
 cp tests/packages/meson/meson.build platform/examples/ball/main.cpp tests/packages/panels.cpp "$WORK/app/"
 cp "$PACKAGES/thimble.wrap" "$WORK/app/subprojects/"
 cp "$PACKAGES/thimble-$VERSION.tar.gz" "$WORK/app/subprojects/packagefiles/"
-logged meson setup --buildtype=plain --fatal-meson-warnings "$WORK/app/build" "$WORK/app"
+logged meson setup --buildtype=plain --fatal-meson-warnings --prefix=/opt/thimble --libdir=lib "$WORK/app/build" "$WORK/app"
 logged ninja -j1 -C "$WORK/app/build"
 same_ball "$WORK/app/build/ball"
 no_drivers "$WORK/app/build/ball"
 same_panels "$WORK/app/build/panels"
 
-unpack "thimble-$VERSION.tar.gz"
-logged meson setup --prefix=/opt/thimble --libdir=lib "$WORK/build" "$WORK/thimble-$VERSION"
-logged ninja -j1 -C "$WORK/build"
-DESTDIR="$(cd "$WORK" && pwd)/root" logged meson install --no-rebuild -C "$WORK/build"
+# A subproject is installed by what installs the project.
+DESTDIR="$(cd "$WORK" && pwd)/root" logged meson install --no-rebuild -C "$WORK/app/build"
 installed=$WORK/root/opt/thimble
 [ "$(cd "$installed/include" && find thimble -name '*.h' | sort)" = "$(cd include && find thimble -name '*.h' | sort)" ] ||
   fail "the headers installed are not those of the tree"
