@@ -31,7 +31,8 @@ TEST_CASE("command: --help -> exit 0, on standard output, what machines read nam
       {"view", {"drag", "wheel", "double click", "Esc"}},
       {"table", {}}};
   const CommandResult top = check_done({"--help"});
-  for (const auto& [subcommand, names] : all) {
+  for (const auto& [each_subcommand, names] : all) {
+    const auto& subcommand = each_subcommand;
     CAPTURE(subcommand);
     CHECK(top.out.find("  " + subcommand + " ") != std::string::npos);
     const CommandResult result = check_done({subcommand, "--help"});

@@ -232,7 +232,9 @@ TEST_CASE(
       {"a.ppm", absolute},        {"dir/../a.ppm", "a.ppm"},  {"a.ppm", "leads"},
       {"further.ppm", "./a.ppm"}, {"further.ppm", "leads"},   {"a.ppm", "round"},
       {"a.ppm", "way/../a.ppm"},  {"dir/b.ppm", "way/b.ppm"}, {"a.ppm", ".//a.ppm"}};
-  for (const auto& [first, second] : pairs) {
+  for (const auto& [each_first, each_second] : pairs) {
+    const auto& first = each_first;
+    const auto& second = each_second;
     CAPTURE(first);
     CAPTURE(second);
     for (const char* option : {"--hits", "--depth-image", "--stats"}) {

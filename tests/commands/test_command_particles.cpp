@@ -475,7 +475,8 @@ TEST_CASE("particles: what does not fit, cannot be read or written -> status 1, 
       {"5: key a\n4: key b\n", "line 2, column 1: tick 4 comes after tick 5"},
       {"5: end\n6: key b\n", "line 2, column 1: an event follows the end"},
       {"99999999999999999999: end\n", "line 1, column 1: the tick is '99999999999999999999'"}};
-  for (const auto& [text, sentence] : scripts) {
+  for (const auto& [each_text, sentence] : scripts) {
+    const auto& text = each_text;
     CAPTURE(text);
     refused({"--input", folder.write("script.txt", text)}, "script.txt: " + sentence);
   }

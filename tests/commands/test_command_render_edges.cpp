@@ -122,7 +122,8 @@ TEST_CASE("render --samples auto: threads, budgets and structures -> the same pi
        {{"--engine", "ray64"}, {"--memory", "220K"}, {"--structure", "pool"}}},
       {{"castle", "--shade", "color", "--cutoff", "3"}, {{"--memory", "400K"}, {"--threads", "2"}}},
   };
-  for (const auto& [words, ways] : cases) {
+  for (const auto& [each_words, ways] : cases) {
+    const auto& words = each_words;
     CAPTURE(words);
     const Picture first = render(words + Words{"--samples", "auto"}, kSize);
     for (const Words& way : ways) {

@@ -208,7 +208,8 @@ TEST_CASE(
   scenes.emplace_back(with("diffuse", "color 9 9 9", ball), false);
   scenes.emplace_back(with("pane", "glass", "box clear from 3 3 3 to 4 29 28"), false);
   scenes.emplace_back(with("block", "glass", "box clear from 3 3 3 to 15 11 28"), false);
-  for (const auto& [scene, is_smooth] : scenes) {
+  for (const auto& [each_scene, is_smooth] : scenes) {
+    const auto& scene = each_scene;
     CAPTURE(scene);
     const auto drawn =
         run_command({"render", scene, "--size", "40x30", "--verbose", "-o", folder.path("a.png")});

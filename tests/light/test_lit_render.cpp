@@ -108,7 +108,8 @@ TEST_CASE("an effect that is not in the set: no ray of it, and it makes no diffe
   constexpr EffectSet kAllButEdges = Effect::kAll & ~Effect::kEdges;
   LitCounts all;
   world.draw(kAllButEdges, &all);
-  for (const auto& [effect, kind] : kKinds) {
+  for (const auto& [each_effect, kind] : kKinds) {
+    const auto& effect = each_effect;
     CAPTURE(effect);
     const int index = static_cast<int>(kind);
     CHECK(all.rays[index] > 0);

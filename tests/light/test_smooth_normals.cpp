@@ -148,7 +148,8 @@ TEST_CASE("a plane, a cube, a lone voxel, a plate, a room: every face keeps its 
                                                   {"a room with a block in it", room},
                                                   {"a room of thin walls", thin_room},
                                                   {"a floor below a slab", slab}};
-  for (const auto& [name, solid] : bodies) {
+  for (const auto& [each_name, solid] : bodies) {
+    const auto& name = each_name;
     CAPTURE(name);
     expect_faces(Body(solid));
   }

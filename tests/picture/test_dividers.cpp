@@ -70,7 +70,7 @@ TEST_CASE(
       check_divisor(static_cast<std::int32_t>(std::clamp(divisor, std::int64_t{1}, kMost)));
     }
     for (int i = 0; i < 2000; ++i) {
-      check_divisor(static_cast<std::int32_t>((std::int64_t{1} << bit) + (random() & ((1U << bit) - 1))));
+      check_divisor(static_cast<std::int32_t>((std::uint64_t{1} << bit) + (random() & ((1U << bit) - 1))));
     }
   }
 }

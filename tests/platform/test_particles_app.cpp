@@ -87,7 +87,8 @@ TEST_CASE("particles app: every board -> its golden state first, then the steps 
                                                                          {"pico-lcd-2", 2},
                                                                          {"pico-oled", 0},
                                                                          {"gba", 5}}};
-  for (const auto& [board, index] : kBoards) {
+  for (const auto& [each_board, index] : kBoards) {
+    const auto& board = each_board;
     CAPTURE(std::string(board));
     const golden::ParticlesState& state = golden::kParticlesStates[index];
     const Run run = run_app(board, 3);

@@ -442,7 +442,8 @@ TEST_CASE("key script: lines that are none -> an error that names the line and t
       {"99999999999: up up", "line 1: frame 99999999999 is beyond 4294967295, the last"},
       {"0: type a\\", "a backslash"},
   };
-  for (const auto& [text, words] : cases) {
+  for (const auto& [each_text, words] : cases) {
+    const auto& text = each_text;
     CAPTURE(text);
     try {
       const KeyScript script(text);

@@ -161,7 +161,8 @@ TEST_CASE("load_file: beyond 256 MiB, more than a hundred to one -> refused; les
 TEST_CASE("load_file: several members and zero padding -> all members in order") {
   const TemporaryFolder folder;
   const std::string a = noise(70000, 3), b = noise(5, 4);
-  for (const auto& [name, pack, ending] : kPackers) {
+  for (const auto& [each_name, pack, ending] : kPackers) {
+    const auto& name = each_name;
     CAPTURE(name);
     CHECK(loaded(folder.write("two", pack(a) + pack(b))) == a + b);
     CHECK(loaded(folder.write("padded", pack(a) + std::string(100000, '\0'))) == a);

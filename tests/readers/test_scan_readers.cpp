@@ -302,11 +302,12 @@ TEST_CASE("las: all versions and formats -> positions and colours") {
 
 TEST_CASE(
     "las: colours of 8, 12 and 16 bits -> bytes by the greatest of the file; what is guessed is noted") {
-  for (const auto& [red, green, wanted] :
+  for (const auto& [each_red, green, wanted] :
        std::vector<std::tuple<std::uint16_t, std::uint16_t, Rgb>>{{255, 128, {255, 128, 0}},
                                                                   {4080, 2040, {255, 128, 0}},
                                                                   {4095, 0, {255, 0, 0}},
                                                                   {65535, 4080, {255, 16, 0}}}) {
+    const auto& red = each_red;
     CAPTURE(red);
     const std::string file = las(2, 2, {{0, 0, 0, red, green, 0}});
     CHECK(read_points(read_las, file)[0].color == wanted);

@@ -431,7 +431,7 @@ TEST_CASE("scene: a model out of the world -> an error with the depth; crop -> c
     CHECK((at[0] >= 8 && at[0] < 16 && at[1] >= 0 && at[1] < 16));
   }
   const std::string box = "material m\nbox m from 0 0 0 to 2 2 2\n";
-  for (const auto& [text, says] : std::vector<std::array<std::string, 2>>{
+  for (const auto& [each_text, says] : std::vector<std::array<std::string, 2>>{
            {"depth 4\nmodel spheres,depth=4 at 1 0 0\n", "line 2, column 1: the model's voxels from"},
            {"depth 3\nmaterial m\nbox m from 8 0 0 to 9 9 9\n",
             "line 3, column 1: all of this lies outside the world of 8 voxels a side (depth 3)"},
@@ -442,6 +442,7 @@ TEST_CASE("scene: a model out of the world -> an error with the depth; crop -> c
            {box + " camera eye 0 0 11 target 1 1 1\n", "line 3, column 2: the eye of the camera is outside"},
            {box + "camera eye 1 1 9 target 1 1 1 up 0 0 1\n", "up of the camera is parallel"},
            {box + "water level 2.5\n", "the water leaves the world of 2 voxels"}}) {
+    const auto& text = each_text;
     CAPTURE(text);
     CHECK(contains(open_error(folder.write("a.scene", text)), says));
   }

@@ -487,7 +487,7 @@ TEST_CASE(
     quad.material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})" + members + "}";
     return glow_of(quad.source());
   };
-  for (const auto& [members, glow] : std::vector<std::pair<std::string, Glow>>{
+  for (const auto& [each_members, glow] : std::vector<std::pair<std::string, Glow>>{
            {"", {none, 0}},
            {light("[0, 1, 0]"), {green, 1}},
            {light("[0, 1, 0]") + strong("4"), {green, 4}},
@@ -495,6 +495,7 @@ TEST_CASE(
            {light("[1, 0, 0]") + by_picture, {"RRRRRRRRbbbbbbbb", 1}},
            {light("[0.05, 0, 0]"), {none, 0}},
            {light("[0, 0, 0]") + by_picture, {none, 0}}}) {
+    const auto& members = each_members;
     CAPTURE(members);
     CHECK(glow_with(members) == glow);
   }

@@ -44,13 +44,13 @@ Baked baked_for(const std::optional<DisplayFacts>& display, bool default_look = 
 
 TEST_CASE(
     "display: a scene baked by the rule has dark edges on few greys, none else, and never by the list") {
-  constexpr EffectSet kSun = Effect::kDirectLight | Effect::kShadows;
-  CHECK(baked_for(kOled).effects == (kSun | Effect::kEdges));
-  CHECK(baked_for(DisplayFacts{PixelFormat::kMono1, 128, 64}).effects == (kSun | Effect::kEdges));
+  constexpr EffectSet kSunlit = Effect::kDirectLight | Effect::kShadows;
+  CHECK(baked_for(kOled).effects == (kSunlit | Effect::kEdges));
+  CHECK(baked_for(DisplayFacts{PixelFormat::kMono1, 128, 64}).effects == (kSunlit | Effect::kEdges));
   // Many colours get something light behind the scene.
-  CHECK(baked_for(DisplayFacts{PixelFormat::kRgb565, 240, 240}).effects == (kSun | Effect::kSky));
-  CHECK(baked_for(DisplayFacts{PixelFormat::kGray8, 240, 240}).effects == (kSun | Effect::kSky));
-  CHECK(baked_for(std::nullopt).effects == (kSun | Effect::kSky));
+  CHECK(baked_for(DisplayFacts{PixelFormat::kRgb565, 240, 240}).effects == (kSunlit | Effect::kSky));
+  CHECK(baked_for(DisplayFacts{PixelFormat::kGray8, 240, 240}).effects == (kSunlit | Effect::kSky));
+  CHECK(baked_for(std::nullopt).effects == (kSunlit | Effect::kSky));
   CHECK(baked_for(kOled, false).effects == Effect::kNone);
 }
 

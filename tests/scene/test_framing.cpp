@@ -309,7 +309,8 @@ TEST_CASE(
   tools::SceneArguments arguments;
   arguments.scene = "points:1,depth=5";
   const auto source = tools::open_scene(arguments);  // without a camera of its own
-  for (const auto& [width, height] : {std::pair{128, 64}, {96, 96}, {48, 96}}) {
+  for (const auto& [each_width, height] : {std::pair{128, 64}, {96, 96}, {48, 96}}) {
+    const auto& width = each_width;
     CAPTURE(width);
     tools::ViewWishes wishes;
     wishes.side = tools::NamedView::kBest;
