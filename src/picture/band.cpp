@@ -29,6 +29,9 @@ Status check_rows(int32_t width, int32_t height, const Band& band, size_t* strid
   if (line_bytes > band.pixels.size || rows_above > (band.pixels.size - line_bytes) / *stride) {
     return Status::kOutOfMemory;
   }
+  if (rows_above == 0) {
+    *stride = line_bytes;  // a row's own end, too, must be an address
+  }
   return Status::kOk;
 }
 
