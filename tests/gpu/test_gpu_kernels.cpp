@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "gpu/kernel/cpp.h"
 #include "support/compact_damage.h"
 #include "support/frames.h"
+#include "support/glsl.h"
 #include "support/gpu_kernels.h"
 #include "support/hard_frames.h"
 

@@ -6,10 +6,10 @@
 #include <functional>
 #include <random>
 
-#include "gpu/kernel/cpp.h"
 #include "gpu/renderer.h"
 #include "scene/backdrop.h"
 #include "scene/tone_table.h"
+#include "support/glsl.h"
 #include "support/gpu_kernels.h"
 #include "support/hard_frames.h"
 #include "support/lit_cases.h"

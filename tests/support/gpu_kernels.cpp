@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "gpu/kernel/cpp.h"
+#include "support/glsl.h"
 #include "thimble/light/host/asked.h"
 
 namespace thimble::tests {
