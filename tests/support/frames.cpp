@@ -189,6 +189,9 @@ bool set_fine(Random& random, const WideScene& scene, Camera* camera) {
     away[axis] = along > 2 || along == axis ? pick_int(random, -100, 100) : 0;
   }
   const double length = std::sqrt(double{1} * away.x * away.x + away.y * away.y + away.z * away.z);
+  if (length == 0) {
+    return false;
+  }
   const double voxel_px = 0.05 * std::pow(40.0, 0.001 * pick_int(random, 0, 1000));
   const auto eye_at = [&](double distance) {
     Vec3Q8 eye;
