@@ -1,7 +1,7 @@
 # The front door. What is built, and how, stands in CMakeLists.txt; the packages stand in .ci/packages.
 .DEFAULT_GOAL := help
 .PHONY: help deps deps-build deps-test deps-bench deps-boards deps-web deps-format deps-coverage all run sim install install-python \
-  uninstall deb packages release sanitize clang check test test-all coverage bench firmware emulate images flash test-boards test-packages \
+  uninstall deb packages release sanitize clang fuzz check test test-all coverage bench firmware emulate images flash test-boards test-packages \
   bench-frames test-framebuffer test-threads mutants ranges soak web test-web bench-web format tidy clean
 
 CONFIGURE = cmake -S . -G Ninja --log-level=WARNING -Wno-dev
@@ -73,21 +73,23 @@ test-packages: ## Unpack every package in an empty folder and build it by its ec
 	@$(MAKE) --no-print-directory packages
 	@sh tests/packages/run.sh
 
-# What is tested whole is built in three ways; STEP says which of how many steps this is. SANITIZED: what is built with
-# sanitizers, by clang, which has the fuzzers as well.
+# What is tested whole is built in four ways; STEP says which of how many steps this is, SANITIZED what is built with
+# sanitizers.
 TESTED = -DTHIMBLE_TESTS=ON -DTHIMBLE_GOLDEN=ON -DTHIMBLE_PYTHON=ON
-SANITIZED ?= all thimble_fuzzers
+SANITIZED ?= all
 release:
 	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
 	@.ci/build "$(STEP)optimised build" build/release
 sanitize:
-	@$(CONFIGURE) -B build/sanitize -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
-	  -DTHIMBLE_SANITIZE=ON -DTHIMBLE_FUZZ=ON -DTHIMBLE_GOLDEN=OFF >/dev/null
+	@$(CONFIGURE) -B build/sanitize -DTHIMBLE_SANITIZE=ON -DTHIMBLE_GOLDEN=OFF >/dev/null
 	@.ci/build "$(STEP)sanitized build" build/sanitize $(SANITIZED)
 clang:
 	@$(CONFIGURE) -B build/clang -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TOOLS=OFF -DTHIMBLE_TESTS=OFF \
 	  -DTHIMBLE_GOLDEN=ON >/dev/null
 	@.ci/build "$(STEP)build by clang" build/clang
+fuzz:
+	@$(CONFIGURE) -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DTHIMBLE_TESTS=OFF -DTHIMBLE_FUZZ=ON >/dev/null
+	@.ci/build "$(STEP)fuzzers" build/fuzz thimble_fuzzers
 # Between edits: no other compiler, no sanitizer, no slow case.
 check: deps-test ## Build what is optimised and run its quick tests: one line a group
 	@$(CONFIGURE) -B build/release $(TESTED) >/dev/null
@@ -102,11 +104,12 @@ test: deps-test ## Build and run every test once, optimised, and the quick check
 # One ctest over all builds, so that there is one summary. AFTER_TEST=yes, where `make test` has just passed: of the
 # optimised tests only those that are left to this.
 test-all: deps-test ## Build and run everything: optimised, sanitized, clang, fuzzing, mutants, every check
-	@$(MAKE) --no-print-directory release STEP='[1/4] '
-	@$(MAKE) --no-print-directory sanitize STEP='[2/4] '
-	@$(MAKE) --no-print-directory clang STEP='[3/4] '
-	@printf 'subdirs($(if $(AFTER_TEST),,release) sanitize clang)\n' > build/CTestTestfile.cmake
-	@echo "[4/4] the tests; those that take longest begin"
+	@$(MAKE) --no-print-directory release STEP='[1/5] '
+	@$(MAKE) --no-print-directory sanitize STEP='[2/5] '
+	@$(MAKE) --no-print-directory clang STEP='[3/5] '
+	@$(MAKE) --no-print-directory fuzz STEP='[4/5] '
+	@printf 'subdirs($(if $(AFTER_TEST),,release) sanitize clang fuzz)\n' > build/CTestTestfile.cmake
+	@echo "[5/5] the tests; those that take longest begin"
 	@status=0; \
 	if [ -n "$(AFTER_TEST)" ]; then \
 	  ctest --test-dir build/release --output-on-failure -j 2 -L whole $(CTEST_ARGS) || status=1; \

@@ -1,6 +1,8 @@
 # The flags of the builds that look for faults while they run: sanitizers, fuzzers.
-# Frames in light by the map, one template for ten sets of effects: optimised they take a third of the build.
-set(THIMBLE_SETS_OPTIONS -O0)
+if(THIMBLE_SANITIZE OR THIMBLE_SANITIZE_THREADS OR THIMBLE_FUZZ)
+  # Frames in light by the map, one template for ten sets of effects: optimised they take a third of the build.
+  set(THIMBLE_SETS_OPTIONS -O0)
+endif()
 if(THIMBLE_SANITIZE)
   # Without what AddressSanitizer finds by itself (a null pointer, an object that is too small) it compiles in three quarters
   # of the time.
@@ -31,6 +33,7 @@ if(THIMBLE_SANITIZE_THREADS)
   set(THIMBLE_TESTED "(wide/test_|viewer/test_pictures|tree/test_key_sort|picture/test_panel|platform/test_band_crew)")
 endif()
 if(THIMBLE_FUZZ)
-  # What the fuzzers share with the sanitized tests tells libFuzzer where it went.
-  add_compile_options(-fsanitize=fuzzer-no-link)
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+    -fno-omit-frame-pointer -O1)
+  add_link_options(-fsanitize=address,undefined)
 endif()
