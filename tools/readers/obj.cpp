@@ -186,11 +186,10 @@ class ObjMaterials {
       surface.glow = picture(used[i].glow_picture, false);
       surface.emission = used[i].emission;
       if (surface.glow != nullptr && surface.emission == std::array<double, 3>{}) {
-        surface.emission = {1, 1,
-                            1};  // as of Kd: some programs write no light at all where a picture says it
+        surface.emission = {1, 1, 1};
       }
       has_surface = has_surface || has_picture || surface.emission != std::array<double, 3>{};
-      // Some programs write no light at all where a picture says it.
+      // As with Ke above: some programs write no light at all where a picture says it.
       if (surface.color != nullptr && used[i].color == Rgb{0, 0, 0}) {
         used[i].color = Rgb{};
       }
