@@ -1,4 +1,4 @@
-// Threads of the C++ library, made for each call: what builds without oneTBB have.
+// Threads of the C++ library, made for each call: what builds without the wide renderer have.
 #include <algorithm>
 #include <atomic>
 #include <system_error>
