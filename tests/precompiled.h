@@ -6,7 +6,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <random>
+#include <span>
+#include <sstream>
 #include <string>
+#include <unordered_map>
 #include <vector>

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "support/baked_damage.h"
 #include "support/check_command.h"
+#include "support/json.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
 #include "thimble/tree/brick_map.h"
@@ -66,7 +66,7 @@ std::string frame_crc32(const TemporaryFolder& folder, const std::string& scene,
     words.insert(words.end(), {"--effects", "auto"});  // as it was baked, not the default picture
   }
   check_done(words);
-  return nlohmann::json::parse(read_text(folder.path("s.json")))["frame_crc32"];
+  return read_json(folder.path("s.json"))["frame_crc32"];
 }
 
 // Every command that takes a scene says the same, names the file and writes nothing.

@@ -4,20 +4,19 @@
 
 #include <cstring>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "instruments/accuracy_study.h"
 #include "instruments/hard_cases.h"
 #include "output/plot.h"
 #include "support/check_command.h"
+#include "support/json.h"
 #include "support/xml_elements.h"
 
 namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using Json = nlohmann::ordered_json;
 
 // What all runs here share, for accuracy and for render.
 const Words kView{"spheres", "--depth", "5", "--size", "40x30", "--shade", "color"};
@@ -37,7 +36,7 @@ Json rows_of(const TemporaryFolder& folder, const Words& words, std::string* out
   if (out != nullptr) {
     *out = result.out;
   }
-  return Json::parse(read_text(folder.path("a.json")));
+  return read_json(folder.path("a.json"));
 }
 
 void check_accuracy_refused(const Words& words, int status, const Words& named) {
@@ -70,7 +69,7 @@ Drawn draw(const TemporaryFolder& folder, const std::string& options) {
   drawn.distances.resize(40 * 30);
   std::memcpy(drawn.distances.data(), depths.data() + depths.size() - 40 * 30 * sizeof(float),
               40 * 30 * sizeof(float));
-  drawn.stats = Json::parse(read_text(folder.path("r.json")));
+  drawn.stats = read_json(folder.path("r.json"));
   return drawn;
 }
 
@@ -284,7 +283,7 @@ TEST_CASE(
     check_done(Words{"render", "--view", "paper", "--fov", "60"} + view +
                Words{"--effects", "auto", "--bounces", bounces, "--quiet", "-o", folder.path("l.ppm"),
                      "--stats", folder.path("l.json")});
-    return Json::parse(read_text(folder.path("l.json")))["rays"];
+    return read_json(folder.path("l.json"))["rays"];
   };
   std::map<std::string, int> groups;
   std::set<Words> settings;
@@ -331,7 +330,7 @@ TEST_CASE("accuracy: the demonstration on an lm3s6965evb -> the estimate is near
   const TemporaryFolder folder;
   accuracy(
       {"demo", "--size", "128x64", "--shade", "color", "--rounds", "1", "--json", folder.path("d.json")});
-  const Json rows = Json::parse(read_text(folder.path("d.json")));
+  const Json rows = read_json(folder.path("d.json"));
   // Ray by ray, setting the camera up included (src/picture/BRICKS.md, "Frames on a chip").
   const double counted = 40.5e6;
   CHECK(rows[0]["lm3s6965evb_instructions"].get<double>() ==
@@ -419,7 +418,7 @@ TEST_CASE("accuracy --hard-cases: every case and tracer -> ours 0, theirs counte
   const TemporaryFolder folder;
   const CommandResult result = accuracy({"--hard-cases", "--rays", "2800", "--seed", "5", "--json",
                                          folder.path("h.json"), "--csv", folder.path("h.csv")});
-  const Json rows = Json::parse(read_text(folder.path("h.json")));
+  const Json rows = read_json(folder.path("h.json"));
   std::map<std::string, std::uint64_t> wrong;
   std::set<std::string> cases;
   int totals = 0;

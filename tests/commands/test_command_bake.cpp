@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,16 +17,13 @@
 #include "support/check_command.h"
 #include "support/counts.h"
 #include "support/file_bytes.h"
+#include "support/json.h"
 #include "thimble/bake/baked_scene.h"
 
 namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-
-nlohmann::json json_of(const std::string& path) {
-  return nlohmann::json::parse(read_text(path));
-}
 
 std::string render(const TemporaryFolder& folder, const std::string& scene, const Words& options,
                    const std::string& name = "picture.ppm") {
@@ -198,7 +194,7 @@ TEST_CASE("bake: --memory -> fits at N, at N - 1 refused by one byte, with the d
   CHECK(result.err.find("28,327 voxels in 12,624 bytes (depth 6, 0.45 bytes a voxel)") != std::string::npos);
   const auto size = std::filesystem::file_size(oct);
   CHECK(size == 12624);
-  const auto json = json_of(stats);
+  const auto json = read_json(stats);
   CHECK(json["baked_bytes"] == size);
   CHECK(json["budget_bytes"] == size);
   CHECK(json["voxels"] == 28327);
@@ -231,7 +227,7 @@ TEST_CASE("bake: --coarsen -> within the limit and close to it, only solid added
     CAPTURE(scene);
     check_done(
         {"bake", scene, "-o", oct, "--quiet", "--effects", "none", "--stats", folder.path("full.json")});
-    const auto full = json_of(folder.path("full.json"));
+    const auto full = read_json(folder.path("full.json"));
     const std::size_t exact = std::filesystem::file_size(oct);
     for (const std::size_t percent : {100U, 99U, 80U, 50U, 30U}) {
       if (thimble::tests::takes_few() && percent != 99U && percent != 30U) {
@@ -246,7 +242,7 @@ TEST_CASE("bake: --coarsen -> within the limit and close to it, only solid added
       CHECK(size <= limit);
       // One block is merged at a time. The first one also costs a bit a node.
       CHECK(size + limit / 12 + 64 >= limit);
-      const auto stats = json_of(folder.path("s.json"));
+      const auto stats = read_json(folder.path("s.json"));
       CHECK(stats["baked_bytes"] == size);
       CHECK(stats["budget_bytes"] == limit);
       const std::uint64_t added = stats["solid_added"];
@@ -278,18 +274,18 @@ TEST_CASE(
   const std::string oct = folder.path("s.oct");
   check_done({"bake", "spheres", "-o", oct, "--coarsen", "--memory", "6000", "--quiet", "--stats",
               folder.path("a.json")});
-  const auto added = json_of(folder.path("a.json"))["solid_added"];
+  const auto added = read_json(folder.path("a.json"))["solid_added"];
   CHECK(added > 0);
   for (const char* structure : {"compact", "pool", "dense"}) {
     check_done({"info", oct, "--structure", structure, "--stats", folder.path("b.json")});
-    CHECK(json_of(folder.path("b.json"))["solid_added"] == added);
+    CHECK(read_json(folder.path("b.json"))["solid_added"] == added);
   }
   // In less memory than its tree takes, --coarsen merges more.
-  const auto bytes = json_of(folder.path("b.json"))["tree_bytes"];
+  const auto bytes = read_json(folder.path("b.json"))["tree_bytes"];
   check_done({"info", oct, "--memory", "20000", "--coarsen", "--stats", folder.path("b.json")});
-  CHECK(json_of(folder.path("b.json"))["solid_added"] == added);
+  CHECK(read_json(folder.path("b.json"))["solid_added"] == added);
   check_done({"info", oct, "--memory", "5000", "--coarsen", "--stats", folder.path("b.json")});
-  CHECK(json_of(folder.path("b.json"))["solid_added"] > added);
+  CHECK(read_json(folder.path("b.json"))["solid_added"] > added);
   CHECK(bytes > 0);
 }
 
@@ -370,8 +366,8 @@ TEST_CASE("bake: --board -> its flash is the limit, its display the picture; RAM
   CHECK(std::filesystem::file_size(oct) == baked_bytes);
   const std::string ram = "RAM " + tools::grouped(208 + 512 + board->stack_bytes) + " of 8,192 bytes";
   CHECK(result.err.find(ram) != std::string::npos);  // renderer, band and stack
-  CHECK(json_of(folder.path("s.json"))["board"] == "stm32vldiscovery");
-  CHECK(json_of(folder.path("s.json"))["budget_bytes"] == flash);
+  CHECK(read_json(folder.path("s.json"))["board"] == "stm32vldiscovery");
+  CHECK(read_json(folder.path("s.json"))["budget_bytes"] == flash);
   CHECK(render(folder, oct, {"--size", "128x64"}) == render(folder, "spheres", {"--size", "128x64"}));
 
   check_refused({"bake", "points:100000", "-o", folder.path("no.oct"), "--board", "stm32vldiscovery"}, 1,
@@ -415,7 +411,7 @@ TEST_CASE("render --board: the display's size and pixels as it shows them, its R
       packed.back() = static_cast<char>(static_cast<unsigned char>(packed.back()) | level);
     }
   }
-  const auto stats = json_of(folder.path("s.json"));
+  const auto stats = read_json(folder.path("s.json"));
   std::array<char, 9> crc{};
   std::snprintf(crc.data(), crc.size(), "%08lx",
                 crc32(0, reinterpret_cast<const Bytef*>(packed.data()), static_cast<uInt>(packed.size())));
@@ -451,7 +447,7 @@ TEST_CASE("render --board: the display's size and pixels as it shows them, its R
                 {"stm32vldiscovery's RAM less its stack", tools::grouped(least_bytes), "--coarsen"});
   check_done({"render", "spheres", "-o", folder.path("e.ppm"), "--board", "stm32vldiscovery", "--coarsen",
               "--quiet", "--stats", folder.path("s.json")});
-  CHECK(json_of(folder.path("s.json"))["high_water_bytes"] <= least_bytes);
+  CHECK(read_json(folder.path("s.json"))["high_water_bytes"] <= least_bytes);
   // The smaller of both counts.
   check_refused({"info", "spheres", "--board", "microbit", "--memory", "4000"}, 1, {"4,000 (--memory)"});
   check_refused({"info", "spheres", "--board", "microbit", "--memory", "1M"}, 1,
@@ -506,7 +502,7 @@ TEST_CASE("info: a baked scene -> version, sections by bytes, palette, camera, n
       rows["camera"].starts_with("perspective, fov 45 degrees, eye -10,-20.5,30, target 32,32,32, up 0,1,1"));
   CHECK(rows["fits the flash of"].find("stm32vldiscovery") != std::string::npos);
   CHECK(rows["compact tree"] == "sound");
-  const auto stats = json_of(folder.path("s.json"));
+  const auto stats = read_json(folder.path("s.json"));
   CHECK(stats["baked_crc32"] == crc.data());
   CHECK(stats["baked_bytes"] == 12624);
 }

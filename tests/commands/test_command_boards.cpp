@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "output/units.h"
 #include "scene/board_fit.h"
 #include "support/check_command.h"
+#include "support/json.h"
 
 namespace {
 
@@ -78,7 +78,7 @@ TEST_CASE("boards: with a scene -> what fits is what bake and render say") {
   CHECK(line_of(text, "microbit", second) == "microbit              143,360   8.8 %        " +
                                                  tools::grouped(stack + 720) + "   yes        " +
                                                  tools::grouped(stack + 33088) + "    no        7       4.3");
-  const auto rows = nlohmann::ordered_json::parse(read_text(json_path));
+  const auto rows = read_json(json_path);
   REQUIRE(rows.size() == platform::boards().size);
   const std::vector<std::string> csv = lines_of(read_text(csv_path));
   REQUIRE(csv.size() == rows.size() + 1);
@@ -126,7 +126,7 @@ TEST_CASE("boards: a scene of one depth, a baked one, points -> the deepest dept
   const std::string json_path = folder.path("b.json");
   const std::string text = table({oct, "--json", json_path});
   CHECK(text.find("one depth only") != std::string::npos);
-  auto rows = nlohmann::json::parse(read_text(json_path));
+  auto rows = read_json(json_path);
   for (const auto& row : rows) {
     const bool fits = row["baked_bytes"] <= row["scene_flash_bytes"];
     CHECK(row["fits_flash"] == (fits ? 1 : 0));
@@ -134,7 +134,7 @@ TEST_CASE("boards: a scene of one depth, a baked one, points -> the deepest dept
   }
   // Points of any depth: the whole range is tried, down to where the smallest board takes it.
   boards({"points:30000", "--json", json_path, "--quiet"});
-  rows = nlohmann::json::parse(read_text(json_path));
+  rows = read_json(json_path);
   int least = 99;
   for (const auto& row : rows) {
     CHECK(row["deepest_tried_depth"] == 12);
@@ -151,7 +151,7 @@ TEST_CASE("boards: data on standard output -> no table between; bad usage and in
   CHECK(csv.out.starts_with("board,title,core,ram_bytes,"));
   // Commas within a title are in quotes.
   CHECK(csv.out.find("\"Netduino Plus 2 (STM32F405, Cortex-M4F)\"") != std::string::npos);
-  CHECK(nlohmann::json::parse(boards({"--json", "-"}).out).size() == platform::boards().size);
+  CHECK(parse_json(boards({"--json", "-"}).out).size() == platform::boards().size);
   check_refused({"boards", "--csv", "-", "--json", "-"}, 1, {"standard output"});
   check_refused({"boards", "--depth", "3"}, 2, {"--depth"});
   check_refused({"boards", "nothing.vox"}, 1, {"nothing.vox"});
@@ -179,7 +179,7 @@ TEST_CASE("boards: a scene's frames -> within a fifth of what bench measures, ei
   for (const auto& [scene, boards_of] : measured) {
     boards({scene, "--json", path});
     CHECK(boards_of.size() == 6);
-    for (const auto& row : nlohmann::ordered_json::parse(read_text(path))) {
+    for (const auto& row : read_json(path)) {
       const auto found = boards_of.find(row["board"]);
       if (found != boards_of.end()) {
         CAPTURE(scene);

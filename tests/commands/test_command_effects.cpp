@@ -2,18 +2,17 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "boards/effect_flash.h"
 #include "scene/lit_description.h"
 #include "support/check_command.h"
+#include "support/json.h"
 #include "thimble/light/render.h"
 
 namespace {
 
 using namespace thimble::tests;
-using nlohmann::json;
 using thimble::EffectSet;
 namespace tools = thimble::tools;
 
@@ -33,13 +32,13 @@ box mist from 14 4 2 to 20 12 9
 ball glow at 26 26 5 radius 3
 )";
 
-json rows_of(const std::string& scene, const Words& more = {}) {
+Json rows_of(const std::string& scene, const Words& more = {}) {
   const TemporaryFolder folder;
   const CommandResult result = check_done(Words{"effects", scene, "--size", "48x36", "--frames", "1",
                                                 "--quiet", "--json", folder.path("e.json")} +
                                           more);
   CHECK(result.err.empty());
-  const json rows = json::parse(read_text(folder.path("e.json")));
+  const Json rows = read_json(folder.path("e.json"));
   REQUIRE(rows.size() == thimble::Effect::kCount);
   for (int bit = 0; bit < thimble::Effect::kCount; ++bit) {
     CHECK(rows[static_cast<std::size_t>(bit)]["effect"] == thimble::effect_name(EffectSet{1} << bit));
@@ -48,15 +47,15 @@ json rows_of(const std::string& scene, const Words& more = {}) {
 }
 
 // What `thimble render` counts of the same picture with a set of effects.
-json counts_of(const std::string& scene, EffectSet effects) {
+Json counts_of(const std::string& scene, EffectSet effects) {
   const TemporaryFolder folder;
   check_done({"render", scene, "--size", "48x36", "--shade", "color", "--engine", "ray64", "--effects",
               tools::effects_text(effects), "--quiet", "-o", folder.path("a.ppm"), "--stats",
               folder.path("a.json")});
-  return json::parse(read_text(folder.path("a.json")));
+  return read_json(folder.path("a.json"));
 }
 
-void check_nothing(const json& row) {
+void check_nothing(const Json& row) {
   CAPTURE(row.dump());
   CHECK(row["called_for"] == 0);
   CHECK(row["why"] == "");
@@ -70,11 +69,11 @@ void check_nothing(const json& row) {
 }
 
 TEST_CASE("effects: what is not called for -> exactly 0 rays, nodes, time, RAM and flash") {
-  for (const json& row : rows_of("spheres")) {
+  for (const Json& row : rows_of("spheres")) {
     check_nothing(row);
   }
   int none = 0;
-  for (const json& row : rows_of("water")) {
+  for (const Json& row : rows_of("water")) {
     if (row["called_for"] == 0) {
       check_nothing(row);
       ++none;
@@ -90,12 +89,12 @@ TEST_CASE("effects: rays of each kind and nodes -> those of two pictures by rend
   const TemporaryFolder folder;
   for (const std::string& scene : {std::string("water"), folder.write("a.scene", kRoom)}) {
     CAPTURE(scene);
-    const json rows = rows_of(scene);
+    const Json rows = rows_of(scene);
     EffectSet all = 0;
     for (int bit = 0; bit < thimble::Effect::kCount; ++bit) {
       all |= rows[static_cast<std::size_t>(bit)]["called_for"] == 1 ? EffectSet{1} << bit : 0U;
     }
-    for (const json& row : rows) {
+    for (const Json& row : rows) {
       if (row["called_for"] == 0) {
         continue;
       }
@@ -105,8 +104,8 @@ TEST_CASE("effects: rays of each kind and nodes -> those of two pictures by rend
         continue;  // render gives what glows shadows, asked or not
       }
       const EffectSet with = effect == thimble::Effect::kDirectLight ? all & ~thimble::Effect::kShadows : all;
-      const json more = counts_of(scene, with);
-      const json less = counts_of(scene, with & ~effect);
+      const Json more = counts_of(scene, with);
+      const Json less = counts_of(scene, with & ~effect);
       const auto difference = [&](const char* of, const std::string& kind) {
         return more[of][kind].get<std::int64_t>() - less[of][kind].get<std::int64_t>();
       };
@@ -135,7 +134,7 @@ TEST_CASE("effects: rays of each kind and nodes -> those of two pictures by rend
 
 TEST_CASE("effects: RAM -> the rays that wait and the tables that only this effect needs") {
   const TemporaryFolder folder;
-  const json rows = rows_of(folder.write("a.scene", kRoom));
+  const Json rows = rows_of(folder.write("a.scene", kRoom));
   const auto ram = [&](EffectSet effect) {
     std::size_t bit = 0;
     while (EffectSet{1} << bit != effect) {
@@ -153,7 +152,7 @@ TEST_CASE("effects: RAM -> the rays that wait and the tables that only this effe
   CHECK(ram(lit::Effect::kMirror) ==
         lit::lit_render_bytes(lit::Effect::kMirror) - lit::lit_render_bytes(lit::Effect::kFog));
 
-  const json alone = rows_of(folder.write("b.scene", "material m emit\nbox m from 0 0 0 to 2 2 2\n"));
+  const Json alone = rows_of(folder.write("b.scene", "material m emit\nbox m from 0 0 0 to 2 2 2\n"));
   CHECK(alone[3]["effect"] == "emission");
   CHECK(alone[3]["ram_bytes"] == sizeof(lit::Surface));
 }
@@ -161,7 +160,7 @@ TEST_CASE("effects: RAM -> the rays that wait and the tables that only this effe
 TEST_CASE("effects: why -> the material, the lights, the line of the scene") {
   const TemporaryFolder folder;
   std::string all;
-  for (const json& row : rows_of(folder.write("a.scene", kRoom))) {
+  for (const Json& row : rows_of(folder.write("a.scene", kRoom))) {
     all += row["why"].get<std::string>() + "\n";
   }
   CHECK(all ==
@@ -169,7 +168,7 @@ TEST_CASE("effects: why -> the material, the lights, the line of the scene") {
         "emissive\n"
         "material mirror is metal\n\nmaterial mist is cloud\n\nair that halves light in 64 voxels\n\n\n\n"
         "material glow is emissive\n\n\n");
-  const json asked = rows_of("spheres", {"--effects", "sky,shadows"});
+  const Json asked = rows_of("spheres", {"--effects", "sky,shadows"});
   CHECK(asked[0]["why"] == "asked for");
   CHECK(asked[1]["why"] == "asked for");
   CHECK(asked[9]["called_for"] == 1);

@@ -2,11 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "support/check_command.h"
 #include "support/file_bytes.h"
+#include "support/json.h"
 
 namespace {
 
@@ -107,7 +107,7 @@ TEST_CASE("info: points -> fitted to the world, or as voxel indices with --as-vo
 TEST_CASE("info: --stats -> the keys of every command, the frame's being zero or empty") {
   const TemporaryFolder folder;
   info({"spheres", "--stats", folder.path("s.json"), "--structure", "pool"});
-  const auto stats = nlohmann::json::parse(read_text(folder.path("s.json")));
+  const auto stats = read_json(folder.path("s.json"));
   CHECK(stats["voxels"] == 28327);
   CHECK(stats["rays"] == 0);
   CHECK(stats["frame_crc32"] == "");

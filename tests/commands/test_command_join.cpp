@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "scene/random.h"
 #include "support/check_command.h"
 #include "support/counts.h"
+#include "support/json.h"
 
 namespace {
 
@@ -139,7 +139,7 @@ TEST_CASE("join: who draws and how fast is not in a part, what changes the pictu
   CHECK(part(depth + Words{"--engine", "wide", "--threads", "2", "--stats", folder.path("s.json")},
              "b.part") == one);
   CHECK(part(depth + Words{"--memory", "4M", "--structure", "pool"}, "b.part") == one);
-  const auto stats = nlohmann::json::parse(read_text(folder.path("s.json")));
+  const auto stats = read_json(folder.path("s.json"));
   CHECK(stats["rays"] == 9 * 40);
   const std::string rest = folder.path("rest.part");
   const std::string out = folder.path("out.png");

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 #include <string>
@@ -14,6 +13,7 @@
 #include "scene/board_fit.h"
 #include "support/check_command.h"
 #include "support/hit_rows.h"
+#include "support/json.h"
 #include "support/subtree_count.h"
 #include "support/xml_elements.h"
 
@@ -21,7 +21,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using Json = nlohmann::ordered_json;
 
 CommandResult memory(const Words& words) {
   CommandResult result = check_done(Words{"memory"} + words);
@@ -35,7 +34,7 @@ CommandResult memory(const Words& words) {
 
 Json rows_of(const TemporaryFolder& folder, const Words& words) {
   memory(words + Words{"--json", folder.path("m.json")});
-  return Json::parse(read_text(folder.path("m.json")));
+  return read_json(folder.path("m.json"));
 }
 
 // Some blocks, some single voxels, in a world of 16.
@@ -185,7 +184,7 @@ TEST_CASE("memory: the boards of a depth -> those whose flash boards says it fit
   check_done({"boards", "points:100000,depth=9", "--quiet", "--json", json});
   const std::string fits = ";" + rows[8]["compact_boards"].get<std::string>() + ";";
   int boards = 0;
-  for (const Json& board : Json::parse(read_text(json))) {
+  for (const Json& board : read_json(json)) {
     const std::string name = board["board"];
     CAPTURE(name);
     const bool listed = fits.find(";" + name + ";") != std::string::npos;

@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "support/check_command.h"
 #include "support/counts.h"
+#include "support/json.h"
 #include "support/particle_shadow.h"
 #include "thimble/plane/particles.h"
 
@@ -27,12 +26,12 @@ CommandResult particles(const Words& words) {
 }
 
 /// Runs it unseen and returns --stats; fails the test when it does not succeed.
-nlohmann::json stats_of(const Words& words) {
+Json stats_of(const Words& words) {
   const TemporaryFolder folder;
   const std::string path = folder.path("stats.json");
   CHECK(check_done(Words{"particles"} + words + Words{"--stats", path, "--quiet", "--display", "none"})
             .err.empty());
-  return nlohmann::json::parse(read_text(path));
+  return read_json(path);
 }
 
 std::string crc_of(const Words& words) {
@@ -116,7 +115,7 @@ TEST_CASE("particles: no option, no display, no terminal -> 2,000 steps of Figur
   CHECK(result.out.empty());
   CHECK(result.err.find("693 balls, 2,000 steps") == 0);
   CHECK(result.err.find("asleep 693") != std::string::npos);
-  const nlohmann::json stats = stats_of({});
+  const Json stats = stats_of({});
   CHECK(stats.at("steps") == 2000);
   CHECK(stats.at("particles") == 693);
   CHECK(stats.at("width") == 800);
@@ -224,7 +223,7 @@ TEST_CASE(
       "210: key .\n215: key space\n220: key c\n221: key n\n222: key m\n223: key B\n224: key e\n225: key E\n"
       "230: key 0\n240: key 0\n241: key x\n242: key o\n243: key ]\n244: key [\n245: key g\n250: key down\n");
   const Words words{"--size", "200x150", "--count", "60", "--steps", "300", "--input", script};
-  const nlohmann::json first = stats_of(words + Words{"--record-input", folder.path("one.txt")});
+  const Json first = stats_of(words + Words{"--record-input", folder.path("one.txt")});
   CHECK(first.at("steps") == 300);
   CHECK(first.at("state_crc32") != crc_of({"--size", "200x150", "--count", "60", "--steps", "300"}));
   // The record ends by itself.
@@ -232,7 +231,7 @@ TEST_CASE(
                     "--count",        "60",
                     "--input",        folder.path("one.txt"),
                     "--record-input", folder.path("two.txt")};
-  const nlohmann::json second = stats_of(again);
+  const Json second = stats_of(again);
   CHECK(second.at("state_crc32") == first.at("state_crc32"));
   CHECK(second.at("steps") == 300);
   CHECK(read_text(folder.path("one.txt")) == read_text(folder.path("two.txt")));
@@ -250,13 +249,13 @@ TEST_CASE("particles: pause, single step, reset -> time stands, advances by one,
     return crc_of({"--size", "200x150", "--count", "60", "--steps", steps});
   };
   CHECK(with("50: key space\n5000: key space\n", {"--steps", "120"}).at("state_crc32") == plain("120"));
-  const nlohmann::json stands = with("50: key space\n", {"--steps", "120"});
+  const Json stands = with("50: key space\n", {"--steps", "120"});
   CHECK(stands.at("steps") == 50);
   CHECK(stands.at("state_crc32") == plain("50"));
-  const nlohmann::json by_one = with("50: key .\n60: key .\n70: key .\n", {});
+  const Json by_one = with("50: key .\n60: key .\n70: key .\n", {});
   CHECK(by_one.at("steps") == 53);
   CHECK(by_one.at("state_crc32") == plain("53"));
-  const nlohmann::json reset = with("80: key left\n90: key r\n90: key down\n", {"--steps", "130"});
+  const Json reset = with("80: key left\n90: key r\n90: key down\n", {"--steps", "130"});
   CHECK(reset.at("steps") == 130);
   CHECK(reset.at("state_crc32") == plain("40"));
   CHECK(with("40: end\n", {}).at("state_crc32") == plain("40"));

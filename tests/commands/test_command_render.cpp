@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 #include <string>
@@ -19,6 +18,7 @@
 #include "support/check_command.h"
 #include "support/counts.h"
 #include "support/hit_rows.h"
+#include "support/json.h"
 #include "support/pictures.h"
 #include "support/ray_cases.h"
 
@@ -26,7 +26,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using nlohmann::json;
 
 // What these cases look at is the core's own picture: its shading is named where the words do not.
 Words shaded(Words words) {
@@ -48,7 +47,7 @@ std::string crc_of(std::string_view bytes) {
 
 struct Rendered {
   std::vector<HitRow> hits;
-  json stats;
+  Json stats;
   std::string picture;
 };
 
@@ -56,8 +55,8 @@ struct Rendered {
 Rendered render_all(const TemporaryFolder& folder, const Words& words) {
   render(words + Words{"-o", folder.path("all.ppm"), "--hits", folder.path("all.csv"), "--stats",
                        folder.path("all.json"), "--quiet"});
-  return {parse_hits(read_text(folder.path("all.csv")), true),
-          json::parse(read_text(folder.path("all.json"))), read_text(folder.path("all.ppm"))};
+  return {parse_hits(read_text(folder.path("all.csv")), true), read_json(folder.path("all.json")),
+          read_text(folder.path("all.ppm"))};
 }
 
 World world_of(WorldKind kind, const reference::Voxel& size, std::uint64_t seed) {
@@ -89,7 +88,7 @@ TEST_CASE(
               "--quiet"});
       const std::string file = read_text(path);
       CAPTURE(path);
-      const json stats = json::parse(read_text(folder.path("s.json")));
+      const Json stats = read_json(folder.path("s.json"));
       if (ending != "png") {
         CHECK(file.starts_with(header));
         CHECK(file.size() == header.size() + bytes);
@@ -266,7 +265,7 @@ TEST_CASE("render: the paper's first tracer, 800 x 600 x 1 -> 60,000 bytes, and 
                     "-o",           folder.path("p.pbm"),
                     "--stats",      folder.path("s.json")};
   render(words + Words{"--quiet"});
-  const json stats = json::parse(read_text(folder.path("s.json")));
+  const Json stats = read_json(folder.path("s.json"));
   CHECK(stats["tree_bytes"] == 60000);
   CHECK(stats["voxels"] == 5000);
   CHECK(stats["hits"] == 5000);
@@ -302,7 +301,7 @@ TEST_CASE("render: the paper's own sum, 800 x 600 x 800 -> 48,000,000 bytes, nam
   const Words words{"info", scene, "--as-voxels", "--structure", "dense"};
   CHECK(number_after(check_refused(words + Words{"--memory", "47999999"}, 1, {}).err, "needs ") == 48000000);
   check_done(words + Words{"--memory", "48000000", "--stats", folder.path("s.json")});
-  const json stats = json::parse(read_text(folder.path("s.json")));
+  const Json stats = read_json(folder.path("s.json"));
   CHECK(stats["tree_bytes"] == 48000000);
   CHECK(stats["high_water_bytes"] == 48000000);
   CHECK(stats["budget_bytes"] == 48000000);
@@ -408,17 +407,17 @@ TEST_CASE("render: every structure and engine -> the same picture and, but for t
 TEST_CASE("render: no room for the wide engine's lists -> rays draw the same picture, or one sentence") {
   const TemporaryFolder folder;
   const Words scene{"points:5000", "--size", "64x48"};
-  const json roomy = render_all(folder, scene).stats;
+  const Json roomy = render_all(folder, scene).stats;
   CHECK(roomy["engine"] == "wide");
   // The tree is built in 5000 keys of 4 bytes; lists and 48 rows of 64 pixels want more than is left beside
   // it.
-  const json tight = render_all(folder, scene + Words{"--memory", "64K"}).stats;
+  const Json tight = render_all(folder, scene + Words{"--memory", "64K"}).stats;
   CHECK(tight["engine"] == "ray64");
   CHECK(tight["high_water_bytes"] <= 65536);
   CHECK(tight["frame_crc32"] == roomy["frame_crc32"]);
   CHECK(tight["hits"] == roomy["hits"]);
   // Somewhere between, the picture is drawn a few rows at a time.
-  const json between = render_all(folder, scene + Words{"--memory", "146K"}).stats;
+  const Json between = render_all(folder, scene + Words{"--memory", "146K"}).stats;
   CHECK(between["engine"] == "wide");
   CHECK(between["high_water_bytes"] <= 146 * 1024);
   CHECK(between["frame_crc32"] == roomy["frame_crc32"]);
@@ -442,11 +441,11 @@ TEST_CASE("render: --coarsen, and the compact tree would fit though the pool doe
     check_done(Words{"render", "spheres", "--size", "80x60", "--shade", "color", "--quiet", "-o",
                      folder.path("p.ppm"), "--stats", folder.path("s.json")} +
                budget);
-    return json::parse(read_text(folder.path("s.json")));
+    return read_json(folder.path("s.json"));
   };
-  const json full = draw({});
+  const Json full = draw({});
   CHECK(full["budget_bytes"] == full["high_water_bytes"]);
-  const json tight = draw({"--memory", "32K", "--coarsen"});
+  const Json tight = draw({"--memory", "32K", "--coarsen"});
   CHECK(full["high_water_bytes"] > 32768);
   CHECK(tight["high_water_bytes"] <= 32768);
   CHECK(tight["solid_added"] == 0);
@@ -454,7 +453,7 @@ TEST_CASE("render: --coarsen, and the compact tree would fit though the pool doe
     CAPTURE(key);
     CHECK(tight[key] == full[key]);
   }
-  const json tighter = draw({"--memory", "16K", "--coarsen"});
+  const Json tighter = draw({"--memory", "16K", "--coarsen"});
   CHECK(tighter["solid_added"] > 0);
   CHECK(tighter["solid_added"] < full["voxels"].get<std::uint64_t>() / 2);
 }
@@ -496,7 +495,7 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
         const std::uint64_t needed =
             number_after(check_refused(words + Words{"--memory", "0"}, 1, {}).err, "needs ");
         check_done(words + Words{"--memory", std::to_string(needed)});
-        const json exact = json::parse(read_text(folder.path("s.json")));
+        const Json exact = read_json(folder.path("s.json"));
         CHECK(exact["budget_bytes"] == needed);
         CHECK(exact["high_water_bytes"] <= needed);
         CHECK(exact["solid_added"] == 0);
@@ -514,7 +513,7 @@ TEST_CASE("render: every budget -> the exact need is named and is exact; high wa
                 : std::vector<std::uint64_t>{needed + 1, needed + 4000, needed * 3, needed * 100};
         for (const std::uint64_t budget : enough) {
           check_done(words + Words{"--memory", std::to_string(budget)});
-          const json stats = json::parse(read_text(folder.path("s.json")));
+          const Json stats = read_json(folder.path("s.json"));
           CHECK(stats["budget_bytes"] == budget);
           CHECK(stats["high_water_bytes"] <= budget);
           CHECK(stats["frame_crc32"] == exact["frame_crc32"]);
@@ -538,7 +537,7 @@ TEST_CASE("render: no --threads -> all cores, one within a budget, whose bytes a
 
 TEST_CASE("render: --stats -> every key of the contract, with its type") {
   const TemporaryFolder folder;
-  const json stats = render_all(folder, {"cluster:1000", "--size", "16x12", "--memory", "1M"}).stats;
+  const Json stats = render_all(folder, {"cluster:1000", "--size", "16x12", "--memory", "1M"}).stats;
   for (const char* key :
        {"depth", "points", "voxels", "nodes", "tree_bytes", "budget_bytes", "high_water_bytes", "solid_added",
         "rays", "hits", "node_visits", "threads", "box_tests", "exact_tests"}) {

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "support/check_command.h"
 #include "support/counts.h"
+#include "support/json.h"
 #include "thimble/picture/render.h"
 
 namespace {
@@ -20,7 +20,7 @@ using namespace thimble::tests;
 
 struct Picture {
   std::vector<std::uint8_t> rgb;
-  nlohmann::json stats;
+  Json stats;
 };
 
 Picture render(const Words& words, const std::string& size) {
@@ -29,7 +29,7 @@ Picture render(const Words& words, const std::string& size) {
              Words{"--size", size, "--quiet", "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")});
   const std::string text = read_text(folder.path("a.ppm"));
   const std::string pixels = text.substr(text.find("255\n") + 4);
-  return {{pixels.begin(), pixels.end()}, nlohmann::json::parse(read_text(folder.path("a.json")))};
+  return {{pixels.begin(), pixels.end()}, read_json(folder.path("a.json"))};
 }
 
 constexpr int kWidth = 90;

@@ -3,20 +3,19 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "scene/built_scene.h"
 #include "scene/lit_description.h"
 #include "scene/scene_source.h"
 #include "support/check_command.h"
+#include "support/json.h"
 #include "thimble/light/render.h"
 #include "thimble/picture/camera.h"
 
 namespace {
 
 using namespace thimble::tests;
-using nlohmann::json;
 
 // A little of everything but water.
 constexpr const char* kScene = R"(depth 5
@@ -40,7 +39,7 @@ ball glow at 26 26 5 radius 3
 
 struct Picture {
   std::string bytes;
-  json stats;
+  Json stats;
 };
 
 Picture render(const std::string& scene, const Words& more, const std::string& ending = ".ppm",
@@ -54,7 +53,7 @@ Picture render(const std::string& scene, const Words& more, const std::string& e
     words.insert(words.end(), {"--effects", "auto"});
   }
   check_done(words);
-  return {read_text(folder.path("a" + ending)), json::parse(read_text(folder.path("a.json")))};
+  return {read_text(folder.path("a" + ending)), read_json(folder.path("a.json"))};
 }
 
 void check_lit_refused(const std::string& scene, const Words& more, int status, const Words& named) {
@@ -120,7 +119,7 @@ TEST_CASE("render effects: any number of threads -> the same picture and rays, d
 TEST_CASE("render effects: a plain scene -> the very picture of --effects none, and none in --stats") {
   const Words one{"--threads", "1"};  // threads that hand one another rows visit nodes twice
   const Picture plain = render("spheres", one);
-  CHECK(plain.stats["effects"] == json::array());
+  CHECK(plain.stats["effects"] == Json::array());
   CHECK(!plain.stats.contains("rays_by_kind"));
   for (const Words& more : {Words{"--effects", "none"}, {"--effects", "auto"}, {"--shade", "color"}}) {
     const Picture same = render("spheres", more + one);
@@ -133,7 +132,7 @@ TEST_CASE("render effects: a plain scene -> the very picture of --effects none, 
 
 TEST_CASE("render effects: auto -> what the scene calls for; none or a --shade -> a picture without") {
   const Picture lit = render("water", {});
-  CHECK(lit.stats["effects"] == json({"direct-light", "shadows", "mirror", "glass", "water", "sky"}));
+  CHECK(lit.stats["effects"] == Json({"direct-light", "shadows", "mirror", "glass", "water", "sky"}));
   CHECK(lit.stats["engine"] == "lit");
   CHECK(lit.stats["bounces"] == 4);
   CHECK(lit.stats["rays_by_kind"]["primary"] == 48 * 36);
@@ -153,13 +152,13 @@ TEST_CASE("render effects: auto -> what the scene calls for; none or a --shade -
   CHECK(render("water", {"--shade", "depth", "--effects", "auto"}).bytes == depth.bytes);
   CHECK(render("water", {"--shade", "color"}).bytes == none.bytes);
   const Picture color = render("water", {"--shade", "color"});
-  CHECK(color.stats["effects"] == json::array());
+  CHECK(color.stats["effects"] == Json::array());
   CHECK(color.bytes == render("water", {"--shade", "color", "--effects", "none"}).bytes);
 }
 
 TEST_CASE("render effects: a list -> these and no others; --bounces -> no more rays than that") {
   const Picture two = render("spheres", {"--effects", "shadows,sky"});
-  CHECK(two.stats["effects"] == json({"direct-light", "shadows", "sky"}));
+  CHECK(two.stats["effects"] == Json({"direct-light", "shadows", "sky"}));
   CHECK(two.stats["rays_by_kind"]["shadow"] > 0);
   CHECK(two.stats["rays_by_kind"]["occlusion"] == 0);
   const Picture darker = render("spheres", {"--effects", "shadows,sky,ambient-occlusion"});
@@ -168,10 +167,10 @@ TEST_CASE("render effects: a list -> these and no others; --bounces -> no more r
 
   CHECK(render("spheres", {"--effects", "shadows,sky,ao"}).bytes == darker.bytes);
   const Picture all = render("water", {"--effects", "all"});
-  CHECK(all.stats["effects"] == json({"direct-light", "shadows", "ambient-occlusion", "emission", "mirror",
+  CHECK(all.stats["effects"] == Json({"direct-light", "shadows", "ambient-occlusion", "emission", "mirror",
                                       "glass", "water", "sky", "smooth-normals", "emitter-light"}));
   CHECK(render("spheres", {"--effects", "all", "--normals", "face"}).stats["effects"] ==
-        json({"direct-light", "shadows", "ambient-occlusion", "emission", "emitter-light"}));
+        Json({"direct-light", "shadows", "ambient-occlusion", "emission", "emitter-light"}));
 
   std::uint64_t before = 0;
   for (const char* bounces : {"0", "1", "2", "8"}) {

@@ -6,20 +6,19 @@
 #include <cstdint>
 #include <cstdlib>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "support/check_command.h"
+#include "support/json.h"
 #include "support/pictures.h"
 #include "thimble/picture/pixel.h"
 
 namespace {
 
 using namespace thimble::tests;
-using nlohmann::json;
 
 // Coloured boxes on legs, so that there is something to cast a shadow.
 constexpr const char* kLookScene = R"(depth 5
@@ -38,7 +37,7 @@ std::uint8_t byte_at(const std::string& text, std::size_t at) {
 
 struct Drawn {
   std::string pixels;
-  json stats;
+  Json stats;
   std::string err;
 };
 
@@ -48,7 +47,7 @@ Drawn draw(const std::string& scene, const Words& more, const std::string& size 
       Words{"render", scene, "--size", size, "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")} +
       more);
   const std::string file = read_text(folder.path("a.ppm"));
-  return {file.substr(file.find("255\n") + 4), json::parse(read_text(folder.path("a.json"))), result.err};
+  return {file.substr(file.find("255\n") + 4), read_json(folder.path("a.json")), result.err};
 }
 
 void check_look_refused(const std::string& scene, const Words& more, const std::string& named,
@@ -64,7 +63,7 @@ TEST_CASE("render look: a scene with colours and nothing said -> light, shadows,
   const TemporaryFolder folder;
   const Drawn drawn = draw(folder.write("a.scene", kLookScene), {"--verbose"});
   CHECK(drawn.stats["engine"] == "lit");
-  CHECK(drawn.stats["effects"] == json({"direct-light", "shadows", "ambient-occlusion"}));
+  CHECK(drawn.stats["effects"] == Json({"direct-light", "shadows", "ambient-occlusion"}));
   CHECK(drawn.stats["samples"] == 4);
   CHECK(drawn.stats["rays"].get<std::uint64_t>() >= 4 * 80 * 60);
   CHECK(drawn.err.find("look: its colours, a sun over the viewer's shoulder") != std::string::npos);
@@ -106,7 +105,7 @@ TEST_CASE(
                                          folder.path("a.json")};
     CHECK(check_done(Words(words) + Words{"--size", "4000x3000"}).err.find(" 1 sample a pixel") !=
           std::string::npos);
-    CHECK(json::parse(read_text(folder.path("a.json")))["samples"] == 1);
+    CHECK(read_json(folder.path("a.json"))["samples"] == 1);
   }
 }
 

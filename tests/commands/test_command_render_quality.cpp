@@ -5,19 +5,18 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "support/check_command.h"
+#include "support/json.h"
 
 namespace {
 
 using namespace thimble::tests;
-using nlohmann::json;
 
 struct QualityPicture {
   std::string bytes;
-  json stats;
+  Json stats;
 };
 
 QualityPicture render_ppm(const Words& more, const std::string& scene = "spheres") {
@@ -25,7 +24,7 @@ QualityPicture render_ppm(const Words& more, const std::string& scene = "spheres
   check_done(Words{"render", scene, "--engine", "ray64", "--size", "64x48", "--quiet", "-o",
                    folder.path("a.ppm"), "--stats", folder.path("a.json")} +
              more);
-  return {read_text(folder.path("a.ppm")), json::parse(read_text(folder.path("a.json")))};
+  return {read_text(folder.path("a.ppm")), read_json(folder.path("a.json"))};
 }
 
 TEST_CASE("render quality: the least of each option -> the very picture and counts without it") {

@@ -2,11 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "support/check_command.h"
+#include "support/json.h"
 #include "support/run_command.h"
 #include "support/xml_elements.h"
 
@@ -59,7 +59,7 @@ TEST_CASE("studies: CSV, JSON and plot -> the same rows, columns as in the help,
       CAPTURE(line);
       CHECK((line.size() <= 100 || line == study.scene));
     }
-    const auto rows = nlohmann::ordered_json::parse(read_text(folder.path("a.json")));
+    const auto rows = read_json(folder.path("a.json"));
     const Words csv = lines_of(read_text(folder.path("a.csv")));
     REQUIRE(csv.size() == rows.size() + 1);
     std::string header;
@@ -98,7 +98,6 @@ TEST_CASE("studies: CSV, JSON and plot -> the same rows, columns as in the help,
 namespace {
 
 using namespace thimble::tests;
-using nlohmann::json;
 
 }  // namespace
 
@@ -110,11 +109,11 @@ TEST_CASE("table: two counts of points -> a row a projection, the paper's figure
                     folder.path("t.json"), "--plot", folder.path("t.svg")});
     CHECK(result.err.empty());
     CHECK(lines_of(result.out).size() == 7);
-    const json table = json::parse(read_text(folder.path("t.json")));
+    const Json table = read_json(folder.path("t.json"));
     REQUIRE(table.size() == 6);
     const std::vector<std::uint64_t> points{1, 1, 1000, 1000, 7, 7};
     for (std::size_t i = 0; i < table.size(); ++i) {
-      const json& row = table[i];
+      const Json& row = table[i];
       CHECK(row["points"] == points[i]);
       CHECK(row["projection"] == (i % 2 == 0 ? "perspective" : "orthographic"));
       CHECK(row["seconds"].is_number_float());
@@ -145,7 +144,7 @@ TEST_CASE("table: no points at all -> a table of misses, and a plot without line
   const TemporaryFolder folder;
   check_done({"table", "--points", "0", "--depth", "5", "--json", folder.path("t.json"), "--plot",
               folder.path("t.svg")});
-  const json table = json::parse(read_text(folder.path("t.json")));
+  const Json table = read_json(folder.path("t.json"));
   REQUIRE(table.size() == 2);
   CHECK(table[0]["hits"] == 0);
   CHECK(table[0]["exact_mismatches"] == 0);

@@ -2,8 +2,6 @@
 // reference.
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -11,6 +9,7 @@
 #include "support/check_command.h"
 #include "support/file_bytes.h"
 #include "support/hit_rows.h"
+#include "support/json.h"
 #include "support/ray_cases.h"
 
 namespace {
@@ -398,7 +397,7 @@ TEST_CASE(
     check_done(Words{"trace", kScene, "--rays", path, "-o", folder.path("hits.csv"), "--stats",
                      folder.path("s.json")} +
                options);
-    const auto stats = nlohmann::json::parse(read_text(folder.path("s.json")));
+    const auto stats = read_json(folder.path("s.json"));
     *engine = stats["engine"];
     CHECK(stats["rays"] == kRays);
     std::string kept;

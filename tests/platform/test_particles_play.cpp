@@ -8,9 +8,8 @@
 #include <string>
 #include <thread>
 
-#include <nlohmann/json.hpp>
-
 #include "support/check_command.h"
+#include "support/json.h"
 #include "support/pty.h"
 #include "support/virtual_display.h"
 
@@ -55,10 +54,6 @@ bool becomes_true(const Condition& condition) {
 
 bool is_wall(Rgb8 color) {
   return color.r > 100 && color.r < 140 && color.b > color.r && color.b < 160;
-}
-
-nlohmann::json json_of(const std::string& path) {
-  return nlohmann::json::parse(read_text(path));
 }
 
 }  // namespace
@@ -112,9 +107,9 @@ TEST_CASE(
   check_done(Words{"particles"} + world +
              Words{"--display", "none", "--input", record, "--stats", folder.path("again.json"), "--field",
                    folder.path("again.pbm"), "--state", folder.path("again.csv"), "--quiet"});
-  CHECK(json_of(folder.path("again.json")).at("state_crc32") == json_of(stats).at("state_crc32"));
-  CHECK(json_of(folder.path("again.json")).at("steps") == json_of(stats).at("steps"));
-  CHECK(json_of(stats).at("particles").get<int>() > 200);
+  CHECK(read_json(folder.path("again.json")).at("state_crc32") == read_json(stats).at("state_crc32"));
+  CHECK(read_json(folder.path("again.json")).at("steps") == read_json(stats).at("steps"));
+  CHECK(read_json(stats).at("particles").get<int>() > 200);
   CHECK(read_text(folder.path("again.pbm")) == read_text(folder.path("window.pbm")));
   CHECK(read_text(folder.path("again.csv")) == read_text(folder.path("window.csv")));
 }
@@ -176,6 +171,6 @@ TEST_CASE(
   CHECK(events.find(": key up\n") != std::string::npos);
   const CommandResult again = check_done({"particles", "--size", "160x96", "--count", "40", "--input", record,
                                           "--stats", folder.path("again.json"), "--quiet"});
-  CHECK(json_of(folder.path("again.json")).at("state_crc32") == json_of(stats).at("state_crc32"));
-  CHECK(json_of(stats).at("particles").get<int>() > 50);
+  CHECK(read_json(folder.path("again.json")).at("state_crc32") == read_json(stats).at("state_crc32"));
+  CHECK(read_json(stats).at("particles").get<int>() > 50);
 }

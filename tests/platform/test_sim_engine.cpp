@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/apps.h"
 #include "apps/demo_view.h"
 #include "boards/board_table.h"
@@ -17,6 +15,7 @@
 #include "scene/wide_frames.h"
 #include "support/check_command.h"
 #include "support/counts.h"
+#include "support/json.h"
 #include "support/simulated_run.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/render.h"
@@ -25,7 +24,6 @@ namespace {
 
 using namespace thimble;
 using namespace thimble::tests;
-using nlohmann::json;
 
 const std::uint32_t kFrames = thimble::tests::many_or_few<std::uint32_t>(24, 6);
 
@@ -33,7 +31,7 @@ constexpr const char* kScene = "spheres,depth=4";
 
 struct Ran {
   CommandResult result;
-  json stats;
+  Json stats;
   std::string video;
 };
 
@@ -46,7 +44,7 @@ Ran run_sim(const TemporaryFolder& folder, const Words& words) {
       run_command(Words{"sim"} + words + Words{"--display", "none", "--stats", stats, "--record", video});
   CAPTURE(ran.result.describe());
   REQUIRE(ran.result.status == 0);
-  ran.stats = json::parse(read_text(stats));
+  ran.stats = read_json(stats);
   ran.video = read_text(video);
   return ran;
 }
@@ -175,7 +173,7 @@ TEST_CASE("sim --engine: applications that nothing else draws for -> statistics 
   const std::string stats = folder.path("stats.json");
   const CommandResult result =
       check_done({"sim", "--app", "particles", "--frames", "2", "--display", "none", "--stats", stats});
-  CHECK_FALSE(json::parse(read_text(stats)).contains("engine"));
+  CHECK_FALSE(read_json(stats).contains("engine"));
   CHECK(result.err.find("engine") == std::string::npos);
 }
 

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "support/counts.h"
 #include "support/wide_cases.h"
 #include "wide/lit/beam.h"
 
@@ -19,7 +20,8 @@ TEST_CASE(
   WideScene scene;
   HeapBytes map_bytes(0);
   wide::RayMap map;
-  for (int trial = 0; trial < 400;) {
+  const int trials = many_or_few(400, 120);
+  for (int trial = 0; trial < trials;) {
     if (trial % 8 == 0) {
       scene = random_scene(random);
       map_bytes = HeapBytes(wide::RayMap::bytes(scene.tree));
