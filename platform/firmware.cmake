@@ -68,7 +68,7 @@ target_link_libraries(thimble PRIVATE thimble_firmware_flags)
 
 # The port: a library, so that an image takes what it needs and a board may replace any part.
 file(GLOB sources CONFIGURE_DEPENDS ${THIMBLE_PLATFORM_DIR}/arch/common/*.cpp
-  ${THIMBLE_PLATFORM_DIR}/arch/${BOARD_ARCH}/*.cpp ${THIMBLE_PLATFORM_DIR}/drivers/*.cpp)
+  ${THIMBLE_PLATFORM_DIR}/arch/${BOARD_ARCH}/*.cpp ${THIMBLE_PLATFORM_DIR}/drivers/${THIMBLE_UART}.cpp)
 list(FILTER sources EXCLUDE REGEX "/common/main\\.cpp$")
 add_library(thimble_port STATIC ${sources} ${generated}/scene.cpp)
 set(board_folders ${THIMBLE_PLATFORM_DIR}/boards/${BOARD_NAME})

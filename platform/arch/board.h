@@ -21,6 +21,10 @@ void start();
 void put(uint8_t byte);
 /// The next byte that came over the UART, or -1; does not wait.
 int get();
+/// Where board.cmake sets BOARD_UART, its driver (platform/drivers) brings `put`, `get` and this, which `start` calls
+/// when pins and the module's clock are set: 8 bits, no parity, one stop bit.
+void start_uart(uint32_t clock_hz);
+inline constexpr uint32_t kBaud = 115200;
 
 /// port::flush and port::buttons.
 void flush(const Band& band);

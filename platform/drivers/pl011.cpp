@@ -1,8 +1,11 @@
-#include "drivers/pl011.h"
+// Arm's PL011 UART (PrimeCell UART Technical Reference Manual): Stellaris, Raspberry Pi.
+#include <stdint.h>
 
+#include "board.h"
 #include "registers.h"
+#include "thimble_board_facts.h"
 
-namespace thimble::pl011 {
+namespace thimble::board {
 namespace {
 
 constexpr uintptr_t kDr = 0x00;  // data
@@ -20,26 +23,26 @@ constexpr uint32_t kCrEnable = 1U << 0 | 1U << 8 | 1U << 9;  // UART, send, rece
 
 }  // namespace
 
-void start(uintptr_t base, uint32_t clock_hz, uint32_t baud) {
-  wait_for_clear(base + kFr, kFrBusy);
-  register32(base + kCr) = 0;
-  const uint32_t divisor = (clock_hz * 4 + baud / 2) / baud;  // clock / (16 baud), in 1/64
-  register32(base + kIbrd) = divisor >> 6;
-  register32(base + kFbrd) = divisor & 63U;
-  register32(base + kLcrh) = kLcrhFifo | kLcrh8Bits;
-  register32(base + kCr) = kCrEnable;
+void start_uart(uint32_t clock_hz) {
+  wait_for_clear(kUart + kFr, kFrBusy);
+  register32(kUart + kCr) = 0;
+  const uint32_t divisor = (clock_hz * 4 + kBaud / 2) / kBaud;  // clock / (16 baud), in 1/64
+  register32(kUart + kIbrd) = divisor >> 6;
+  register32(kUart + kFbrd) = divisor & 63U;
+  register32(kUart + kLcrh) = kLcrhFifo | kLcrh8Bits;
+  register32(kUart + kCr) = kCrEnable;
 }
 
-void put(uintptr_t base, uint8_t byte) {
-  wait_for_clear(base + kFr, kFrSendFull);
-  register32(base + kDr) = byte;
+void put(uint8_t byte) {
+  wait_for_clear(kUart + kFr, kFrSendFull);
+  register32(kUart + kDr) = byte;
 }
 
-int get(uintptr_t base) {
-  if ((register32(base + kFr) & kFrReceiveEmpty) != 0) {
+int get() {
+  if ((register32(kUart + kFr) & kFrReceiveEmpty) != 0) {
     return -1;
   }
-  return static_cast<int>(register32(base + kDr) & 0xFFU);
+  return static_cast<int>(register32(kUart + kDr) & 0xFFU);
 }
 
-}  // namespace thimble::pl011
+}  // namespace thimble::board

@@ -1,8 +1,11 @@
-#include "drivers/stm32_usart.h"
+// The USART of STM32F1, F2 and F4 (reference manuals RM0041 and RM0090).
+#include <stdint.h>
 
+#include "board.h"
 #include "registers.h"
+#include "thimble_board_facts.h"
 
-namespace thimble::stm32_usart {
+namespace thimble::board {
 namespace {
 
 constexpr uintptr_t kSr = 0x00;  // status
@@ -15,21 +18,21 @@ constexpr uint32_t kCr1Enable = 1U << 13 | 1U << 3 | 1U << 2;  // USART, send, r
 
 }  // namespace
 
-void start(uintptr_t base, uint32_t clock_hz, uint32_t baud) {
-  register32(base + kBrr) = (clock_hz + baud / 2) / baud;
-  register32(base + kCr1) = kCr1Enable;
+void start_uart(uint32_t clock_hz) {
+  register32(kUart + kBrr) = (clock_hz + kBaud / 2) / kBaud;
+  register32(kUart + kCr1) = kCr1Enable;
 }
 
-void put(uintptr_t base, uint8_t byte) {
-  wait_for_set(base + kSr, kSrSendEmpty);
-  register32(base + kDr) = byte;
+void put(uint8_t byte) {
+  wait_for_set(kUart + kSr, kSrSendEmpty);
+  register32(kUart + kDr) = byte;
 }
 
-int get(uintptr_t base) {
-  if ((register32(base + kSr) & kSrReceived) == 0) {
+int get() {
+  if ((register32(kUart + kSr) & kSrReceived) == 0) {
     return -1;
   }
-  return static_cast<int>(register32(base + kDr) & 0xFFU);
+  return static_cast<int>(register32(kUart + kDr) & 0xFFU);
 }
 
-}  // namespace thimble::stm32_usart
+}  // namespace thimble::board

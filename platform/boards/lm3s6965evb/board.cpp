@@ -3,7 +3,6 @@
 
 #include <stdint.h>
 
-#include "drivers/pl011.h"
 #include "lm3s6965.h"
 #include "registers.h"
 #include "thimble_board_facts.h"
@@ -11,7 +10,6 @@
 namespace thimble::board {
 namespace {
 
-constexpr uint32_t kBaud = 115200;
 constexpr uint32_t kArrowPins = 0xF;      // E0..E3
 constexpr uint32_t kSelectPin = 1U << 1;  // F1
 constexpr uint32_t kSelectShift = 3;      // from pin 1 to port::kSelect, bit 4
@@ -49,18 +47,10 @@ void start() {
   const uint32_t serial_pins = lm3s6965::kPinsUart0 | lm3s6965::kPinsSsi0;
   set_bits(lm3s6965::kPortA + lm3s6965::kGpioAlternate, serial_pins);
   set_bits(lm3s6965::kPortA + lm3s6965::kGpioDigital, serial_pins);
-  pl011::start(lm3s6965::kUart0, kClockMhz * 1000000, kBaud);
+  start_uart(kClockMhz * 1000000);
   start_button_pins(lm3s6965::kPortE, kArrowPins);
   start_button_pins(lm3s6965::kPortF, kSelectPin);
   lm3s6965::start_display();
-}
-
-void put(uint8_t byte) {
-  pl011::put(lm3s6965::kUart0, byte);
-}
-
-int get() {
-  return pl011::get(lm3s6965::kUart0);
 }
 
 uint32_t buttons() {

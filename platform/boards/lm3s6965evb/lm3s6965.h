@@ -41,8 +41,6 @@ constexpr uintptr_t pins(uintptr_t port, uint32_t mask) {
 inline constexpr uint32_t kPinsUart0 = 3U << 0;   ///< A0, A1
 inline constexpr uint32_t kPinsSsi0 = 0xFU << 2;  ///< A2 to A5
 
-inline constexpr uintptr_t kUart0 = 0x4000C000;
-
 // Synchronous serial interface 0, which leads to the display.
 inline constexpr uintptr_t kSsiCr0 = 0x40008000;  ///< format
 inline constexpr uint32_t kSsiCr08Bits = 7;

@@ -9,7 +9,6 @@
 namespace thimble::board {
 namespace {
 
-constexpr uint32_t kBaud = 115200;
 constexpr uintptr_t kUartData = 0x40004000;
 constexpr uintptr_t kUartState = 0x40004004;
 constexpr uint32_t kStateSendFull = 1U << 0;

@@ -16,6 +16,7 @@ set(BOARD_HEIGHT_PX 64)
 set(BOARD_FORMAT gray4)
 set(BOARD_FRAMES small)
 set(BOARD_BUTTONS 0)
+set(BOARD_UART stm32_usart 0x40011400)
 # USART6 is the sixth serial port of this machine.
 set(BOARD_QEMU qemu-system-arm -M netduinoplus2 -serial null -serial null -serial null -serial null -serial null)
 set(BOARD_PROBE st-flash 0x08000000)

@@ -5,15 +5,12 @@
 
 #include <stdint.h>
 
-#include "drivers/stm32_usart.h"
 #include "registers.h"
 #include "thimble_board_facts.h"
 
 namespace thimble::board {
 namespace {
 
-constexpr uint32_t kBaud = 115200;
-constexpr uintptr_t kUsart6 = 0x40011400;
 constexpr uint32_t kUsart6ClockHz = 84000000;  // APB2
 
 // Flash interface.
@@ -60,15 +57,7 @@ void start() {
   set_bits(kRccApb2Enable, kApb2Usart6);
   register32(kPortCMode) = (register32(kPortCMode) & ~kModePins) | kModeAlternate;
   register32(kPortCAlternateLow) = (register32(kPortCAlternateLow) & ~kAlternatePins) | kAlternateUsart6;
-  stm32_usart::start(kUsart6, kUsart6ClockHz, kBaud);
-}
-
-void put(uint8_t byte) {
-  stm32_usart::put(kUsart6, byte);
-}
-
-int get() {
-  return stm32_usart::get(kUsart6);
+  start_uart(kUsart6ClockHz);
 }
 
 }  // namespace thimble::board

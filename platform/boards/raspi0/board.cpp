@@ -5,7 +5,6 @@
 #include <stdint.h>
 
 #include "arm11/fence.h"
-#include "drivers/pl011.h"
 #include "registers.h"
 #include "thimble_board_facts.h"
 
@@ -15,8 +14,6 @@ namespace {
 constexpr uint32_t kDevices = 0x20000000;
 constexpr uint32_t kDevicesBytes = 0x01000000;
 
-constexpr uint32_t kBaud = 115200;
-constexpr uintptr_t kUart0 = 0x20201000;
 constexpr uint32_t kUartClockHz = 48000000;
 constexpr uintptr_t kPinFunctions1 = 0x20200004;  // pins 10 to 19, three bits each
 constexpr uint32_t kUartPins = 077U << 12;        // 14 and 15
@@ -97,16 +94,8 @@ void start_display() {
 void board::start() {
   arm11::open_window(arm11::Window::kDevice, kDevices, kDevicesBytes);
   register32(kPinFunctions1) = (register32(kPinFunctions1) & ~kUartPins) | kUartFunction;
-  pl011::start(kUart0, kUartClockHz, kBaud);
+  start_uart(kUartClockHz);
   start_display();
-}
-
-void board::put(uint8_t byte) {
-  pl011::put(kUart0, byte);
-}
-
-int board::get() {
-  return pl011::get(kUart0);
 }
 
 // Three words hold four pixels. A row is a whole number of words, and so are the bytes of the arena.

@@ -9,7 +9,6 @@
 namespace thimble {
 namespace {
 
-constexpr uint32_t kBaud = 115200;
 constexpr uint32_t kCrystalHz = 16000000;
 
 // Clocks: the crystal, past the PLL.

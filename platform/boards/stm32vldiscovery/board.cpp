@@ -3,15 +3,11 @@
 
 #include <stdint.h>
 
-#include "drivers/stm32_usart.h"
 #include "registers.h"
 #include "thimble_board_facts.h"
 
 namespace thimble::board {
 namespace {
-
-constexpr uint32_t kBaud = 115200;
-constexpr uintptr_t kUsart1 = 0x40013800;
 
 // Reset and clock control.
 constexpr uintptr_t kRccCr = 0x40021000;
@@ -39,15 +35,7 @@ void start() {
   }
   set_bits(kRccApb2Enable, kApb2PortA | kApb2Usart1);
   register32(kPortACrh) = (register32(kPortACrh) & ~kPinsMask) | kPinsUsart;
-  stm32_usart::start(kUsart1, kClockMhz * 1000000, kBaud);
-}
-
-void put(uint8_t byte) {
-  stm32_usart::put(kUsart1, byte);
-}
-
-int get() {
-  return stm32_usart::get(kUsart1);
+  start_uart(kClockMhz * 1000000);
 }
 
 }  // namespace thimble::board

@@ -4,7 +4,6 @@
 #include <stdint.h>
 
 #include "cortex-m/system_control.h"
-#include "drivers/pl011.h"
 #include "registers.h"
 #include "rp2040.h"
 #include "thimble_board_facts.h"
@@ -28,7 +27,6 @@ void rp2040::wait_ms(uint32_t ms) {
 namespace board {
 namespace {
 
-constexpr uint32_t kBaud = 115200;
 constexpr uint32_t kBlocks = rp2040::kBlockDma | rp2040::kBlockI2c0 | rp2040::kBlockPins |
                              rp2040::kBlockPads | rp2040::kBlockSpi1 | rp2040::kBlockUart0;
 
@@ -70,20 +68,12 @@ void start() {
   restart(kBlocks);
   register32(rp2040::pin_control(rp2040::kPinUartSends)) = rp2040::kPinUart;
   register32(rp2040::pin_control(rp2040::kPinUartReceives)) = rp2040::kPinUart;
-  pl011::start(rp2040::kUart0, kClockMhz * 1000000, kBaud);
+  start_uart(kClockMhz * 1000000);
   for (const rp2040::Key& key : rp2040::keys()) {
     register32(rp2040::pad(key.pin)) = rp2040::kPadInputPulledUp;
     register32(rp2040::pin_control(key.pin)) = rp2040::kPinSio;
   }
   rp2040::start_display();
-}
-
-void put(uint8_t byte) {
-  pl011::put(rp2040::kUart0, byte);
-}
-
-int get() {
-  return pl011::get(rp2040::kUart0);
 }
 
 uint32_t buttons() {

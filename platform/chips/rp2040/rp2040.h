@@ -83,8 +83,6 @@ inline constexpr uintptr_t kSioFifoWrite = 0xD0000054;
 inline constexpr uintptr_t kSioFifoRead = 0xD0000058;
 inline constexpr uintptr_t kSioLock = 0xD0000100;  ///< read: 0 when the other core has it; written: free
 
-inline constexpr uintptr_t kUart0 = 0x40034000;  ///< a PL011, 4.2
-
 // SPI1, a PL022, 4.4.
 inline constexpr uintptr_t kSpiCr0 = 0x40040000;  ///< format: bits less one
 inline constexpr uint32_t kSpi8Bits = 7;
