@@ -9,6 +9,8 @@ set(BOARD_HEIGHT_PX 64)
 set(BOARD_FORMAT mono1_pages)
 set(BOARD_FRAMES small)
 set(BOARD_BUTTONS 4)
+# On a breadboard, from GP10 to GP13 to ground.
+set(BOARD_KEYS 10 kUp 11 kDown 12 kLeft 13 kRight)
 set(BOARD_EMULATOR_OPTIONS "-carrier pico-oled")
 # Squares of a held rate are no ink.
 set(BOARD_VISITS_A_SECOND 0)

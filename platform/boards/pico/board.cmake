@@ -13,6 +13,8 @@ set(BOARD_WIDTH_PX 240)
 set(BOARD_HEIGHT_PX 240)
 set(BOARD_FORMAT rgb565)
 set(BOARD_BUTTONS 5)
+# A joystick and four keys (Waveshare's wiki), of which A is the joystick's press, too.
+set(BOARD_KEYS 2 kUp 18 kDown 16 kLeft 20 kRight 3 kSelect 15 kSelect)
 set(BOARD_UART pl011 0x40034000)  # UART0 (RP2040 data sheet, 4.2)
 set(BOARD_QEMU "")
 set(BOARD_EMULATOR rp2040js)

@@ -30,6 +30,13 @@ namespace {
 constexpr uint32_t kBlocks = rp2040::kBlockDma | rp2040::kBlockI2c0 | rp2040::kBlockPins |
                              rp2040::kBlockPads | rp2040::kBlockSpi1 | rp2040::kBlockUart0;
 
+// A key of a carrier: its pin is low while it is down.
+struct Key {
+  uint32_t pin;
+  port::Button button;
+};
+constexpr Key kKeys[] = {THIMBLE_KEYS};
+
 // Through a reset, so that a block is as the data sheet says, whatever ran before us.
 void restart(uint32_t blocks) {
   set_bits(rp2040::kReset, blocks);
@@ -69,7 +76,7 @@ void start() {
   register32(rp2040::pin_control(rp2040::kPinUartSends)) = rp2040::kPinUart;
   register32(rp2040::pin_control(rp2040::kPinUartReceives)) = rp2040::kPinUart;
   start_uart(kClockMhz * 1000000);
-  for (const rp2040::Key& key : rp2040::keys()) {
+  for (const Key& key : kKeys) {
     register32(rp2040::pad(key.pin)) = rp2040::kPadInputPulledUp;
     register32(rp2040::pin_control(key.pin)) = rp2040::kPinSio;
   }
@@ -79,7 +86,7 @@ void start() {
 uint32_t buttons() {
   const uint32_t high = register32(rp2040::kSioIn);
   uint32_t down = 0;
-  for (const rp2040::Key& key : rp2040::keys()) {
+  for (const Key& key : kKeys) {
     if ((high >> key.pin & 1U) == 0) {
       down |= key.button;
     }

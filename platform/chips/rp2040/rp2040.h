@@ -138,14 +138,6 @@ inline constexpr uint32_t kPinLcdDin = 11;
 inline constexpr uint32_t kPinLcdReset = 12;
 inline constexpr uint32_t kPinLcdLight = 13;
 
-/// A key of a carrier: low while it is down.
-struct Key {
-  uint32_t pin;
-  port::Button button;
-};
-/// Supplied by each board (its keys.cpp), some for the same button.
-Span<const Key> keys();
-
 /// After the clocks run and the blocks are out of reset: lcd/lcd.cpp, or the board's.
 void start_display();
 
