@@ -39,6 +39,8 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string unescaped(std::string_view text) {
+  constexpr std::string_view kEscapes = "nrt\\";
+  constexpr std::string_view kEscaped = "\n\r\t\\";
   std::string bytes;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '\\') {
@@ -47,29 +49,17 @@ std::string unescaped(std::string_view text) {
     }
     const char kind = ++i < text.size() ? text[i] : '\0';
     unsigned value = 0;
-    switch (kind) {
-      case 'n':
-        bytes += '\n';
-        break;
-      case 'r':
-        bytes += '\r';
-        break;
-      case 't':
-        bytes += '\t';
-        break;
-      case '\\':
-        bytes += '\\';
-        break;
-      case 'x':
-        if (i + 2 < text.size() &&
-            std::from_chars(text.data() + i + 1, text.data() + i + 3, value, 16).ptr == text.data() + i + 3) {
-          bytes += static_cast<char>(value);
-          i += 2;
-          break;
-        }
-        throw KeyScriptError("\\x is not followed by two hexadecimal digits");
-      default:
-        throw KeyScriptError("a backslash is not followed by n, r, t, x or another one");
+    if (const std::size_t plain = kEscapes.find(kind); plain != std::string_view::npos) {
+      bytes += kEscaped[plain];
+    } else if (kind != 'x') {
+      throw KeyScriptError("a backslash is not followed by n, r, t, x or another one");
+    } else if (i + 2 < text.size() &&
+               std::from_chars(text.data() + i + 1, text.data() + i + 3, value, 16).ptr ==
+                   text.data() + i + 3) {
+      bytes += static_cast<char>(value);
+      i += 2;
+    } else {
+      throw KeyScriptError("\\x is not followed by two hexadecimal digits");
     }
   }
   return bytes;

@@ -305,17 +305,8 @@ void Simulation::answer(bool go_on) {
 std::uint32_t Simulation::frames_asked() const {
   return state_->frames_asked;
 }
-std::uint32_t Simulation::pictures() const {
-  return state_->display.pictures();
-}
-std::uint64_t Simulation::rows_sent() const {
-  return state_->display.rows_sent();
-}
-std::uint64_t Simulation::rows_kept() const {
-  return state_->display.rows_kept();
-}
-const PackedPicture& Simulation::picture() const {
-  return state_->display.picture();
+const StrictDisplay& Simulation::display() const {
+  return state_->display;
 }
 int Simulation::status() const {
   return state_->fault.empty() ? state_->status : port::kFaultStatus;

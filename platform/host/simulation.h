@@ -16,7 +16,7 @@
 ///
 ///     host::Simulation simulation({.board = board, .application = apps::demo});
 ///     while (simulation.wait(10) != host::Moment::kEnded) {
-///       if (simulation.asks()) { show(simulation.picture()); simulation.answer(true); }
+///       if (simulation.asks()) { show(simulation.display().picture()); simulation.answer(true); }
 ///     }
 #pragma once
 
@@ -26,7 +26,7 @@
 #include <string>
 
 #include "boards/board_table.h"
-#include "host/packed_picture.h"
+#include "host/strict_display.h"
 #include "thimble/base/memory.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/pixel.h"
@@ -99,12 +99,8 @@ class Simulation {
   // While it asks or has ended:
   /// What it gave to running(): frames drawn.
   std::uint32_t frames_asked() const;
-  /// Whole pictures flushed, and the last one.
-  std::uint32_t pictures() const;
-  const PackedPicture& picture() const;
-  /// Rows sent to the display so far, and rows of which the application said that they stay as they were.
-  std::uint64_t rows_sent() const;
-  std::uint64_t rows_kept() const;
+  /// The pictures that it has flushed.
+  const StrictDisplay& display() const;
   /// Looks at every byte that was never used: some tenths of a millisecond.
   MemoryUse use() const;
   /// Seconds from the last answer to this question: the frame's time on this host.

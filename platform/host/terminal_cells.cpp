@@ -14,14 +14,10 @@ constexpr int kFirstGray = 232;
 constexpr int kGrays = 24;
 
 int nearest_level(int value) {
-  int best = 0;
-  for (int i = 1; i < 6; ++i) {
-    if (std::abs(kCube[static_cast<std::size_t>(i)] - value) <
-        std::abs(kCube[static_cast<std::size_t>(best)] - value)) {
-      best = i;
-    }
-  }
-  return best;
+  const auto is_nearer = [value](int one, int other) {
+    return std::abs(one - value) < std::abs(other - value);
+  };
+  return static_cast<int>(std::min_element(kCube.begin(), kCube.end(), is_nearer) - kCube.begin());
 }
 
 int distance(Rgb8 color, int r, int g, int b) {

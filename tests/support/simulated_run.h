@@ -53,7 +53,7 @@ inline SimulatedRun run_simulated(const host::SimulationOptions& options, std::u
     }
     const std::uint32_t asked = simulation.frames_asked();
     if (asked != 0) {
-      run.pictures.push_back(simulation.picture());
+      run.pictures.push_back(simulation.display().picture());
     }
     if (const auto typed = hand.keys.find(asked); typed != hand.keys.end()) {
       for (const char key : typed->second) {
@@ -67,9 +67,9 @@ inline SimulatedRun run_simulated(const host::SimulationOptions& options, std::u
   }
   run.status = simulation.status();
   run.fault = simulation.fault();
-  run.last = simulation.picture();
-  run.rows_sent = simulation.rows_sent();
-  run.rows_kept = simulation.rows_kept();
+  run.last = simulation.display().picture();
+  run.rows_sent = simulation.display().rows_sent();
+  run.rows_kept = simulation.display().rows_kept();
   run.use = simulation.use();
   return run;
 }

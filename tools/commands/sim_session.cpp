@@ -284,13 +284,13 @@ class SimSession {
   }
 
   void take_picture() {
-    if (simulation_.pictures() == pictures_) {
+    if (simulation_.display().pictures() == pictures_) {
       return;
     }
-    pictures_ = simulation_.pictures();
+    pictures_ = simulation_.display().pictures();
     ++frames_;
     seconds_ += simulation_.frame_seconds();
-    const host::PackedPicture& picture = simulation_.picture();
+    const host::PackedPicture& picture = simulation_.display().picture();
     const bool as_gray = options_.recording != nullptr && is_gray(picture.format);
     if (as_gray) {
       options_.recording->write(host::y4m_gray_frame(host::expand_gray(picture)));
@@ -311,10 +311,10 @@ class SimSession {
   }
 
   void look(SessionResult* to) const {
-    to->pictures = simulation_.pictures();
-    to->rows_sent = simulation_.rows_sent();
-    to->rows_kept = simulation_.rows_kept();
-    to->picture = simulation_.picture();
+    to->pictures = simulation_.display().pictures();
+    to->rows_sent = simulation_.display().rows_sent();
+    to->rows_kept = simulation_.display().rows_kept();
+    to->picture = simulation_.display().picture();
   }
 
   void update_status() {
