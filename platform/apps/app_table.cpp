@@ -43,4 +43,13 @@ Span<const Application> applications() {
   return {kApplications, sizeof kApplications / sizeof kApplications[0] - 1};
 }
 
+const Application* find_application(const char* name) {
+  for (const Application& application : applications()) {
+    if (__builtin_strcmp(application.name, name) == 0) {
+      return &application;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace thimble::apps

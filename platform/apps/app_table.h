@@ -21,5 +21,7 @@ struct Application {
 
 /// All of them; may be empty.
 Span<const Application> applications();
+/// The application of that name, or null.
+const Application* find_application(const char* name);
 
 }  // namespace thimble::apps

@@ -17,10 +17,13 @@
 
 namespace thimble::apps {
 
+/// The most effects that this program draws, and whether lamps go through the brick map.
 #ifdef THIMBLE_IMAGE_EFFECTS
 inline constexpr EffectSet kImageEffects = THIMBLE_IMAGE_EFFECTS;
+inline constexpr bool kImageLamps = THIMBLE_IMAGE_LAMPS != 0;
 #else
 inline constexpr EffectSet kImageEffects = Effect::kAll;
+inline constexpr bool kImageLamps = true;
 #endif
 /// Whether the set is the scene's, within `kImageEffects`.
 #if !defined(THIMBLE_IMAGE_EFFECTS) || defined(THIMBLE_SCENE_IN_FLASH)
@@ -28,26 +31,18 @@ inline constexpr bool kIsOpen = true;
 #else
 inline constexpr bool kIsOpen = false;
 #endif
-/// Whether lamps go through the brick map.
-#if defined(THIMBLE_IMAGE_EFFECTS) && !defined(THIMBLE_IMAGE_LAMPS)
-inline constexpr bool kImageLamps = false;
-#elif defined(THIMBLE_IMAGE_EFFECTS)
-inline constexpr bool kImageLamps = THIMBLE_IMAGE_LAMPS != 0;
-#else
-inline constexpr bool kImageLamps = true;
-#endif
 /// Whether there is anything of light in this program.
 inline constexpr bool kCanLight = kImageEffects != Effect::kNone;
-#ifdef THIMBLE_IMAGE_EFFECTS
-/// Whether this program draws a scene that was baked for `effects`.
-constexpr bool is_for(EffectSet effects) {
-#ifdef THIMBLE_SCENE_IN_FLASH
+/// Whether this program draws a scene that was baked for `effects`; on a desktop any.
+constexpr bool is_for([[maybe_unused]] EffectSet effects) {
+#if !defined(THIMBLE_IMAGE_EFFECTS)
+  return true;
+#elif defined(THIMBLE_SCENE_IN_FLASH)
   return lies_within(effects, kImageEffects);
 #else
   return effects == kImageEffects;
 #endif
 }
-#endif
 /// The effects of frames while the camera moves, where these are fast: all but what asks the tree for each pixel.
 constexpr EffectSet moving_effects(EffectSet effects) {
   return effects & ~Effect::kEdges;
@@ -87,26 +82,23 @@ struct SceneLight {
   if (!section.empty() && BakedLighting::open(section, scene.tree().level(), &light->baked) != Status::kOk) {
     return "the scene's lighting is damaged";
   }
-#ifdef THIMBLE_IMAGE_EFFECTS
   if (!is_for(light->baked.effects)) {
     return "the image was built for other effects than the scene's";
   }
-#endif
   return nullptr;
 }
 
 /// Draws a band with the scene's effects. What `render_lit_band` returns.
 /// Not inlined: its rays are not to stand on the stack beside a fast frame.
 [[gnu::noinline]] inline Status draw_lit(const BakedScene& scene, const Camera& camera,
-                                         const Shading& shading, const SceneLight& light, const Band& band,
-                                         LitCounts* counts = nullptr) {
+                                         const Shading& shading, const SceneLight& light, const Band& band) {
 #if defined(THIMBLE_SCENE_IN_FLASH)
   return render_lit_band_within<kImageEffects>(light.baked.effects, scene.tree(), camera, shading,
-                                               light.baked.scene, band, counts);
+                                               light.baked.scene, band);
 #elif defined(THIMBLE_IMAGE_EFFECTS)
-  return render_lit_band<kImageEffects>(scene.tree(), camera, shading, light.baked.scene, band, counts);
+  return render_lit_band<kImageEffects>(scene.tree(), camera, shading, light.baked.scene, band);
 #else
-  return render_lit_band(light.baked.effects, scene.tree(), camera, shading, light.baked.scene, band, counts);
+  return render_lit_band(light.baked.effects, scene.tree(), camera, shading, light.baked.scene, band);
 #endif
 }
 
@@ -141,28 +133,28 @@ struct SceneLight {
 /// As `draw_lit`, by the map where that is faster; `moves`: with `moving_effects` alone where that is.
 [[gnu::noinline]] inline Status draw_lit_scene(const ShownScene& shown, const Camera& camera,
                                                const Shading& shading, const SceneLight& light,
-                                               const Band& band, bool moves, LitCounts* counts = nullptr) {
+                                               const Band& band, bool moves) {
   if constexpr (kLightsFast) {
     if (light.is_fast && (moves || light.moves_whole())) {
 #if defined(THIMBLE_SCENE_IN_FLASH)
       constexpr bool kHasWater = kWaterByMap && (kImageEffects & Effect::kWater) != 0;
       return render_lit_band_within<kImageEffects, kHasWater>(
           moving_effects(light.baked.effects), shown.scene.tree(), shown.map, camera, shading,
-          light.baked.scene, {light.suns, kMaxFlatSuns}, band, counts);
+          light.baked.scene, {light.suns, kMaxFlatSuns}, band);
 #elif defined(THIMBLE_IMAGE_EFFECTS)
-      return render_lit_band<moving_effects(kImageEffects), kImageLamps>(
-          shown.scene.tree(), shown.map, camera, shading, light.baked.scene, {light.suns, kMaxFlatSuns}, band,
-          counts);
+      return render_lit_band<moving_effects(kImageEffects), kImageLamps>(shown.scene.tree(), shown.map,
+                                                                         camera, shading, light.baked.scene,
+                                                                         {light.suns, kMaxFlatSuns}, band);
 #elif !defined(THIMBLE_NO_MAP_LIGHT)
       return render_lit_band(moving_effects(light.effects()), shown.scene.tree(), shown.map, camera, shading,
-                             light.baked.scene, {light.suns, kMaxFlatSuns}, band, counts);
+                             light.baked.scene, {light.suns, kMaxFlatSuns}, band);
 #else  // a port for which so many more renderers are too much: the same pixels, ray by ray
       return render_lit_band(moving_effects(light.effects()), shown.scene.tree(), camera, shading,
-                             light.baked.scene, band, counts);
+                             light.baked.scene, band);
 #endif
     }
   }
-  return draw_lit(shown.scene, camera, shading, light, band, counts);
+  return draw_lit(shown.scene, camera, shading, light, band);
 }
 
 #else
@@ -177,13 +169,12 @@ inline const char* open_light(const BakedScene& /*scene*/, SceneLight* /*light*/
 }
 [[gnu::noinline]] inline Status draw_lit(const BakedScene& scene, const Camera& camera,
                                          const Shading& shading, const SceneLight& /*light*/,
-                                         const Band& band, LitCounts* /*counts*/ = nullptr) {
+                                         const Band& band) {
   return render_band(scene.tree(), camera, shading, band);
 }
 inline void prove_light(const ShownScene& /*shown*/, Arena* /*arena*/, SceneLight* /*light*/) {}
 inline Status draw_lit_scene(const ShownScene& shown, const Camera& camera, const Shading& shading,
-                             const SceneLight& light, const Band& band, bool /*moves*/,
-                             LitCounts* /*counts*/ = nullptr) {
+                             const SceneLight& light, const Band& band, bool /*moves*/) {
   return draw_lit(shown.scene, camera, shading, light, band);
 }
 

@@ -393,11 +393,9 @@ void zoom(Pool* pool, int32_t by) {
       (pool->lighting.effects & Effect::kWater) == 0 || !pool->lighting.scene.has_water) {
     return "the scene holds no water";
   }
-#ifdef THIMBLE_IMAGE_EFFECTS
   if (!is_for(pool->lighting.effects)) {
     return "the image was built for other effects than the scene's";
   }
-#endif
   pool->rest = pool->lighting.scene.water;
   const int32_t height = display().height_px;
   const bool has_bands = pool->bands.take(&pool->arena);

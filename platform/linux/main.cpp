@@ -36,15 +36,6 @@ int complain(const std::string& sentence) {
   return 1;
 }
 
-const apps::Application* find_application(const std::string& name) {
-  for (const apps::Application& application : apps::applications()) {
-    if (name == application.name) {
-      return &application;
-    }
-  }
-  return nullptr;
-}
-
 std::string application_names() {
   std::string names;
   for (const apps::Application& application : apps::applications()) {
@@ -64,7 +55,7 @@ std::string read_file(const std::string& path, std::vector<uint8_t>* bytes) {
 }
 
 int run(const Options& options) {
-  const apps::Application* application = find_application(options.app);
+  const apps::Application* application = apps::find_application(options.app.c_str());
   if (application == nullptr) {
     return complain("there is no application " + options.app + "; there are " + application_names());
   }

@@ -66,17 +66,6 @@ Placement place(int32_t picture_width_px, int32_t picture_height_px, const Layou
   return placement;
 }
 
-Rgb8 load_pixel(const uint8_t* row, int32_t x, PixelFormat format, int32_t y) {
-  if (format == PixelFormat::kRgb565) {
-    const size_t column = static_cast<size_t>(x);
-    const int value = row[2 * column] | row[2 * column + 1] << 8;
-    return {static_cast<uint8_t>((value >> 11 & 31) * 255 / 31),
-            static_cast<uint8_t>((value >> 5 & 63) * 255 / 63),
-            static_cast<uint8_t>((value & 31) * 255 / 31)};
-  }
-  return thimble::load_pixel(row, x, y, format);
-}
-
 void put_band(const Band& band, int32_t width_px, const Layout& layout, const Placement& placement,
               Bytes screen) {
   const size_t band_stride = band.stride_bytes == 0 ? row_bytes(band.format, width_px) : band.stride_bytes;
@@ -88,7 +77,7 @@ void put_band(const Band& band, int32_t width_px, const Layout& layout, const Pl
     uint8_t* first = screen.data + layout.stride_bytes * static_cast<size_t>(y) + left;
     uint8_t* to = first;
     for (int32_t x = 0; x < width_px; ++x) {
-      const uint32_t value = packed(load_pixel(from, x, band.format, band.first_row + row), layout);
+      const uint32_t value = packed(load_pixel(from, x, band.first_row + row, band.format), layout);
       for (int32_t copy = 0; copy < placement.scale; ++copy, to += pixel_bytes) {
         store(to, value, pixel_bytes);
       }

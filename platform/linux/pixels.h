@@ -47,10 +47,6 @@ struct Placement {
 /// all.
 Placement place(int32_t picture_width_px, int32_t picture_height_px, const Layout& screen);
 
-/// The colour of pixel `x` in row `y` (which pages alone look at), stored in `format`, as close as 8 bits a
-/// channel say it.
-Rgb8 load_pixel(const uint8_t* row, int32_t x, PixelFormat format, int32_t y = 0);
-
 /// Draws a band of a picture `width_px` wide into `screen` (layout.bytes() of them). Bytes outside the
 /// picture, the stride's slack among them, are not touched.
 void put_band(const Band& band, int32_t width_px, const Layout& layout, const Placement& placement,

@@ -51,15 +51,6 @@ struct SimCommand {
   platform::BoardFacts board{};
 };
 
-const apps::Application* application(const char* name) {
-  for (const apps::Application& one : apps::applications()) {
-    if (std::strcmp(one.name, name) == 0) {
-      return &one;
-    }
-  }
-  return nullptr;
-}
-
 const char* default_scene(const SessionOptions& session) {
   if (std::strcmp(session.application->name, "water") == 0) {
     return kDefaultWaterScene;
@@ -212,7 +203,7 @@ int run_and_write(SimCommand* command, std::string* sentence) {
     // Only the demonstration holds a rate of frames, or has them drawn by another engine.
     if (command->chooses_application && session.hold_fps == 0 && command->engine.name != "wide" &&
         has_water(scene)) {
-      session.application = application("water");
+      session.application = apps::find_application("water");
     }
   }
   session.scene = {scene.data(), scene.size()};
