@@ -280,6 +280,27 @@ uint32_t FaceLights::aim_at_lamp(const Light& light) {
   return asking;
 }
 
+// The same for a sun.
+uint32_t FaceLights::aim_at_sun(const Light& light) {
+  lit::LightRay to[kInside];
+  bool shines[kInside];
+  for (uint32_t face = 0; face < kInside; ++face) {
+    shines[face] = lit::light_ray(light, sides_[face].spot, &to[face]);
+  }
+  uint32_t asking = 0;
+  for (uint32_t i = 0; i < count_; ++i) {
+    const LitFace& face = parts_.faces[i];
+    if (face.face < kInside && shines[face.face]) {
+      const lit::LightRay& sun = to[face.face];
+      parts_.asking[asking] = i;
+      parts_.rays[asking] = {face.at, sun.ray.direction};
+      std::copy_n(sun.brightness, 3, parts_.bright[asking].c);
+      ++asking;
+    }
+  }
+  return asking;
+}
+
 void FaceLights::find_shadows(const Light& light, uint32_t asking) {
   constexpr int kKind = static_cast<int>(LitRayKind::kShadow);
   const Span<const Ray> rays{parts_.rays, asking};
@@ -339,17 +360,8 @@ void FaceLights::go_through(const Light& light, uint32_t asking) {
   }
 }
 
-void FaceLights::filter_by_water(const Light& light, uint32_t number) {
-  lit::LightRay ray = ray_of(light, number);
-  lit::filter_by_water(frame_, &ray);
-  std::copy_n(ray.brightness, 3, parts_.bright[number].c);
-}
-
 // Adds the light that the rays to a light bring, where nothing is in the way.
 void FaceLights::add_arriving(const Light& light, uint32_t asking) {
-  if (asking == 0) {
-    return;
-  }
   const bool has_shadows = (frame_.effects & Effect::kShadows) != 0;
   if (has_shadows) {
     find_shadows(light, asking);
@@ -360,37 +372,15 @@ void FaceLights::add_arriving(const Light& light, uint32_t asking) {
   for (uint32_t i = 0; i < asking; ++i) {
     const bool arrives = !has_shadows || parts_.any[i] != kBlocks;
     if (shape_.has_water && arrives && parts_.in_water[parts_.asking[i]] != 0) {
-      filter_by_water(light, i);
+      lit::LightRay ray = ray_of(light, i);
+      lit::filter_by_water(frame_, &ray);
+      std::copy_n(ray.brightness, 3, parts_.bright[i].c);
     }
     const uint32_t open = arrives ? UINT32_MAX : 0;
     for (int c = 0; c < 3; ++c) {
       parts_.light[parts_.asking[i]].c[c] += parts_.bright[i].c[c] & open;
     }
   }
-}
-
-void FaceLights::add_sun(const Light& light) {
-  lit::LightRay to[kInside];
-  bool shines[kInside];
-  for (uint32_t face = 0; face < kInside; ++face) {
-    shines[face] = lit::light_ray(light, sides_[face].spot, &to[face]);
-  }
-  uint32_t asking = 0;
-  for (uint32_t i = 0; i < count_; ++i) {
-    const LitFace& face = parts_.faces[i];
-    if (face.face < kInside && shines[face.face]) {
-      const lit::LightRay& sun = to[face.face];
-      parts_.asking[asking] = i;
-      parts_.rays[asking] = {face.at, sun.ray.direction};
-      std::copy_n(sun.brightness, 3, parts_.bright[asking].c);
-      ++asking;
-    }
-  }
-  add_arriving(light, asking);
-}
-
-void FaceLights::add_lamp(const Light& light) {
-  add_arriving(light, aim_at_lamp(light));
 }
 
 void FaceLights::shine(uint32_t count) {
@@ -411,13 +401,8 @@ void FaceLights::shine(uint32_t count) {
   if (shape_.has_water) {
     note_water();
   }
-  for (size_t i = 0; i < frame_.scene.lights.size; ++i) {
-    const Light& light = frame_.scene.lights[i];
-    if (light.is_point) {
-      add_lamp(light);
-    } else {
-      add_sun(light);
-    }
+  for (const Light& light : frame_.scene.lights) {
+    add_arriving(light, light.is_point ? aim_at_lamp(light) : aim_at_sun(light));
   }
 }
 

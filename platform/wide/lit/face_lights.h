@@ -91,11 +91,9 @@ class FaceLights {
   void occlude();
   void note_water();
   void sort_by_face();
-  void add_sun(const Light& light);
-  void add_lamp(const Light& light);
+  uint32_t aim_at_sun(const Light& light);
   uint32_t aim_at_lamp(const Light& light);
   void add_arriving(const Light& light, uint32_t asking);
-  void filter_by_water(const Light& light, uint32_t number);
   void find_shadows(const Light& light, uint32_t asking);
   void go_through(const Light& light, uint32_t asking);
   lit::LightRay ray_of(const Light& light, uint32_t number) const;
