@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "wide/kernel.h"
 #include "wide/raster/frame.h"
 #include "wide/raster/gray_scale.h"
 
@@ -215,27 +216,31 @@ struct Run {
 };
 
 /// Draws the boxes of a run. Some may wait in the batch until `finish`.
-void draw_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch);
+extern const Kernel<void(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch)>
+    draw_run;
 /// Draws a block of short entries, behind all that is in the picture; `run` has all but its entries. Returns false, with
 /// nothing done, where voxels are too large on the picture or the block is too near, and where the instruction set has
 /// no loop for it.
-bool draw_short_run(const WideFrame& frame, const Run& run, const ShortEntries& from, const Depths& depths,
-                    Batch* batch);
+extern const Kernel<bool(const WideFrame& frame, const Run& run, const ShortEntries& from,
+                         const Depths& depths, Batch* batch)>
+    draw_short_run;
 /// Writes short entries as entries of their cube of 1024 a side, and up to kReadAhead more.
-void widen(const ShortEntries& from, uint32_t count, uint32_t* entries);
+extern const Kernel<void(const ShortEntries& from, uint32_t count, uint32_t* entries)> widen;
 /// Draws the boxes that wait in the batch.
-void finish(const WideFrame& frame, const Depths& depths, Batch* batch);
+extern const Kernel<void(const WideFrame& frame, const Depths& depths, Batch* batch)> finish;
 
 /// Finds which boxes of the run may be seen at open pixels. Stores their entries and numbers, in the order of the run,
 /// in `entries` and `numbers`, which have room for run.count + kReadAhead. Returns how many boxes those are.
-uint32_t cull_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch,
-                  uint32_t* entries, uint32_t* numbers);
+extern const Kernel<uint32_t(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch,
+                             uint32_t* entries, uint32_t* numbers)>
+    cull_run;
 
 /// Finds which children of a block may be seen, among the octants in `mask`. Their nodes count up from `first_child`;
 /// `nearest` is the octant nearest to the eye, which comes last. Returns how many may be seen. `children` has room for
 /// eight.
-int find_children(const WideFrame& frame, const Block& block, unsigned mask, uint32_t first_child,
-                  unsigned nearest, Block* children);
+extern const Kernel<int(const WideFrame& frame, const Block& block, unsigned mask, uint32_t first_child,
+                        unsigned nearest, Block* children)>
+    find_children;
 
 /// Pixels and their nearest boxes. There is room for a whole vector behind the last pixel.
 inline constexpr uint32_t kMostPixels = 512;
@@ -255,12 +260,14 @@ struct Pixels {
 };
 /// Appends the covered pixels of the strip that begins at column `left`, row by row from `row` on: sets `at`, `x` and
 /// `y`. Stops at row `end`, or when the next row might not fit. Returns the first row that is not appended.
-int32_t find_covered(const Depths& depths, int32_t left, int32_t row, int32_t end, Pixels* pixels);
+extern const Kernel<int32_t(const Depths& depths, int32_t left, int32_t row, int32_t end, Pixels* pixels)>
+    find_covered;
 /// Reads the values of the pixels and unpacks them; fills the lanes behind the last pixel too.
-void unpack(const Depths& depths, Pixels* pixels);
+extern const Kernel<void(const Depths& depths, Pixels* pixels)> unpack;
 /// Finds the greys that shade() gives for ShadeMode::kDepth. `gray` has room for `count` greys and a vector behind
 /// them.
-void find_grays(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray);
+extern const Kernel<void(const WideFrame& frame, const Pixels& pixels, const GrayScale& scale, uint8_t* gray)>
+    find_grays;
 /// How the codes that Depths keeps are stored as pixels of whole bytes.
 struct CodeBytes {
   int size;         ///< bytes of a pixel: 1 .. 3
@@ -271,17 +278,20 @@ struct CodeBytes {
 };
 /// Stores row `y` in `to`, which has room for width_px pixels. Needs a picture of codes. Returns how many pixels show
 /// something.
-uint32_t put_colors(const Depths& depths, int32_t y, int32_t width_px, const CodeBytes& bytes, uint8_t* to);
+extern const Kernel<uint32_t(const Depths& depths, int32_t y, int32_t width_px, const CodeBytes& bytes,
+                             uint8_t* to)>
+    put_colors;
 /// Does the same for the pieces of the whole picture that were touched (Depths::is_touched), not for what is between
 /// them. `to` is the picture's first row.
-uint32_t put_touched(const Depths& depths, int32_t width_px, const CodeBytes& bytes, uint8_t* to,
-                     size_t stride);
+extern const Kernel<uint32_t(const Depths& depths, int32_t width_px, const CodeBytes& bytes, uint8_t* to,
+                             size_t stride)>
+    put_touched;
 /// Finds the faces that face_of() gives, as 2 * axis, and 1 more where the face looks towards larger coordinates.
 /// `face` has room as in find_grays().
-void find_faces(const WideFrame& frame, const Pixels& pixels, uint8_t* face);
+extern const Kernel<void(const WideFrame& frame, const Pixels& pixels, uint8_t* face)> find_faces;
 
 /// Names the instruction set in use: the best one of this machine, unless a test chose another.
-const char* instruction_set();
+extern const Kernel<const char*()> instruction_set;
 /// For tests, while nothing is drawn: counts the instruction sets that this machine and this build have, and uses the
 /// one of that number from now on (the best one again where `number` is negative).
 int instruction_set_count();

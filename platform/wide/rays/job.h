@@ -1,6 +1,7 @@
 /// What one call of ray_map.h asks of the vectors, and what these ask of plain code for a single ray.
 #pragma once
 
+#include "wide/kernel.h"
 #include "wide/rays/ray_map.h"
 
 namespace thimble::wide {
@@ -29,7 +30,7 @@ struct Job {
 };
 
 /// Traces all rays of a job that has a map. kernels/trace.cpp.
-void trace_in_vectors(Job* job);
+extern const Kernel<void(Job* job)> trace_job;
 
 /// Traces one ray by the core.
 void trace_by_core(Job* job, size_t ray);

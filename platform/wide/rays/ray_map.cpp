@@ -35,7 +35,7 @@ Status run(const RayMap& map, Span<const Ray> rays, Job job) {
     std::fill_n(job.hits, job.count, Hit{});
   }
   if (map.cells() != nullptr && job.count != 0) {
-    trace_in_vectors(&job);
+    trace_job(&job);
     return job.status;
   }
   for (size_t i = 0; i < job.count; ++i) {

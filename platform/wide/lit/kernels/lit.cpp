@@ -250,25 +250,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace thimble::wide {
 
-HWY_EXPORT(aim_at);
-HWY_EXPORT(find_sky_shares);
-HWY_EXPORT(find_gradient);
-HWY_EXPORT(turn_words);
-
-void aim_at(const LampRays& lamp, size_t count) {
-  HWY_DYNAMIC_DISPATCH(aim_at)(lamp, count);
-}
-
-void find_sky_shares(const int32_t* x, const int32_t* y, const int32_t* z, size_t count, int32_t* shares) {
-  HWY_DYNAMIC_DISPATCH(find_sky_shares)(x, y, z, count, shares);
-}
-
-void find_gradient(const uint16_t* columns, const int32_t* point, int32_t* gradient) {
-  HWY_DYNAMIC_DISPATCH(find_gradient)(columns, point, gradient);
-}
-void turn_words(uint16_t (*words)[kTurnLanes]) {
-  HWY_DYNAMIC_DISPATCH(turn_words)(words);
-}
+THIMBLE_KERNEL(aim_at);
+THIMBLE_KERNEL(find_sky_shares);
+THIMBLE_KERNEL(find_gradient);
+THIMBLE_KERNEL(turn_words);
 
 }  // namespace thimble::wide
 #endif

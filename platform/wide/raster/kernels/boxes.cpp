@@ -178,29 +178,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace thimble::wide {
 
-HWY_EXPORT(draw_run);
-HWY_EXPORT(draw_short_run);
-HWY_EXPORT(widen);
-HWY_EXPORT(finish);
-HWY_EXPORT(cull_run);
-
-void draw_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch) {
-  HWY_DYNAMIC_DISPATCH(draw_run)(frame, run, depths, batch);
-}
-bool draw_short_run(const WideFrame& frame, const Run& run, const ShortEntries& from, const Depths& depths,
-                    Batch* batch) {
-  return HWY_DYNAMIC_DISPATCH(draw_short_run)(frame, run, from, depths, batch);
-}
-void widen(const ShortEntries& from, uint32_t count, uint32_t* entries) {
-  HWY_DYNAMIC_DISPATCH(widen)(from, count, entries);
-}
-void finish(const WideFrame& frame, const Depths& depths, Batch* batch) {
-  HWY_DYNAMIC_DISPATCH(finish)(frame, depths, batch);
-}
-uint32_t cull_run(const WideFrame& frame, const Run& run, const Depths& depths, Batch* batch,
-                  uint32_t* entries, uint32_t* numbers) {
-  return HWY_DYNAMIC_DISPATCH(cull_run)(frame, run, depths, batch, entries, numbers);
-}
+THIMBLE_KERNEL(draw_run);
+THIMBLE_KERNEL(draw_short_run);
+THIMBLE_KERNEL(widen);
+THIMBLE_KERNEL(finish);
+THIMBLE_KERNEL(cull_run);
 
 }  // namespace thimble::wide
 #endif

@@ -396,11 +396,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace thimble::wide {
 
-HWY_EXPORT(trace_job);
-
-void trace_in_vectors(Job* job) {
-  HWY_DYNAMIC_DISPATCH(trace_job)(job);
-}
+THIMBLE_KERNEL(trace_job);
 
 }  // namespace thimble::wide
 #endif
