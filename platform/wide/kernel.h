@@ -16,6 +16,7 @@ struct Kernel<Result(Arguments...)> {
 
 /// Defines the kernel `name` that a header declares, behind the functions of that name in the namespaces of all
 /// instruction sets.
-#define THIMBLE_KERNEL(name) \
-  HWY_EXPORT(name);          \
-  const decltype(name) name = {[] { return &HWY_DYNAMIC_DISPATCH(name); }}  // NOLINT: what it declares
+#define THIMBLE_KERNEL(name)              \
+  HWY_EXPORT(name);                       \
+  constinit const decltype(name) name = { \
+      [] { return &HWY_DYNAMIC_DISPATCH(name); }}  // NOLINT: what it declares
