@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/camera_path.h"
+#include "commands/render_command.h"
 #include "readers/texture.h"
 #include "support/check_command.h"
 #include "support/file_bytes.h"

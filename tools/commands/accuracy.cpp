@@ -4,16 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "commands/view_options.h"
 #include "instruments/accuracy_study.h"
 #include "instruments/hard_cases.h"
 #include "instruments/timed_frames.h"
@@ -31,26 +28,24 @@
 namespace thimble::tools {
 namespace {
 
-/// The worlds that are measured.
+/// The worlds that are measured:
 ///
-/// kParticles: the paper's 693 balls on 800 x 600 cells (seed 1), after kParticleSteps steps, against 16
+/// The paper's 693 balls on 800 x 600 cells (seed 1), after kParticleSteps steps, against 16
 /// substeps and the finest positions. Short on purpose: after a collision two runs part for good, which says
 /// nothing about either. Error: distance of the centres, cells; the median ball's counts, as the few that met
 /// others differently would drown it.
 ///
-/// kWater: a square basin that is pressed down by a voxel round a point, after the time in which a wave
+/// A square basin of water that is pressed down by a voxel round a point, after the time in which a wave
 /// crosses half of it, undamped, against kWaterReference columns a side in as many steps as the slowest waves
 /// take. The basin, the bowl and the time are the same, whatever columns and steps. Error: heights against
 /// the means of the reference's columns, voxels; their root mean square counts.
-enum class SimulationWorld : std::uint8_t { kParticles, kWater };
 inline constexpr int kParticleSteps = 10;
 inline constexpr int kWaterReference = 256;
 
 struct SimulationRow : MedianTime {  ///< times: of all steps together
-  int substeps = 0;                  ///< particles
-  int subpixel_bits = 0;
-  int columns = 0;        ///< water: a side
-  int wave_speed_q6 = 0;  ///< columns a step: half of it takes twice the steps
+  int parts = 0;                     ///< substeps, or columns a side
+  /// Bits of positions, or the speed of waves in 1/64 column a step: half of it takes twice the steps.
+  int fineness = 0;
   int steps = 0;
   std::uint64_t work = 0;  ///< displacements made, or columns worked out
   double error_rms = 0;
@@ -158,56 +153,42 @@ void set_errors(std::vector<double> errors, SimulationRow* row) {
   row->error_median = quantile(std::move(errors), 0.5);
 }
 
-std::vector<SimulationRow> particle_rows() {
+std::vector<SimulationRow> settings_of(bool is_water) {
+  const std::vector<int> finenesses = is_water
+                                          ? std::vector{kMaxWaveSpeedQ6, kMaxWaveSpeedQ6 / 2, kMinWaveSpeedQ6}
+                                          : std::vector{kFinestBits, 10, 8, 6};
   std::vector<SimulationRow> rows;
-  for (const int bits : {kFinestBits, 10, 8, 6}) {
-    for (int substeps = 1; substeps <= kMostSubsteps; substeps *= 2) {
+  for (const int fineness : finenesses) {
+    const int most = is_water ? kWaterReference / 2 : kMostSubsteps;
+    for (int parts = is_water ? 16 : 1; parts <= most; parts *= 2) {
       SimulationRow& row = rows.emplace_back();
-      row.substeps = substeps;
-      row.subpixel_bits = bits;
-      row.steps = kParticleSteps;
-    }
-  }
-  return rows;
-}
-
-std::vector<SimulationRow> water_rows() {
-  std::vector<SimulationRow> rows;
-  for (const int speed : {kMaxWaveSpeedQ6, kMaxWaveSpeedQ6 / 2, kMinWaveSpeedQ6}) {
-    for (int columns = 16; columns < kWaterReference; columns *= 2) {
-      SimulationRow& row = rows.emplace_back();
-      row.columns = columns;
-      row.wave_speed_q6 = speed;
-      row.steps = water_steps(columns, speed);
+      row.parts = parts;
+      row.fineness = fineness;
+      row.steps = is_water ? water_steps(parts, fineness) : kParticleSteps;
     }
   }
   return rows;
 }
 
 // The error that counts.
-double counted_error(SimulationWorld world, const SimulationRow& row) {
-  return world == SimulationWorld::kWater ? row.error_rms : row.error_median;
+double counted_error(bool is_water, const SimulationRow& row) {
+  return is_water ? row.error_rms : row.error_median;
 }
 
 /// Measures by turns, `rounds` times each.
-std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds, const Progress& progress) {
-  const bool is_water = world == SimulationWorld::kWater;
-  std::vector<SimulationRow> rows = is_water ? water_rows() : particle_rows();
-  const auto run_row = [&](const SimulationRow& row) {
-    return is_water ? run_water(row.columns, row.wave_speed_q6)
-                    : run_particles(row.substeps, row.subpixel_bits);
-  };
-  const Outcome finest =
-      is_water ? run_water(kWaterReference, kMinWaveSpeedQ6) : run_particles(kMostSubsteps, kFinestBits);
+std::vector<SimulationRow> study_simulation(bool is_water, int rounds, const Progress& progress) {
+  std::vector<SimulationRow> rows = settings_of(is_water);
+  const auto run = is_water ? run_water : run_particles;
+  const Outcome finest = is_water ? run(kWaterReference, kMinWaveSpeedQ6) : run(kMostSubsteps, kFinestBits);
   std::vector<std::vector<double>> milliseconds(rows.size());
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       SimulationRow& row = rows[i];
-      const Outcome coarse = run_row(row);
+      const Outcome coarse = run(row.parts, row.fineness);
       milliseconds[i].push_back(coarse.ms);
       row.work = coarse.work;
       if (round == 0) {
-        const Values expected = is_water ? mean_heights(finest.values, row.columns) : finest.values;
+        const Values expected = is_water ? mean_heights(finest.values, row.parts) : finest.values;
         std::vector<double> errors;
         for (std::size_t k = 0; k < expected.size(); ++k) {
           const auto& [x, y] = coarse.values[k];
@@ -215,19 +196,17 @@ std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds, c
         }
         set_errors(std::move(errors), &row);
       }
-      if (progress) {
-        progress((static_cast<double>(round) + static_cast<double>(i) / static_cast<double>(rows.size())) /
-                 rounds);
-      }
+      progress((static_cast<double>(round) + static_cast<double>(i) / static_cast<double>(rows.size())) /
+               rounds);
     }
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i].set_times(milliseconds[i]);
   }
   for (SimulationRow& row : rows) {
-    const double error = counted_error(world, row);
+    const double error = counted_error(is_water, row);
     row.front = std::none_of(rows.begin(), rows.end(), [&](const SimulationRow& other) {
-      const double others = counted_error(world, other);
+      const double others = counted_error(is_water, other);
       return other.ms_median <= row.ms_median && others <= error &&
              (other.ms_median < row.ms_median || others < error);
     });
@@ -235,14 +214,13 @@ std::vector<SimulationRow> study_simulation(SimulationWorld world, int rounds, c
   return rows;
 }
 
-JsonRow simulation_objects(SimulationWorld world, const std::vector<SimulationRow>& rows) {
-  const bool is_water = world == SimulationWorld::kWater;
+JsonRow simulation_objects(bool is_water, const std::vector<SimulationRow>& rows) {
   const auto only = [](bool is_there, int value) { return is_there ? JsonRow(value) : JsonRow(nullptr); };
   return objects_of(rows, [&](const SimulationRow& row) {
     JsonRow object;
-    put_all(&object, "row", is_water ? "water" : "particles", "substeps", only(!is_water, row.substeps),
-            "subpixel_bits", only(!is_water, row.subpixel_bits), "columns", only(is_water, row.columns),
-            "wave_speed_q6", only(is_water, row.wave_speed_q6), "steps", row.steps, "work", row.work);
+    put_all(&object, "row", is_water ? "water" : "particles", "substeps", only(!is_water, row.parts),
+            "subpixel_bits", only(!is_water, row.fineness), "columns", only(is_water, row.parts),
+            "wave_speed_q6", only(is_water, row.fineness), "steps", row.steps, "work", row.work);
     row.add_to(&object);
     put_all(&object, "unit", is_water ? "voxels" : "cells", "error_rms", row.error_rms, "error_median",
             row.error_median, "error_most", row.error_most, "front", row.front ? 1 : 0);
@@ -250,16 +228,15 @@ JsonRow simulation_objects(SimulationWorld world, const std::vector<SimulationRo
   });
 }
 
-std::string simulation_table(SimulationWorld world, const std::vector<SimulationRow>& rows) {
-  const bool is_water = world == SimulationWorld::kWater;
+std::string simulation_table(bool is_water, const std::vector<SimulationRow>& rows) {
   const Cells names =
       cells_of("", is_water ? "columns" : "substeps", is_water ? "wave speed" : "bits", "steps",
                is_water ? "columns updated" : "moves", "ms", "+-%", "error RMS", "median", "most");
   const auto cells = [&](const SimulationRow& row) {
-    return cells_of(row.front ? "*" : "", is_water ? row.columns : row.substeps,
-                    is_water ? fixed(row.wave_speed_q6 / 64.0, 3) : std::to_string(row.subpixel_bits),
-                    row.steps, grouped(row.work), fixed(row.ms_median, 3), row.spread(),
-                    fixed(row.error_rms, 4), fixed(row.error_median, 4), fixed(row.error_most, 3));
+    return cells_of(row.front ? "*" : "", row.parts,
+                    is_water ? fixed(row.fineness / 64.0, 3) : std::to_string(row.fineness), row.steps,
+                    grouped(row.work), fixed(row.ms_median, 3), row.spread(), fixed(row.error_rms, 4),
+                    fixed(row.error_median, 4), fixed(row.error_most, 3));
   };
   const std::string head =
       is_water
@@ -272,8 +249,7 @@ std::string simulation_table(SimulationWorld world, const std::vector<Simulation
          (is_water ? "RMS" : "median") + ")\n" + table_of(names, 1, rows, cells);
 }
 
-std::string simulation_plot(SimulationWorld world, const std::vector<SimulationRow>& rows) {
-  const bool is_water = world == SimulationWorld::kWater;
+std::string simulation_plot(bool is_water, const std::vector<SimulationRow>& rows) {
   Plot plot;
   plot.title = is_water ? "Water: error against time, 16 to 128 columns a side"
                         : "Particles: error against time, 1 to 16 substeps";
@@ -282,12 +258,12 @@ std::string simulation_plot(SimulationWorld world, const std::vector<SimulationR
                      : "processor time of 10 steps of 693 balls, ms (median, this machine)";
   plot.y_label = is_water ? "RMS error of heights, voxels" : "median error of positions, cells (0 not shown)";
   for (const SimulationRow& row : rows) {
-    const std::string name = is_water ? fixed(row.wave_speed_q6 / 64.0, 3) + " columns a step"
-                                      : concat("positions of 2^-", row.subpixel_bits, " cells");
+    const std::string name = is_water ? fixed(row.fineness / 64.0, 3) + " columns a step"
+                                      : concat("positions of 2^-", row.fineness, " cells");
     if (plot.series.empty() || plot.series.back().name != name) {
       plot.series.push_back({name, false, {}});
     }
-    if (const double error = counted_error(world, row); error > 0 && row.ms_median > 0) {
+    if (const double error = counted_error(is_water, row); error > 0 && row.ms_median > 0) {
       plot.series.back().points.emplace_back(row.ms_median, error);
     }
   }
@@ -300,7 +276,7 @@ constexpr std::uint64_t kLeastCases = 1000;
 struct AccuracyCommand {
   SceneOptions scene;
   AccuracyOptions study;
-  std::optional<SimulationWorld> simulation;
+  std::optional<bool> simulation;  ///< of water, else of particles
   bool hard_cases = false;
   std::uint64_t hard_rays = 1000000;
   std::uint64_t seed = 1;
@@ -361,22 +337,27 @@ void check_alone(const CLI::App& sub, const std::string& what, const std::vector
   }
 }
 
-void run(const AccuracyCommand& command, const CLI::App& sub) {
+void check(const AccuracyCommand& command, const CLI::App& sub) {
+  for (const char* name : {"--rays", "--seed"}) {
+    refuse_if(!command.hard_cases && is_given(sub, name), name, ": goes with --hard-cases only");
+  }
   if (command.hard_cases) {
     check_alone(sub, "--hard-cases", {"--rays", "--seed", "--csv", "--json", "--quiet"});
-    run_hard(command);
-    return;
-  }
-  for (const char* name : {"--rays", "--seed"}) {
-    refuse_if(is_given(sub, name), name, ": goes with --hard-cases only");
-  }
-  if (command.simulation) {
+  } else if (command.simulation) {
     check_alone(sub, "--simulation", {"--rounds", "--csv", "--json", "--plot", "--quiet"});
-    run_simulation(command);
-    return;
+  } else {
+    refuse_if(command.scene.arguments.scene.empty(), "SCENE is required");
   }
-  refuse_if(command.scene.arguments.scene.empty(), "SCENE is required");
-  run_scene(command);
+}
+
+void run(const AccuracyCommand& command) {
+  if (command.hard_cases) {
+    run_hard(command);
+  } else if (command.simulation) {
+    run_simulation(command);
+  } else {
+    run_scene(command);
+  }
 }
 
 void add_positive(CLI::App& app, const std::string& name, const std::string& type_name, double least,
@@ -420,22 +401,22 @@ void add_report_of(AccuracyCommand* command, CLI::App& sub) {
 }  // namespace
 
 void add_accuracy(CLI::App& app) {
-  auto command = std::make_shared<AccuracyCommand>();
-  command->study.view.width_px = 200;
-  command->study.view.height_px = 150;
   CLI::App* sub = add_command(
       app, "accuracy",
       "Time against error: one view of a scene with every knob that trades them turned alone and together "
       "(depth, cut-off, bits of a ray's direction, samples a pixel), and frames stopped early, each compared "
       "with a reference that has all knobs at their best.");
+  AccuracyCommand* const command = options_for<AccuracyCommand>(*sub, run);
+  also_check(*sub, [command, sub] { check(*command, *sub); });
+  command->study.view.width_px = 200;
+  command->study.view.height_px = 150;
   command->scene.add_scene(*sub, false);
   add_flag(*sub, "--hard-cases", &command->hard_cases,
            "instead of a scene: near-degenerate rays through this tracer and through textbook traversals in "
            "floating point, and every fixed-point operation against exact arithmetic; the exit status is "
            "1 when this tracer gets one wrong");
   add_choice_option(
-      *sub, "--simulation", {{"particles", SimulationWorld::kParticles}, {"water", SimulationWorld::kWater}},
-      &command->simulation,
+      *sub, "--simulation", {{"particles", false}, {"water", true}}, &command->simulation,
       "instead of a scene: substeps and bits of positions of the particle world, or columns and steps of a "
       "basin of water, against the finest");
   add_whole_option(*sub, "--rays", "N", 1, 1000000000, &command->hard_rays,
@@ -467,8 +448,7 @@ void add_accuracy(CLI::App& app) {
       "light whose knobs are turned too (rays of occlusion, rays of rough metal, bounces): auto (what the "
       "scene's materials and lights call for), none, or effects with commas between them: " +
           effect_names());
-  add_report_of(command.get(), *sub);
-  when_chosen(*sub, [command, sub] { run(*command, *sub); });
+  add_report_of(command, *sub);
 }
 
 }  // namespace thimble::tools

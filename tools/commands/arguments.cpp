@@ -160,22 +160,6 @@ CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::
   return app.add_option_function<std::string>(name, check, help)->type_name(type_name);
 }
 
-CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                              std::int64_t low, std::int64_t high,
-                              const std::function<void(std::int64_t)>& take, const std::string& help) {
-  return add_text_option(
-      app, name, type_name,
-      [=](const std::string& text) -> std::string {
-        const auto number = parse_whole(text, low, high);
-        if (!number) {
-          return concat("is not a whole number from ", low, " to ", high);
-        }
-        take(*number);
-        return {};
-      },
-      help);
-}
-
 CLI::Option* add_real_option(CLI::App& app, const std::string& name, const std::string& type_name, double low,
                              double high, const std::function<void(double)>& take, const std::string& help) {
   return add_text_option(

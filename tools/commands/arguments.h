@@ -35,6 +35,13 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
 void add_paragraph_below(CLI::App& command, const std::string& text);
 /// What the subcommand does, once all options are read.
 void when_chosen(CLI::App& command, std::function<void()> action);
+/// What its options are kept in, by the subcommand, and given to `run`.
+template <class Options>
+Options* options_for(CLI::App& command, std::type_identity_t<void (*)(const Options&)> run) {
+  const auto options = std::make_shared<Options>();
+  when_chosen(command, [options, run] { run(*options); });
+  return options.get();
+}
 /// What is looked at before that: options that are sound one by one and make no sense together. `check` calls
 /// refuse_if.
 void also_check(CLI::App& command, std::function<void()> check);
@@ -47,25 +54,24 @@ void add_flag(CLI::App& app, const std::string& name, bool* flag, const std::str
 CLI::Option* add_text_option(CLI::App& app, const std::string& name, const std::string& type_name,
                              std::function<std::string(const std::string&)> take, const std::string& help);
 
-/// An option that is a whole number of low .. high.
-CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
-                              std::int64_t low, std::int64_t high,
-                              const std::function<void(std::int64_t)>& take, const std::string& help);
-
-/// The same, kept where `to` says: in a whole number, or an optional one. Its default is what `to` holds,
-/// unless that is below `low`: then there is none.
+/// An option that is a whole number of low .. high, kept where `to` says: in a whole number, or an optional one. Its
+/// default is what `to` holds, unless that is below `low`: then there is none.
 template <class Number>
 CLI::Option* add_whole_option(CLI::App& app, const std::string& name, const std::string& type_name,
                               std::int64_t low, std::int64_t high, Number* to, const std::string& help) {
-  const auto take = [to](std::int64_t number) {
-    if constexpr (std::is_integral_v<Number>) {
-      *to = static_cast<Number>(number);
-    } else {
-      *to = static_cast<typename Number::value_type>(number);
+  const auto take = [=](const std::string& text) -> std::string {
+    const auto number = parse_whole(text, low, high);
+    if (!number) {
+      return concat("is not a whole number from ", low, " to ", high);
     }
+    if constexpr (std::is_integral_v<Number>) {
+      *to = static_cast<Number>(*number);
+    } else {
+      *to = static_cast<typename Number::value_type>(*number);
+    }
+    return {};
   };
-  CLI::Option* const option =
-      add_whole_option(app, name, type_name, low, high, std::function<void(std::int64_t)>(take), help);
+  CLI::Option* const option = add_text_option(app, name, type_name, take, help);
   if constexpr (std::is_integral_v<Number>) {
     option->default_str(std::cmp_less(*to, low) ? "" : std::to_string(*to));
   }

@@ -1,13 +1,10 @@
 // thimble bake: a scene as bytes for flash.
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdio>
-#include <memory>
 #include <string>
 #include <string_view>
 
-#include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
 #include "output/output_file.h"
@@ -26,20 +23,15 @@ constexpr std::size_t kMostIdentifier = 63;  // what C99 tells apart
 constexpr std::size_t kLineWidth = 100;
 
 // Keywords of C to C23 and C++ to C++20, and the names that <stdint.h> takes.
-constexpr std::array<std::string_view, 100> kTaken{
-    "alignas",  "alignof",      "and",      "asm",      "auto",     "bool",      "break",     "case",
-    "catch",    "char",         "class",    "concept",  "const",    "consteval", "constexpr", "constinit",
-    "continue", "decltype",     "default",  "delete",   "do",       "double",    "else",      "enum",
-    "explicit", "export",       "extern",   "false",    "float",    "for",       "friend",    "goto",
-    "if",       "inline",       "int",      "long",     "mutable",  "namespace", "new",       "noexcept",
-    "not",      "nullptr",      "operator", "or",       "private",  "protected", "public",    "register",
-    "requires", "restrict",     "return",   "short",    "signed",   "sizeof",    "static",    "struct",
-    "switch",   "template",     "this",     "throw",    "true",     "try",       "typedef",   "typeid",
-    "typename", "typeof",       "union",    "unsigned", "using",    "virtual",   "void",      "volatile",
-    "while",    "xor",          "bitand",   "bitor",    "compl",    "and_eq",    "or_eq",     "xor_eq",
-    "not_eq",   "int8_t",       "int16_t",  "int32_t",  "int64_t",  "uint8_t",   "uint16_t",  "uint32_t",
-    "uint64_t", "size_t",       "wchar_t",  "char8_t",  "char16_t", "char32_t",  "co_await",  "co_return",
-    "co_yield", "thread_local", "main",     "intptr_t"};
+constexpr std::string_view kTaken =
+    " alignas alignof and asm auto bool break case catch char class concept const consteval constexpr "
+    "constinit continue decltype default delete do double else enum explicit export extern false float "
+    "for friend goto if inline int long mutable namespace new noexcept not nullptr operator or private "
+    "protected public register requires restrict return short signed sizeof static struct switch "
+    "template this throw true try typedef typeid typename typeof union unsigned using virtual void "
+    "volatile while xor bitand bitor compl and_eq or_eq xor_eq not_eq int8_t int16_t int32_t int64_t "
+    "uint8_t uint16_t uint32_t uint64_t size_t wchar_t char8_t char16_t char32_t co_await co_return "
+    "co_yield thread_local main intptr_t ";
 
 std::string capitals(std::string_view text) {
   std::string out(text);
@@ -136,7 +128,7 @@ void run(const BakeCommand& given) {
 bool is_identifier(std::string_view text) {
   if (text.empty() || text.size() > kMostIdentifier ||
       std::isalpha(static_cast<unsigned char>(text[0])) == 0 || text.find("__") != std::string_view::npos ||
-      std::find(kTaken.begin(), kTaken.end(), text) != kTaken.end()) {
+      kTaken.find(concat(" ", text, " ")) != std::string_view::npos) {
     return false;
   }
   return std::all_of(text.begin(), text.end(),
@@ -173,14 +165,13 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   if (BakedLighting::open(scene.section(SectionKind::kLighting), tree.level(), &lighting) != Status::kOk) {
     lighting.effects = Effect::kNone;  // baked without
   }
-  std::array<char, 16> effects{};
-  std::snprintf(effects.data(), effects.size(), "0x%03xu", static_cast<unsigned>(lighting.effects));
   // The bits are those of thimble/light/scene.h; words for a person.
   std::string names;
   for (const std::string& effect : effect_list(lighting.effects)) {
     names += " " + effect;
   }
-  define("EFFECTS", effects.data() + (names.empty() ? "" : " /*" + names + " */"));
+  define("EFFECTS",
+         concat("0x", hex_text(lighting.effects, 3), "u", names.empty() ? "" : " /*" + names + " */"));
   std::size_t lamps = 0;
   for (const Light& light : lighting.scene.lights) {
     lamps += light.is_point ? 1 : 0;
@@ -312,7 +303,7 @@ void add_fitting(CLI::App& app, BakeCommand* command) {
            "when it does not fit, merge blocks of voxels until it just does; this only adds solid");
 }
 
-void add_bake_options(CLI::App& app, const std::shared_ptr<BakeCommand>& command) {
+void add_bake_options(CLI::App& app, BakeCommand* command) {
   command->scene.add_scene(app);
   add_text_option(
       app, "-o,--output", "FILE",
@@ -323,7 +314,7 @@ void add_bake_options(CLI::App& app, const std::shared_ptr<BakeCommand>& command
       },
       "the bytes as a file (.oct) or as a C and C++ header (.h); - is the bytes on standard output")
       ->required();
-  add_fitting(app, command.get());
+  add_fitting(app, command);
   add_board(app, &command->scene.board,
             "the limit is what the demonstration leaves of the board's flash (the smaller counts if --memory "
             "is given too), and the camera frames the scene for its display, so that all of it stays in the "
@@ -353,11 +344,10 @@ void add_bake_options(CLI::App& app, const std::shared_ptr<BakeCommand>& command
 }
 
 void add_bake(CLI::App& app) {
-  auto command = std::make_shared<BakeCommand>();
   CLI::App* sub = add_command(
       app, "bake", "Bake a scene: its compact tree, palette and camera as one block of bytes for flash.");
+  BakeCommand* const command = options_for<BakeCommand>(*sub, run);
   add_bake_options(*sub, command);
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "commands/view_options.h"
 #include "scene/baking.h"
 #include "scene/framing.h"
 #include "scene/scene_source.h"
@@ -60,7 +58,7 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier);
 std::string not_drawn_text(const BakeCommand& command, EffectSet effects);
 
 /// All options of `thimble bake`, for `command`.
-void add_bake_options(CLI::App& app, const std::shared_ptr<BakeCommand>& command);
+void add_bake_options(CLI::App& app, BakeCommand* command);
 
 /// --memory and --coarsen.
 void add_fitting(CLI::App& app, BakeCommand* command);

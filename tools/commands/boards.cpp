@@ -3,11 +3,9 @@
 #include <array>
 #include <cstring>
 #include <map>
-#include <memory>
 #include <tuple>
 
 #include "boards/frame_costs.h"
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
@@ -331,11 +329,11 @@ void run(const BoardsCommand& command) {
 }  // namespace
 
 void add_boards(CLI::App& app) {
-  auto command = std::make_shared<BoardsCommand>();
   CLI::App* sub = add_command(
       app, "boards",
       "The boards and their limits; with a scene also what of it fits: its baked bytes against the flash, "
       "the RAM to draw it and to build it on the chip, the deepest --depth, and frames a second.");
+  BoardsCommand* const command = options_for<BoardsCommand>(*sub, run);
   command->scene.add_scene(*sub, false);
   for (const char* name : {"--depth", "--as-voxels", "--z-up"}) {
     sub->get_option(name)->needs(sub->get_option("scene"));
@@ -352,7 +350,6 @@ void add_boards(CLI::App& app) {
       "scene and brick map do not fit), scene_frames_per_second_estimate");
   add_path_option(*sub, "--json", "FILE.json", &command->files.json, "the same, an array of objects");
   add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar");
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,4 +1,4 @@
-#include "commands/camera_path.h"
+#include "commands/render_command.h"
 
 #include <algorithm>
 #include <array>
@@ -43,84 +43,29 @@ bool is_names(const std::vector<std::string_view>& cells) {
   });
 }
 
-// Which columns a line of so many has; empty where there is no such line.
-std::vector<std::size_t> columns_for(std::size_t cells) {
-  const bool has_up = cells >= 9;
-  std::vector<std::size_t> columns{0, 1, 2, 3, 4, 5};
-  if (has_up) {
-    columns.insert(columns.end(), {6, 7, 8});
+// The camera that a line's cells are; of nine and more the fourth three are what is up, the last of seven and ten is fov.
+PathCamera camera_of(const std::vector<std::string_view>& cells, const std::string& path, std::uint64_t line,
+                     const ViewWishes& view, bool has_fov) {
+  std::array<double, 10> numbers{};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::size_t column = has_fov && i + 1 == cells.size() ? 9 : i;
+    fail_in_path_if(parse_number(cells[i], numbers[column]) != NumberKind::kFinite, path, line,
+                    kNames[column], " ", quoted(cells[i]), " is no finite number");
   }
-  if (cells == 7 || cells == 10) {
-    columns.push_back(9);
+  PathCamera camera{view, line};
+  camera.view.placed = true;
+  camera.view.eye = Real3{numbers[0], numbers[1], numbers[2]};
+  camera.view.target = Real3{numbers[3], numbers[4], numbers[5]};
+  if (cells.size() >= 9) {
+    camera.view.up = Real3{numbers[6], numbers[7], numbers[8]};
   }
-  return columns.size() == cells ? columns : std::vector<std::size_t>{};
+  if (has_fov) {
+    camera.view.fov_degrees = numbers[9];
+    fail_in_path_if(!(numbers[9] >= 1 && numbers[9] <= 120), path, line, "fov ", shortest(numbers[9]),
+                    " is not from 1 to 120 degrees");
+  }
+  return camera;
 }
-
-class PathReader {
- public:
-  PathReader(const std::string& path, const ViewWishes& view) : path_(path), view_(view) {}
-
-  CameraPath read(std::string_view text) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    text.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
-    LineReader lines(text);
-    std::string_view line;
-    while (lines.next(line)) {
-      if (line.find_first_not_of(" \t") != std::string_view::npos) {
-        take(columns_in(line), lines.line_number());
-      }
-    }
-    if (result_.cameras.empty()) {
-      throw OutputError(printable(path_) + ": holds no camera");
-    }
-    return std::move(result_);
-  }
-
- private:
-  void take(const std::vector<std::string_view>& cells, std::uint64_t line) {
-    if (columns_.empty()) {
-      columns_ = columns_for(cells.size());
-      fail_in_path_if(columns_.empty(), path_, line, cells.size(), " columns are none of a camera; ",
-                      kPathColumns);
-      result_.has_fov = columns_.back() == 9;
-      if (is_names(cells)) {
-        return;
-      }
-    }
-    fail_in_path_if(cells.size() != columns_.size(), path_, line, cells.size(),
-                    " columns; the first line has ", columns_.size());
-    std::array<double, 10> numbers{};
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      double& number = numbers[columns_[i]];
-      fail_in_path_if(parse_number(cells[i], number) != NumberKind::kFinite, path_, line, kNames[columns_[i]],
-                      " ", quoted(cells[i]), " is no finite number");
-    }
-    add(numbers, line);
-  }
-
-  void add(const std::array<double, 10>& numbers, std::uint64_t line) {
-    PathCamera camera{view_, line};
-    camera.view.placed = true;
-    camera.view.eye = Real3{numbers[0], numbers[1], numbers[2]};
-    camera.view.target = Real3{numbers[3], numbers[4], numbers[5]};
-    if (columns_.size() >= 9) {
-      camera.view.up = Real3{numbers[6], numbers[7], numbers[8]};
-    }
-    if (result_.has_fov) {
-      camera.view.fov_degrees = numbers[9];
-      fail_in_path_if(!(numbers[9] >= 1 && numbers[9] <= 120), path_, line, "fov ", shortest(numbers[9]),
-                      " is not from 1 to 120 degrees");
-    }
-    fail_in_path_if(result_.cameras.size() == kMostFilmFrames, path_, line, "a film has at most ",
-                    grouped(kMostFilmFrames), " frames");
-    result_.cameras.push_back(camera);
-  }
-
-  const std::string& path_;
-  const ViewWishes& view_;
-  std::vector<std::size_t> columns_;
-  CameraPath result_;
-};
 
 // Between the second and the third of four keys, at `t` of 0 .. 1.
 double on_spline(const std::array<double, 4>& keys, double t) {
@@ -139,7 +84,39 @@ const char* const kPathColumns =
 
 CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
   const SharedBytes bytes = about(printable(path), [&] { return load_file(path, kMostPathBytes); });
-  return PathReader(path, view).read(bytes.text());
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::string_view text = bytes.text();
+  text.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+  CameraPath result;
+  std::size_t columns = 0;  // of the first line
+  LineReader lines(text);
+  for (std::string_view all; lines.next(all);) {
+    if (all.find_first_not_of(" \t") == std::string_view::npos) {
+      continue;
+    }
+    const std::uint64_t line = lines.line_number();
+    const std::vector<std::string_view> cells = columns_in(all);
+    const bool is_first = columns == 0;
+    if (is_first) {
+      columns = cells.size();
+      fail_in_path_if(columns < 6 || columns == 8 || columns > 10, path, line, columns,
+                      " columns are none of a camera; ", kPathColumns);
+      result.has_fov = columns == 7 || columns == 10;
+    }
+    fail_in_path_if(cells.size() != columns, path, line, cells.size(), " columns; the first line has ",
+                    columns);
+    if (is_first && is_names(cells)) {
+      continue;
+    }
+    const PathCamera camera = camera_of(cells, path, line, view, result.has_fov);
+    fail_in_path_if(result.cameras.size() == kMostFilmFrames, path, line, "a film has at most ",
+                    grouped(kMostFilmFrames), " frames");
+    result.cameras.push_back(camera);
+  }
+  if (result.cameras.empty()) {
+    throw OutputError(printable(path) + ": holds no camera");
+  }
+  return result;
 }
 
 CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames) {

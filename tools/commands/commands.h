@@ -1,4 +1,4 @@
-/// The subcommands: one file each, and its name here.
+/// The subcommands: one file each, which includes this and with it what all are made of, and its name here.
 #pragma once
 
 #include "commands/arguments.h"

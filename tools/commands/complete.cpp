@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "scene/generators.h"
 #include "scene/named_scenes.h"

@@ -9,18 +9,15 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "boards/effect_flash.h"
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "commands/view_options.h"
 #include "instruments/timed_frames.h"
 #include "output/plot.h"
 #include "output/progress.h"
@@ -35,10 +32,12 @@
 namespace thimble::tools {
 namespace {
 
-struct EffectsOptions {
+struct EffectsCommand {
+  SceneOptions scene;
   ViewWishes view;
   EffectWishes effects;
   int frames = 5;  ///< of each set of effects, by turns; at least 1
+  ReportPaths files;
 };
 
 struct EffectRow : MedianTime {  ///< times: of the differences, frame by frame
@@ -146,7 +145,7 @@ std::string why_effect(const LitDescription& lit, const UsedMaterials& used, Eff
 
 class EffectsStudio {
  public:
-  EffectsStudio(const SceneSource& source, const BuiltScene& built, const EffectsOptions& options,
+  EffectsStudio(const SceneSource& source, const BuiltScene& built, const EffectsCommand& options,
                 std::string* note)
       : built_(built),
         lit_(options.effects.lighting(source.lighting())),
@@ -181,9 +180,7 @@ class EffectsStudio {
         if (round == 0) {
           variant->second.ms.clear();
         }
-        if (progress) {
-          progress(++done / steps);
-        }
+        progress(++done / steps);
       }
       std::rotate(order.begin(), order.begin() + 1, order.end());
     }
@@ -241,7 +238,7 @@ void fill(const EffectsStudio& studio, EffectRow* row) {
 }
 
 /// Builds the scene, draws and measures. Throws InputError.
-EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& options,
+EffectsStudy study_effects(const SceneSource& source, const EffectsCommand& options,
                            const Progress& progress) {
   const BuiltScene built(source, {});
   EffectsStudy study;
@@ -274,12 +271,6 @@ EffectsStudy study_effects(const SceneSource& source, const EffectsOptions& opti
   study.state_bytes = lit_state_bytes(study.lit.scene, study.effects);
   return study;
 }
-
-struct EffectsCommand {
-  SceneOptions scene;
-  EffectsOptions study;
-  ReportPaths files;
-};
 
 // "-1,234"
 std::string signed_count(std::int64_t number) {
@@ -367,8 +358,8 @@ std::string frame_lines(const EffectsStudy& study) {
 std::string plot(const EffectsCommand& command, const EffectsStudy& study) {
   BarChart chart;
   chart.title = "What effects cost: " + scene_title(command.scene.arguments.scene);
-  chart.x_label = concat("milliseconds a frame of ", command.study.view.width_px, " x ",
-                         command.study.view.height_px, ", with quartiles");
+  chart.x_label = concat("milliseconds a frame of ", command.view.width_px, " x ", command.view.height_px,
+                         ", with quartiles");
   for (const EffectRow& row : study.rows) {
     chart.bars.push_back({effect_name(row.effect), row.ms_median, row.ms_quarter, row.ms_three_quarters,
                           row.called_for
@@ -382,7 +373,7 @@ void run(const EffectsCommand& command) {
   ReportFiles files(command.files, command.scene.arguments.scene);
   const auto source = command.scene.open();
   const EffectsStudy study = with_progress("measuring", command.scene.quiet, [&](const Progress& progress) {
-    return study_effects(*source, command.study, progress);
+    return study_effects(*source, command, progress);
   });
   files.write(objects_of(study.rows, effect_object), files.wants_plot() ? plot(command, study) : "");
   print_notes({study.note}, command.scene.quiet);
@@ -393,18 +384,18 @@ void run(const EffectsCommand& command) {
 }  // namespace
 
 void add_effects(CLI::App& app) {
-  auto command = std::make_shared<EffectsCommand>();
-  command->study.view.width_px = 320;
-  command->study.view.height_px = 240;
   CLI::App* sub = add_command(
       app, "effects",
       "Which effects a scene calls for, why, and what each costs: rays, nodes visited and time of the frame "
       "with it less those of the frame without it, bytes of RAM and of flash. What the scene does not call "
       "for costs 0. Direct light is judged between two frames without shadows, which need it.");
+  EffectsCommand* const command = options_for<EffectsCommand>(*sub, run);
+  command->view.width_px = 320;
+  command->view.height_px = 240;
   command->scene.add_scene(*sub);
-  add_effect_options(*sub, &command->study.effects);
-  add_view(*sub, &command->study.view);
-  add_whole_option(*sub, "--frames", "N", 1, 99, &command->study.frames,
+  add_effect_options(*sub, &command->effects);
+  add_view(*sub, &command->view);
+  add_whole_option(*sub, "--frames", "N", 1, 99, &command->frames,
                    "frames timed of each set of effects, by turns");
   add_report(
       *sub, &command->files, &command->scene.quiet,
@@ -416,7 +407,6 @@ void add_effects(CLI::App& app) {
       "ram_bytes (state and tables of a lit picture, as render --memory counts them), flash_bytes (on "
       "lm3s6965evb, the image with this effect alone less one with none)",
       "milliseconds a frame, a bar an effect");
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

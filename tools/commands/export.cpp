@@ -1,9 +1,7 @@
 // thimble export: the voxels of a scene for other programs.
 #include <cstdio>
-#include <memory>
 #include <string>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "output/output_file.h"
@@ -42,9 +40,9 @@ void run(const ExportCommand& command) {
 }  // namespace
 
 void add_export(CLI::App& app) {
-  auto command = std::make_shared<ExportCommand>();
   CLI::App* sub =
       add_command(app, "export", "Write the voxels of a scene, with their colours, for other programs.");
+  ExportCommand* const command = options_for<ExportCommand>(*sub, run);
   command->scene.add_scene(*sub);
   add_text_option(
       *sub, "-o,--output", "FILE",
@@ -60,7 +58,6 @@ void add_export(CLI::App& app) {
       "glass, metal or glows are left out")
       ->required();
   add_flag(*sub, "--quiet", &command->scene.quiet, "no progress bar and no summary on standard error");
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

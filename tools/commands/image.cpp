@@ -2,9 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
 
-#include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
 #include "output/output_file.h"
@@ -89,11 +87,11 @@ void run(const ImageCommand& given) {
 }  // namespace
 
 void add_image(CLI::App& app) {
-  auto command = std::make_shared<ImageCommand>();
   CLI::App* sub =
       add_command(app, "image",
                   "Put a scene behind a program for a board that is built already: a file to flash or "
                   "to drag onto the board's drive, without a compiler.");
+  ImageCommand* const command = options_for<ImageCommand>(*sub, run);
   command->scene.add_scene(*sub);
   add_path_option(
       *sub, "-o,--output", "FILE", &command->output,
@@ -102,7 +100,7 @@ void add_image(CLI::App& app) {
       ->required();
   add_board(*sub, &command->scene.board, "the board, which must be given")->required();
   add_choice_option(*sub, "--app", {"demo", "dig", "water"}, &command->app, "the application that shows it");
-  add_fitting(*sub, command.get());
+  add_fitting(*sub, command);
   add_effect_list(
       *sub, &command->effects,
       "what the scene is baked for, as in thimble bake: auto, none, or effects with commas between them");
@@ -115,7 +113,6 @@ void add_image(CLI::App& app) {
     refuse_if(command->output != "-" && !takes_ending(*command->scene.board, command->output), "--output: \"",
               command->output, "\" ends in nothing that ", command->scene.board->name, " takes");
   });
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,9 +1,7 @@
 // thimble info: what a scene is, and what it takes.
 #include <algorithm>
 #include <array>
-#include <memory>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
@@ -180,10 +178,9 @@ void run(const SceneOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& app) {
-  auto options = std::make_shared<SceneOptions>();
   CLI::App* sub = add_command(app, "info", "Validate a scene and say what it is and what it takes.");
+  SceneOptions* const options = options_for<SceneOptions>(*sub, run);
   options->add_to(*sub);
-  when_chosen(*sub, [options] { run(*options); });
 }
 
 }  // namespace thimble::tools

@@ -1,10 +1,8 @@
 // thimble join: parts of a picture or of a film, drawn apart, as the file that one process would have written.
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/image.h"
 #include "output/output_file.h"
@@ -184,8 +182,8 @@ void run(const JoinCommand& command) {
 }  // namespace
 
 void add_join(CLI::App& app) {
-  auto command = std::make_shared<JoinCommand>();
   CLI::App* sub = add_command(app, "join", "Put parts of a picture or a film together.");
+  JoinCommand* const command = options_for<JoinCommand>(*sub, run);
   sub->add_option(
          "parts", command->parts,
          "what render --rows or --part wrote, in any order: of one scene, camera, size and options; where "
@@ -200,7 +198,6 @@ void add_join(CLI::App& app) {
           kFilmEndings + "), byte for byte what one process would have written")
       ->required();
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar on standard error");
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -14,7 +14,6 @@
 #include <cstring>
 #include <new>
 
-#include "commands/page.h"
 #include "commands/render_command.h"
 #include "output/output_file.h"
 #include "scene/scene_source.h"

@@ -23,7 +23,7 @@ struct SmallPicture {
   std::string error;  ///< a sentence without its subject; empty where there is a picture
   std::uint64_t voxels = 0;
   Image image;
-  std::vector<std::uint8_t> scene;  ///< for a page (page.h); empty where it cannot be had
+  std::vector<std::uint8_t> scene;  ///< for a page; empty where it cannot be had
 };
 
 class LimitedPicture {

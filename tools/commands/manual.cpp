@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/units.h"
 #include "output/version.h"

@@ -2,13 +2,10 @@
 // smaller depth or budget does to its picture.
 #include <algorithm>
 #include <array>
-#include <memory>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "commands/view_options.h"
 #include "instruments/memory_study.h"
 #include "output/plot.h"
 #include "output/progress.h"
@@ -53,17 +50,12 @@ int deepest_cube(std::size_t stored) {
   return depth;
 }
 
-bool fits_flash(const platform::BoardFacts& board, const MemoryStudy& study, std::uint64_t tree_bytes) {
-  return ((tree_bytes + 3) & ~std::uint64_t{3}) + study.around_tree_bytes <= scene_flash_bytes(board);
-}
-bool fits_ram(const platform::BoardFacts& board, std::uint64_t bytes) {
-  return drawing_ram_bytes(board) + bytes <= board.ram_bytes;
-}
 // Whether the board can draw it: trees that are only read lie in flash, what is built on the chip in RAM.
 bool fits_board(const platform::BoardFacts& board, const MemoryStudy& study, std::size_t structure,
                 const StructureFigures& figures) {
-  return structure == kCompact || structure == kShared ? fits_flash(board, study, figures.bytes)
-                                                       : fits_ram(board, figures.build_bytes);
+  return structure == kCompact || structure == kShared
+             ? ((figures.bytes + 3) & ~std::uint64_t{3}) + study.around_tree_bytes <= scene_flash_bytes(board)
+             : drawing_ram_bytes(board) + figures.build_bytes <= board.ram_bytes;
 }
 
 std::string boards_that_fit(const MemoryStudy& study, const DepthRow& row, std::size_t structure) {
@@ -330,25 +322,22 @@ std::string depth_plot(const MemoryCommand& command, const MemoryStudy& study) {
       "dense grid, a bit a unit", "pool, 8 bytes a node", "compact tree, no pointers",
       "DAG, equal subtrees once"};
   double most = 0;
-  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
-    Series series{kPlotNames[i], false, {}};
+  const auto add = [&](const char* name, std::size_t structure, std::uint64_t StructureFigures::*figure) {
+    const bool is_building = figure == &StructureFigures::build_bytes;
+    Series& series = plot.series.emplace_back(Series{name, is_building, {}});
     for (const DepthRow& row : study.depths) {
-      const double bytes = static_cast<double>(row.structures[i].bytes);
+      const auto bytes = static_cast<double>(row.structures[structure].*figure);
       if (bytes > 0) {
         series.points.emplace_back(row.depth, bytes);
-        most = std::max(most, bytes);
+        most = std::max(most, is_building ? 0 : bytes);
       }
     }
-    plot.series.push_back(series);
+  };
+  for (std::size_t i = 0; i < kMemoryStructures; ++i) {
+    add(kPlotNames[i], i, &StructureFigures::bytes);
   }
-  Series building{"compact tree, while building", true, {}};
-  Series building_dag{"DAG, while building", true, {}};
-  for (const DepthRow& row : study.depths) {
-    building.points.emplace_back(row.depth, static_cast<double>(row.structures[kCompact].build_bytes));
-    building_dag.points.emplace_back(row.depth, static_cast<double>(row.structures[kShared].build_bytes));
-  }
-  plot.series.push_back(building);
-  plot.series.push_back(building_dag);
+  add("compact tree, while building", kCompact, &StructureFigures::build_bytes);
+  add("DAG, while building", kShared, &StructureFigures::build_bytes);
   for (const Mark& mark :
        {Mark{16.0 * 1024, "16 KiB"}, Mark{256.0 * 1024, "256 KiB"},
         Mark{static_cast<double>(kPaperLayer * kPaperDepth) / 8, "the paper's 800 x 600 x 800, a bit a unit"},
@@ -409,13 +398,13 @@ std::string memory_json(const MemoryStudy& study) {
 }
 
 void add_memory(CLI::App& app) {
-  auto command = std::make_shared<MemoryCommand>();
   CLI::App* sub = add_command(
       app, "memory",
       "Memory against depth: for every depth from 1 to the scene's own the bytes of a dense bit grid, the "
       "mutable pool, the compact tree and the DAG (equal subtrees once), bytes while building, time of a "
       "frame, nodes visited, the picture's error against the deepest, and the boards that hold it. A voxel "
       "of a lower depth is the parent block of finer voxels, solid when anything in it is.");
+  MemoryCommand* const command = options_for<MemoryCommand>(*sub, run);
   command->scene.add_scene(*sub);
   add_bytes(*sub, "--memory", &command->study.budget_bytes,
             "also the deepest depth whose structure fits so many bytes, such as 65536, 64K or 2M (the "
@@ -444,7 +433,6 @@ void add_memory(CLI::App& app) {
       "dag_... (those errors at that depth), coarsened_bytes, coarsened_solid_added_voxels, coarsened_... "
       "(errors of the compact tree of the whole depth, coarsened to fit)",
       "bytes against depth; with --budget-sweep mean depth error against budget");
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

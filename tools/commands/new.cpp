@@ -3,11 +3,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 #include <sstream>
 
-#include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
 #include "output/output_file.h"
@@ -241,11 +239,11 @@ void run(const NewCommand& given) {
 }  // namespace
 
 void add_new(CLI::App& app) {
-  auto command = std::make_shared<NewCommand>();
   CLI::App* sub =
       add_command(app, "new",
                   "Write a project that draws a scene on a board: source, scene header, build file, "
                   "README.");
+  NewCommand* const command = options_for<NewCommand>(*sub, run);
   sub->add_option("dir", command->folder, "the project's folder, which is made")
       ->type_name("DIR")
       ->required();
@@ -264,11 +262,10 @@ void add_new(CLI::App& app) {
                     "what builds it: CMake (with a panel by the Pico's SDK), PlatformIO, or Arduino");
   add_choice_option<bool>(*sub, "--language", {{"c++", false}, {"c", true}}, &command->in_c,
                           "what the program is written in");
-  add_fitting(*sub, command.get());
+  add_fitting(*sub, command);
   add_picture_view(*sub, &command->view);
   command->scene.add_report(*sub);
   also_check(*sub, [command] { check(*command); });
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -1,7 +1,5 @@
 // Pages to hand on, and thimble render SCENE -o F.html: one file that shows the scene and lets it be turned, without a
 // network.
-#include "commands/page.h"
-
 #include <zlib.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <new>
 
 #include "commands/arguments.h"
+#include "commands/render_command.h"
 #include "output/plot.h"
 #include "output/png.h"
 #include "output/units.h"

@@ -12,7 +12,6 @@
 #include <tuple>
 #include <vector>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "host/screen.h"
 #include "host/y4m.h"
@@ -122,7 +121,7 @@ class ParticleSession {
   }
 
   void take(const InputEvent& event) {
-    if (options_.input_recording != nullptr && event.kind != InputKind::kEnd) {
+    if (options_.input_recording != nullptr && event.kind != host::EventKind::kClose) {
       options_.input_recording->write(to_text(event));
     }
     player_.take(event);
@@ -276,6 +275,9 @@ class ParticleSession {
 
 constexpr std::uint64_t kMostInputBytes = std::uint64_t{64} << 20;
 
+// What is written.
+enum Output : std::size_t { kInputRecording, kState, kField, kFrame, kRecording, kCounts, kOutputs };
+
 struct ParticlesCommand {
   WorldOptions world;
   PlayOptions play;
@@ -283,13 +285,8 @@ struct ParticlesCommand {
   bool gravity_given = false;
   std::string bodies_path;
   std::string input_path;
-  std::string input_recording_path;
-  std::string state_path;
-  std::string field_path;
-  std::string frame_path;
-  std::string recording_path;
+  std::array<std::string, kOutputs> paths;
   std::string paced_by;  // the option that asks for a rate, if any
-  std::string stats_path;
 };
 
 void tell_placing(const ParticlesCommand& command, const Placing& placing) {
@@ -324,9 +321,6 @@ void note_coarse_steps(const WorldOptions& world) {
                mend.c_str());
 }
 
-// What is written, in the order of the names.
-enum Output : std::size_t { kInputRecording, kState, kField, kFrame, kRecording, kCounts };
-
 // All but the recordings, which were written as the world went.
 void write_files(const ParticlesCommand& command, const PopulatedWorld& populated, const PlayResult& result,
                  const OutputSet& outputs) {
@@ -341,7 +335,7 @@ void write_files(const ParticlesCommand& command, const PopulatedWorld& populate
     if (command.play.figures_in_files) {
       draw_figures(image.width_px, image.height_px, result.figures, &image.pixels);
     }
-    write_picture(outputs[kFrame], command.frame_path, image);
+    write_picture(outputs[kFrame], command.paths[kFrame], image);
   }
   outputs.write(kCounts, particle_stats(populated, result.counts, result.step_seconds));
 }
@@ -353,21 +347,20 @@ void run(const ParticlesCommand& given) {
             "--min-size: ", world_options.least_diameter, " is more than --max-size, ",
             world_options.most_diameter);
   if (command.play.view == host::ScreenKind::kAuto) {
-    const bool for_files = command.play.steps || !command.state_path.empty() || !command.field_path.empty() ||
-                           !command.frame_path.empty() || !command.recording_path.empty() ||
-                           !command.stats_path.empty();
+    const bool for_files =
+        command.play.steps || std::any_of(command.paths.begin() + kState, command.paths.end(),
+                                          [](const std::string& path) { return !path.empty(); });
     command.play.view = for_files ? host::ScreenKind::kNone : host::ScreenKind::kAuto;
   }
-  const bool watched = command.play.view != host::ScreenKind::kNone || !command.recording_path.empty();
-  refuse_if(command.play.figures_in_files && command.frame_path.empty() && command.recording_path.empty(),
-            "--figures: needs --output or --record, whose pictures they are written on");
+  const bool watched = command.play.view != host::ScreenKind::kNone || !command.paths[kRecording].empty();
+  refuse_if(
+      command.play.figures_in_files && command.paths[kFrame].empty() && command.paths[kRecording].empty(),
+      "--figures: needs --output or --record, whose pictures they are written on");
   // The figures tell the rate of steps.
   refuse_if(!command.paced_by.empty() && !watched &&
                 !(command.paced_by == "--eps" && command.play.figures_in_files),
             command.paced_by, ": needs --display or --record, since nothing else keeps to a rate");
-  OutputSet outputs({command.input_recording_path, command.state_path, command.field_path, command.frame_path,
-                     command.recording_path, command.stats_path},
-                    {command.bodies_path, command.input_path});
+  OutputSet outputs({command.paths.begin(), command.paths.end()}, {command.bodies_path, command.input_path});
   command.play.input_recording = outputs[kInputRecording];
   command.play.recording = outputs[kRecording];
 
@@ -411,7 +404,7 @@ void run(const ParticlesCommand& given) {
   }
 }
 
-void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
+void add_world_options(CLI::App& sub, ParticlesCommand* command) {
   WorldOptions* const world = &command->world;
   add_text_option(
       sub, "--size", "WxH",
@@ -462,7 +455,7 @@ void add_world_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& c
                    "positions are kept to 2^-N cells");
 }
 
-void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
+void add_view_options(CLI::App& sub, ParticlesCommand* command) {
   add_whole_option(
       sub, "--steps", "N", 0, 1'000'000'000'000, &command->play.steps,
       "end after N steps (default: where somebody watches, when the window is closed or q is pressed; else "
@@ -478,20 +471,10 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
       "given, else in an X11 window where DISPLAY works, else in the terminal where standard output is one, "
       "else nowhere");
   add_whole_option(
-      sub, "--eps", "N", 1, 1'000'000,
-      [command](std::int64_t rate) {
-        command->play.rate = static_cast<std::int32_t>(rate);
-        command->paced_by = "--eps";
-      },
-      "steps a second in a window or terminal, and of a recording; the paper's Eps, which we read so")
-      ->default_str("60");
-  add_whole_option(
-      sub, "--fps", "N", 1, 1000,
-      [command](std::int64_t rate) {
-        command->play.frames_a_second = static_cast<int>(rate);
-        command->paced_by = "--fps";
-      },
-      "pictures a second on the screen and in a recording (default: 60 in a window, else 30)");
+      sub, "--eps", "N", 1, 1'000'000, &command->play.rate,
+      "steps a second in a window or terminal, and of a recording; the paper's Eps, which we read so");
+  add_whole_option(sub, "--fps", "N", 1, 1000, &command->play.frames_a_second,
+                   "pictures a second on the screen and in a recording (default: 60 in a window, else 30)");
   add_path_option(sub, "--input", "SCRIPT", &command->input_path,
                   "play mouse and keys from a file: lines \"TICK: EVENT\", EVENT one of \"key K\" (a "
                   "character, or space up down left right enter tab escape backspace), \"move X,Y\", \"press "
@@ -499,30 +482,30 @@ void add_view_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
                   "\"end\". A tick is the time of one step, the first is 0; events come before the step of "
                   "their tick; while paused ticks count without steps; # begins a comment line");
   add_path_option(
-      sub, "--record-input", "FILE", &command->input_recording_path,
+      sub, "--record-input", "FILE", &command->paths[kInputRecording],
       "write all mouse and key events as such a file: with the same other options it gives the same "
       "world again");
 }
 
-void add_file_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& command) {
+void add_file_options(CLI::App& sub, ParticlesCommand* command) {
   add_path_option(
-      sub, "--state", "FILE.csv", &command->state_path,
+      sub, "--state", "FILE.csv", &command->paths[kState],
       std::string("write the balls at the end: ") + kStateColumns +
           "; centre, velocity and half the diameter in 2^-16 cells. The disc's square begins at cell "
           "floor((x - radius) / 65536 + 1/2); a cell of it belongs to the ball when its centre lies in "
           "the circle in the middle of that square");
-  add_path_option(sub, "--field", "FILE.pbm", &command->field_path,
+  add_path_option(sub, "--field", "FILE.pbm", &command->paths[kField],
                   "write the collision field at the end as P4: 1 where a ball or a wall is");
   add_output_option(
-      sub, "-o,--output", "FILE", &command->frame_path,
+      sub, "-o,--output", "FILE", &command->paths[kFrame],
       [](const std::string& text) { return image_kind(text).has_value(); }, kImageEndings,
       "write the last picture; - is standard output, as PPM");
   add_output_option(
-      sub, "--record", "FILE.y4m", &command->recording_path, names_y4m, ".y4m",
+      sub, "--record", "FILE.y4m", &command->paths[kRecording], names_y4m, ".y4m",
       "write moving pictures as YUV4MPEG2, which ffmpeg and mpv play: --fps pictures for --eps steps");
   add_flag(sub, "--figures", &command->play.figures_in_files,
            "also write the figures on these pictures: sizes, bounciness, colliders, Eps");
-  add_path_option(sub, "--stats", "FILE.json", &command->stats_path,
+  add_path_option(sub, "--stats", "FILE.json", &command->paths[kCounts],
                   "write counts, bytes, seconds and the CRC-32 of the state");
   add_flag(sub, "--quiet", &command->play.quiet, "no progress bar and no summary on standard error");
 }
@@ -530,18 +513,18 @@ void add_file_options(CLI::App& sub, const std::shared_ptr<ParticlesCommand>& co
 }  // namespace
 
 void add_particles(CLI::App& app) {
-  auto command = std::make_shared<ParticlesCommand>();
   CLI::App* sub = add_command(
       app, "particles",
       "The paper's particle world: balls in a field of bits, to play with by mouse and keys (? lists them).");
+  ParticlesCommand* const command = options_for<ParticlesCommand>(*sub, run);
+  also_check(*sub, [command, sub] {
+    command->count_given = is_given(*sub, "--count");
+    command->gravity_given = is_given(*sub, "--gravity");
+    command->paced_by = is_given(*sub, "--fps") ? "--fps" : is_given(*sub, "--eps") ? "--eps" : "";
+  });
   add_world_options(*sub, command);
   add_view_options(*sub, command);
   add_file_options(*sub, command);
-  when_chosen(*sub, [command, sub] {
-    command->count_given = is_given(*sub, "--count");
-    command->gravity_given = is_given(*sub, "--gravity");
-    run(*command);
-  });
 }
 
 }  // namespace thimble::tools

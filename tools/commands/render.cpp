@@ -2,16 +2,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
-#include <memory>
 #include <optional>
 
 #include "boards/board_table.h"
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/render_command.h"
-#include "commands/render_output.h"
+#include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "commands/view_options.h"
 #include "output/hit_rows.h"
 #include "output/image.h"
 #include "output/output_file.h"
@@ -279,7 +276,6 @@ Stats stats_of(const Subject& subject, const SceneSource& source, const Light& l
   stats.effects = light.effects;
   if (light.effects != Effect::kNone) {
     stats.bounces = light.scene().bounces;
-    stats.lit_counts = painting.counts.lit;
   }
   if (!command.quality.plain()) {
     stats.samples = command.quality.samples();
@@ -317,8 +313,7 @@ PartHeader part_of(const Subject& subject, const SceneSource& source, const Ligh
 }
 
 // What is wrong with the options whatever the scene is; and what they leave to the display and the budget.
-void prepare(RenderCommand* given) {
-  RenderCommand& command = *given;
+void prepare(RenderCommand& command) {
   check_usage(command);
   use_display(command.scene.board, &command.view);
   fail_if(command.quality.at_edges &&
@@ -382,7 +377,7 @@ void draw(RenderCommand& command, const SceneSource& source, OutputSet& outputs)
 // From a file to a picture.
 void run(const RenderCommand& given) {
   RenderCommand command = given;
-  prepare(&command);
+  prepare(command);
   OutputSet outputs({command.output.whole_path(), command.output.hits_path, command.output.depth_path,
                      command.scene.stats_path},
                     {command.scene.arguments.scene, command.output.camera_path}, command.output.sequence());
@@ -436,13 +431,13 @@ void print_summary(const Stats& stats) {
   std::fprintf(stderr,
                "%s in %s bytes (depth %d), at most %s bytes in use; %.3f s a frame, %s of %s rays hit\n",
                counted(stats.voxels, "voxel").c_str(), grouped(stats.tree_bytes).c_str(), stats.depth,
-               grouped(stats.high_water_bytes).c_str(), stats.frame_seconds, grouped(stats.hits).c_str(),
-               grouped(stats.rays).c_str());
-  if (stats.lit_counts) {
+               grouped(stats.high_water_bytes).c_str(), stats.frame_seconds,
+               grouped(stats.counts.all.hits).c_str(), grouped(stats.counts.all.rays).c_str());
+  if (stats.bounces) {
     std::string rays;
     for (int kind = 0; kind < kLitRayKinds; ++kind) {
-      if (stats.lit_counts->rays[kind] != 0) {
-        rays += (rays.empty() ? "" : ", ") + grouped(stats.lit_counts->rays[kind]) + " " +
+      if (stats.counts.lit.rays[kind] != 0) {
+        rays += (rays.empty() ? "" : ", ") + grouped(stats.counts.lit.rays[kind]) + " " +
                 ray_kind_name(static_cast<LitRayKind>(kind));
       }
     }
@@ -455,7 +450,7 @@ void print_summary(const Stats& stats) {
 }
 
 // What can be wished of the scene's own look.
-void add_look(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
+void add_look(CLI::App& app, RenderCommand* command) {
   add_text_option(
       app, "--background", "none|RRGGBB|gradient",
       [command](const std::string& text) {
@@ -486,7 +481,7 @@ void render(RenderCommand command, const SceneSource& source) {
   refuse_if(command.output.is_film() || command.output.rows || !command.output.hits_path.empty() ||
                 !command.output.depth_path.empty() || !command.scene.stats_path.empty(),
             "films, --rows, --hits, --depth-image and --stats are files, which only the command writes");
-  prepare(&command);
+  prepare(command);
   OutputSet outputs({"", "", "", ""}, {});
   draw(command, source, outputs);
 }
@@ -523,7 +518,7 @@ std::int32_t band_rows(const RenderCommand& command, std::size_t row_bytes, std:
   return std::clamp(static_cast<std::int32_t>(rows), 1, command.view.height_px);
 }
 
-void add_render_options(CLI::App& app, const std::shared_ptr<RenderCommand>& command) {
+void add_render_options(CLI::App& app, RenderCommand* command) {
   command->scene.add_to(app);
   add_path_option(
       app, "-o,--output", "FILE", &command->output.path,
@@ -559,11 +554,10 @@ void add_render_options(CLI::App& app, const std::shared_ptr<RenderCommand>& com
 }
 
 void add_render(CLI::App& app) {
-  auto command = std::make_shared<RenderCommand>();
   CLI::App* sub = add_command(app, "render", "Draw a scene as a picture.");
+  RenderCommand* const command = options_for<RenderCommand>(*sub, run);
   add_render_options(*sub, command);
   add_paragraph_below(*sub, kDefaultLookText);
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -8,7 +8,6 @@
 
 #include "commands/arguments.h"
 #include "commands/render_command.h"
-#include "commands/render_output.h"
 #include "output/image.h"
 #include "output/part_file.h"
 #include "output/progress.h"
@@ -172,7 +171,6 @@ Stats stats_of(const RenderCommand& command, const SceneSource& source, LookStud
   if (studio.look().kind == LookKind::kLit) {
     stats.effects = studio.look().effects;
     stats.bounces = studio.look().lit_scene().bounces;
-    stats.lit_counts = painting.counts.lit;
     stats.samples = studio.look().across * studio.look().across;
     stats.samples_at_edges = studio.look().at_edges;
   } else {

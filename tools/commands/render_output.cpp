@@ -1,4 +1,3 @@
-#include "commands/render_output.h"
 
 #include <zlib.h>
 
@@ -207,11 +206,6 @@ void CrcSum::add(std::span<const std::uint8_t> bytes) {
   if (!bytes.empty()) {  // of no bytes at no address zlib says 0, whatever came before
     crc_ = static_cast<std::uint32_t>(crc32_z(crc_, bytes.data(), bytes.size()));
   }
-}
-
-void CrcSum::add(std::string_view text) {
-  add(static_cast<std::int64_t>(text.size()));
-  add({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 void CrcSum::add(std::int64_t number) {

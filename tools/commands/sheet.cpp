@@ -14,10 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/limited_picture.h"
-#include "commands/page.h"
+#include "commands/render_command.h"
 #include "commands/scene_options.h"
 #include "host/canvas.h"
 #include "output/output_file.h"
@@ -245,11 +244,11 @@ void run(const SheetCommand& command) {
 }  // namespace
 
 void add_sheet(CLI::App& app) {
-  auto command = std::make_shared<SheetCommand>();
   CLI::App* sub =
       add_command(app, "sheet",
                   "Draw every scene of a folder, and of the folders in it, on one picture, or on a page "
                   "whose pictures open and turn. What cannot be drawn is said on its tile.");
+  SheetCommand* const command = options_for<SheetCommand>(*sub, run);
   sub->add_option("scene", command->folder, "the folder")->type_name("FOLDER")->required();
   add_output_option(
       *sub, "-o,--output", "FILE", &command->output,
@@ -267,7 +266,6 @@ void add_sheet(CLI::App& app) {
               "scenes drawn at once, 4 at most, each by a process of its own, which gets 10 s and its share "
               "of 480 MB");
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar and no summary on standard error");
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -3,16 +3,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 
 #include "apps/app_table.h"
-#include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/commands.h"
-#include "commands/render_output.h"
+#include "commands/render_command.h"
 #include "commands/scene_options.h"
 #include "commands/sim_session.h"
-#include "commands/view_options.h"
 #include "output/image.h"
 #include "output/output_file.h"
 #include "output/progress.h"
@@ -281,7 +278,7 @@ void run(const SimCommand& given) {
   }
 }
 
-void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {
+void add_display_options(CLI::App& sub, SimCommand* command) {
   add_choice_option(
       sub, "--display",
       {{"auto", host::ScreenKind::kAuto},
@@ -310,7 +307,7 @@ void add_display_options(CLI::App& sub, const std::shared_ptr<SimCommand>& comma
                    "frames a second at most in a window or terminal, and of the recording");
 }
 
-void add_file_options(CLI::App& sub, const std::shared_ptr<SimCommand>& command) {
+void add_file_options(CLI::App& sub, SimCommand* command) {
   add_whole_option(
       sub, "--frames", "N", 1, 1'000'000'000, &command->session.frames,
       "end after N frames (default: 1 where nobody watches, else when the window is closed or Esc is "
@@ -341,12 +338,12 @@ void add_sim(CLI::App& app) {
   if (applications.empty()) {
     return;
   }
-  auto command = std::make_shared<SimCommand>();
-  command->session.board = platform::find_board(kDefaultBoard);
-  command->session.application = &applications[0];
   CLI::App* sub = add_command(
       app, "sim",
       "Run the firmware's own application on this machine, with a board's RAM, flash and display.");
+  SimCommand* const command = options_for<SimCommand>(*sub, run);
+  command->session.board = platform::find_board(kDefaultBoard);
+  command->session.application = &applications[0];
   command->scene.add_scene(*sub, false);
   add_board(*sub, &command->session.board,
             std::string("whose limits and display count (default: ") + kDefaultBoard + ")");
@@ -373,7 +370,6 @@ void add_sim(CLI::App& app) {
   add_file_options(*sub, command);
   command->engine.add_board_engines_to(*sub);
   command->scene.add_report(*sub);
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -5,7 +5,6 @@
 #include "commands/scene_options.h"
 #include "output/tables.h"
 #include "scene/lit_description.h"
-#include "scene/painter.h"
 
 namespace thimble::tools {
 
@@ -31,11 +30,7 @@ Stats::Stats(const SceneOptions& options, const SceneSource& source, const Built
 void Stats::take(const Painting& painting) {
   build_seconds += painting.preparation_seconds;
   frame_seconds = painting.seconds;
-  rays = painting.counts.all.rays;
-  hits = painting.counts.all.hits;
-  node_visits = painting.counts.all.node_visits;
-  box_tests = painting.counts.wide.candidates;
-  exact_tests = painting.counts.wide.exact;
+  counts = painting.counts;
   engine = painting.engine;
   threads = painting.threads;
 }
@@ -45,9 +40,10 @@ std::string stats_text(const Stats& stats) {
   put_all(&json, "scene", stats.scene, "depth", stats.depth, "points", stats.points, "voxels", stats.voxels,
           "nodes", stats.nodes, "tree_bytes", stats.tree_bytes, "budget_bytes", stats.budget_bytes,
           "high_water_bytes", stats.high_water_bytes, "solid_added", stats.solid_added, "build_seconds",
-          stats.build_seconds, "frame_seconds", stats.frame_seconds, "rays", stats.rays, "hits", stats.hits,
-          "node_visits", stats.node_visits, "box_tests", stats.box_tests, "exact_tests", stats.exact_tests,
-          "threads", stats.threads, "engine", stats.engine, "frame_crc32", stats.frame_crc32);
+          stats.build_seconds, "frame_seconds", stats.frame_seconds, "rays", stats.counts.all.rays, "hits",
+          stats.counts.all.hits, "node_visits", stats.counts.all.node_visits, "box_tests",
+          stats.counts.wide.candidates, "exact_tests", stats.counts.wide.exact, "threads", stats.threads,
+          "engine", stats.engine, "frame_crc32", stats.frame_crc32);
   const auto add = [&](const char* name, const auto& value) {
     if (value) {
       json[name] = *value;
@@ -69,10 +65,10 @@ std::string stats_text(const Stats& stats) {
     json["effects"] = effect_list(*stats.effects);
   }
   add("bounces", stats.bounces);
-  for (int kind = 0; stats.lit_counts && kind < kLitRayKinds; ++kind) {
+  for (int kind = 0; stats.bounces && kind < kLitRayKinds; ++kind) {
     const char* name = ray_kind_name(static_cast<LitRayKind>(kind));
-    json["rays_by_kind"][name] = stats.lit_counts->rays[kind];
-    json["node_visits_by_kind"][name] = stats.lit_counts->node_visits[kind];
+    json["rays_by_kind"][name] = stats.counts.lit.rays[kind];
+    json["node_visits_by_kind"][name] = stats.counts.lit.node_visits[kind];
   }
   return json_text(json);
 }

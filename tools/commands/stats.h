@@ -10,8 +10,8 @@
 
 #include "output/output_file.h"
 #include "scene/built_scene.h"
+#include "scene/painter.h"
 #include "scene/scene_source.h"
-#include "thimble/light/render.h"
 
 namespace CLI {
 class App;
@@ -19,7 +19,6 @@ class App;
 
 namespace thimble::tools {
 
-struct Painting;
 struct SceneOptions;
 
 struct Stats {
@@ -34,11 +33,7 @@ struct Stats {
   std::uint64_t solid_added = 0;
   double build_seconds = 0;
   double frame_seconds = 0;
-  std::uint64_t rays = 0;
-  std::uint64_t hits = 0;
-  std::uint64_t node_visits = 0;
-  std::uint64_t box_tests = 0;    ///< of the wide engine: rays tested against boxes
-  std::uint64_t exact_tests = 0;  ///< of them, those that floats could not decide
+  PaintCounts counts;
   int threads = 1;
   std::string engine;
   std::string frame_crc32;  ///< 8 hex digits; empty where no frame was drawn
@@ -53,9 +48,8 @@ struct Stats {
   bool samples_at_edges = false;  ///< "auto" instead of their number
   std::optional<double> cutoff_px;
   std::optional<int> max_depth;
-  std::optional<EffectSet> effects;     ///< an array of names
-  std::optional<int> bounces;           ///< of a lit picture
-  std::optional<LitCounts> lit_counts;  ///< of a lit picture: rays and visits by kind of ray
+  std::optional<EffectSet> effects;  ///< an array of names
+  std::optional<int> bounces;        ///< of a lit picture
 
   Stats() = default;
   Stats(const SceneOptions& options, const SceneSource& source);

@@ -5,10 +5,8 @@
 // tree: those of the cubes that these rays pass until their hits, since a grid of a billion points takes 9 GB.
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <random>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
@@ -266,13 +264,13 @@ void run(const TableCommand& command) {
 }  // namespace
 
 void add_table(CLI::App& app) {
-  auto command = std::make_shared<TableCommand>();
   CLI::App* sub = add_command(
       app, "table",
       "The paper's Tables I and II on this machine: seconds a frame of 800 x 600 grey pixels (the median of "
       "5 after one that does not count, each from a slightly different place; processor time, with more "
       "threads than one by the clock on the wall) beside the paper's, and how many of 10,000 pixels differ "
       "from the exact reference.");
+  TableCommand* const command = options_for<TableCommand>(*sub, run);
   add_text_option(
       *sub, "--points", "N,N,...",
       [command](const std::string& text) -> std::string {
@@ -299,7 +297,6 @@ void add_table(CLI::App& app) {
   add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot, "seconds against points");
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar");
   command->engine.add_to(*sub, false);
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

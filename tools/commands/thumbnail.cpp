@@ -1,8 +1,6 @@
 // thimble thumbnail: a small picture for file managers, within limits that hold for any file.
-#include <memory>
 #include <string>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/limited_picture.h"
 #include "output/file_place.h"
@@ -31,17 +29,16 @@ void run(const ThumbnailCommand& command) {
 }  // namespace
 
 void add_thumbnail(CLI::App& app) {
-  auto command = std::make_shared<ThumbnailCommand>();
   CLI::App* sub =
       add_command(app, "thumbnail",
                   "Draw a small picture of a file in at most 1 s, 256 MB and one thread, whatever "
                   "the file is, as file managers ask for it.");
+  ThumbnailCommand* const command = options_for<ThumbnailCommand>(*sub, run);
   sub->add_option("scene", command->scene, "the file")->type_name("SCENE")->required();
   sub->add_option("picture", command->output, "the picture, a PNG whatever its name")
       ->type_name("FILE")
       ->required();
   add_whole_option(*sub, "--size", "N", 16, 1024, &command->side_px, "pixels a side");
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

@@ -4,18 +4,15 @@
 #include <charconv>
 #include <cstddef>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "commands/view_options.h"
 #include "instruments/timed_frames.h"
 #include "output/hit_rows.h"
 #include "output/output_file.h"
@@ -114,31 +111,16 @@ class RayFile {
   std::optional<RayFault> read(std::size_t chunk, std::vector<Ray>* rays, std::size_t* lines) const {
     const std::size_t begin = chunk == 0 ? begin_ : ends_[chunk - 1];
     rays->clear();
-    if (table_) {
-      *lines = ends_[chunk] - begin;
-      for (std::size_t row = 0; row < *lines; ++row) {
-        std::array<double, 6> numbers{};
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-          numbers[i] = table_->at(begin + row, i);
-        }
-        std::string fault = quantised_ray(numbers, rules_, &rays->emplace_back());
-        if (!fault.empty()) {
-          return RayFault{row, std::move(fault)};
-        }
-      }
-      return std::nullopt;
-    }
-    *lines = 0;
-    LineReader reader(file_.text().substr(begin, ends_[chunk] - begin));
-    for (std::string_view line; reader.next(line); ++*lines) {
-      if (trimmed(line).empty()) {
+    std::string fault;
+    LineReader reader(table_ ? std::string_view() : file_.text().substr(begin, ends_[chunk] - begin));
+    std::string_view line;
+    for (*lines = 0; table_ ? *lines < ends_[chunk] - begin : reader.next(line); ++*lines) {
+      if (!table_ && trimmed(line).empty()) {
         continue;
       }
-      const auto numbers = parse_line(line);
-      if (!numbers) {
-        return RayFault{*lines, "these are not the six numbers ox,oy,oz,dx,dy,dz"};
-      }
-      std::string fault = quantised_ray(*numbers, rules_, &rays->emplace_back());
+      const auto numbers = table_ ? row_at(begin + *lines) : parse_line(line);
+      fault = numbers ? quantised_ray(*numbers, rules_, &rays->emplace_back())
+                      : "these are not the six numbers ox,oy,oz,dx,dy,dz";
       if (!fault.empty()) {
         return RayFault{*lines, std::move(fault)};
       }
@@ -147,6 +129,13 @@ class RayFile {
   }
 
  private:
+  std::optional<std::array<double, 6>> row_at(std::size_t row) const {
+    std::array<double, 6> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      numbers[i] = table_->at(row, i);
+    }
+    return numbers;
+  }
   void find_lines() {
     const std::string_view text = file_.text();
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -275,9 +264,10 @@ void run(const TraceCommand& command) {
                    {built.level(), command.direction_bits, command.engine.name == "ray32"});
   });
   Stats stats(command.scene, *source, built);
-  stats.rays = judge(command, file);
+  stats.counts.all.rays = judge(command, file);
   FirstHits wide;
-  if (stats.rays >= kRaysForMap && command.engine.name == "auto" && command.scene.board == nullptr) {
+  if (stats.counts.all.rays >= kRaysForMap && command.engine.name == "auto" &&
+      command.scene.board == nullptr) {
     wide = wide_first_hits(&built);
     stats.budget_bytes = built.budget_bytes();
     stats.high_water_bytes = built.high_water_bytes();
@@ -286,7 +276,7 @@ void run(const TraceCommand& command) {
   stats.engine = command.engine.resolved(wide != nullptr);
   stats.threads = command.threads;
   const HitRows rows(command.output, false, built.structure() != StructureKind::kDense);
-  output.write(rows.beginning(stats.rays));
+  output.write(rows.beginning(stats.counts.all.rays));
   ProgressBar bar("tracing", command.scene.quiet);
   const FrameWatch watch(kOnTheWall);
   const auto threads = static_cast<std::size_t>(command.threads);
@@ -306,8 +296,8 @@ void run(const TraceCommand& command) {
   stats.frame_seconds = watch.seconds();
   stats.trace_seconds = 0;
   for (const Tracing& worker : workers) {
-    stats.hits += worker.hit_count;
-    stats.node_visits += worker.visits;
+    stats.counts.all.hits += worker.hit_count;
+    stats.counts.all.node_visits += worker.visits;
     *stats.trace_seconds += worker.seconds;
   }
   outputs.write(1, stats_text(stats));
@@ -317,8 +307,8 @@ void run(const TraceCommand& command) {
 }  // namespace
 
 void add_trace(CLI::App& app) {
-  auto command = std::make_shared<TraceCommand>();
   CLI::App* sub = add_command(app, "trace", "Trace rays from a file.");
+  TraceCommand* const command = options_for<TraceCommand>(*sub, run);
   command->scene.add_to(*sub);
   add_path_option(
       *sub, "--rays", "FILE.csv|.npy", &command->rays_path,
@@ -334,7 +324,6 @@ void add_trace(CLI::App& app) {
   add_direction_bits(*sub, &command->direction_bits);
   command->engine.add_ray_engines_to(*sub);
   add_threads(*sub, &command->threads, "threads that read, trace and write");
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

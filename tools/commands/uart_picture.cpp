@@ -1,12 +1,10 @@
 // thimble uart-picture: the picture in what a board sent over its UART, among its other lines. `make emulate SHOT=...`
 // asks for it, and it does for the log of a terminal that a real board hangs on.
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "output/image.h"
 #include "output/output_file.h"
@@ -62,8 +60,14 @@ void add_uart_picture(CLI::App& app) {
     std::string log;
     std::string output;
   };
-  auto command = std::make_shared<Command>();
   CLI::App* sub = add_command(app, "uart-picture", "Takes a picture out of what a board sent over its UART.");
+  Command* const command = options_for<Command>(*sub, [](const Command& given) {
+    const SharedBytes log = load_file(given.log, std::uint64_t{1} << 30);
+    const Image picture = find_picture(log.text());
+    OutputSet outputs({given.output}, {given.log});
+    write_picture(outputs[0], given.output, picture);
+    outputs.commit();
+  });
   sub->add_option("scene", command->log, "the bytes that it sent")->type_name("LOG")->required();
   add_output_option(
       *sub, "-o,--output", "FILE", &command->output,
@@ -71,13 +75,6 @@ void add_uart_picture(CLI::App& app) {
       "the picture, .png, .ppm, .pgm or .pbm by its ending")
       ->required();
   sub->group("");
-  when_chosen(*sub, [command] {
-    const SharedBytes log = load_file(command->log, std::uint64_t{1} << 30);
-    const Image picture = find_picture(log.text());
-    OutputSet outputs({command->output}, {command->log});
-    write_picture(outputs[0], command->output, picture);
-    outputs.commit();
-  });
 }
 
 }  // namespace thimble::tools

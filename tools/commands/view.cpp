@@ -1,11 +1,8 @@
 // thimble view: a scene to look around in.
 #include <cstdio>
-#include <memory>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
 #include "commands/scene_options.h"
-#include "commands/view_options.h"
 #include "thimble/picture/shading.h"
 #include "viewer/controls.h"
 #include "viewer/viewer.h"
@@ -44,9 +41,9 @@ void run(const ViewCommand& command) {
 }  // namespace
 
 void add_view_command(CLI::App& app) {
-  auto command = std::make_shared<ViewCommand>();
-  viewer::ViewerOptions& options = command->viewer;
   CLI::App* sub = add_command(app, "view", "Look around in a scene (thimble SCENE does the same).");
+  ViewCommand* const command = options_for<ViewCommand>(*sub, run);
+  viewer::ViewerOptions& options = command->viewer;
   command->scene.add_scene(*sub);
   options.view.width_px = 1280;
   options.view.height_px = 720;
@@ -67,7 +64,6 @@ void add_view_command(CLI::App& app) {
       *sub, "--bench", "N", 1, 100000, &command->bench_frames,
       "no screen: turn once around the scene in N frames, finish the picture, and print what it took as CSV");
   sub->footer("Keys and mouse:\n" + viewer::keys_text());
-  when_chosen(*sub, [command] { run(*command); });
 }
 
 }  // namespace thimble::tools

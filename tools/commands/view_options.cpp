@@ -1,4 +1,4 @@
-#include "commands/view_options.h"
+#include "commands/scene_options.h"
 
 #include <cmath>
 #include <cstdio>

@@ -111,13 +111,12 @@ struct Scene::Parts {
     }
   }
 
-  std::shared_ptr<RenderCommand> render_command(std::int32_t width_px, std::int32_t height_px,
-                                                const Options& options) const {
-    auto command = std::make_shared<RenderCommand>();
+  RenderCommand render_command(std::int32_t width_px, std::int32_t height_px, const Options& options) const {
+    RenderCommand command;
     parse(
         "render",
         with_words({"-o", "picture.png", "--size", size_text(width_px, height_px)}, options, arguments.scene),
-        true, [&](CLI::App& app) { add_render_options(app, command); });
+        true, [&](CLI::App& app) { add_render_options(app, &command); });
     return command;
   }
 
@@ -203,34 +202,35 @@ Status Scene::trace(Span<const Ray> rays, Span<Hit> hits) const {
 
 Camera Scene::camera(std::int32_t width_px, std::int32_t height_px, const Options& options) const {
   return with_error([&] {
-    const auto command = parts_->render_command(width_px, height_px, options);
-    return frame_scene(command->view, *parts_->source, parts_->shape).camera;
+    return frame_scene(parts_->render_command(width_px, height_px, options).view, *parts_->source,
+                       parts_->shape)
+        .camera;
   });
 }
 
 Image Scene::render(std::int32_t width_px, std::int32_t height_px, const Options& options) const {
   return with_error([&] {
-    const auto command = parts_->render_command(width_px, height_px, options);
+    RenderCommand command = parts_->render_command(width_px, height_px, options);
     Image taken;
-    command->output.take = [&](const tools::Image& image) {
+    command.output.take = [&](const tools::Image& image) {
       taken = {image.width_px, image.height_px, image.alpha.empty() ? 3 : 4,
                file_pixels(image, ImageKind::kPng)};
     };
-    tools::render(*command, *parts_->source);
+    tools::render(command, *parts_->source);
     return taken;
   });
 }
 
 std::vector<std::uint8_t> Scene::bake(const Options& options) const {
   return with_error([&] {
-    const auto command = std::make_shared<BakeCommand>();
+    BakeCommand command;
     parse("bake", with_words({"-o", "scene.oct"}, options, parts_->arguments.scene), true,
-          [&](CLI::App& app) { add_bake_options(app, command); });
-    fail_if(!command->scene.stats_path.empty(), "--stats is a file, which only the command writes");
-    command->scene.arguments = parts_->arguments;  // whose smaller depths are tried where it does not fit
-    use_display(command->scene.board, &command->view);
+          [&](CLI::App& app) { add_bake_options(app, &command); });
+    fail_if(!command.scene.stats_path.empty(), "--stats is a file, which only the command writes");
+    command.scene.arguments = parts_->arguments;  // whose smaller depths are tried where it does not fit
+    use_display(command.scene.board, &command.view);
     BakingOptions baking;
-    const Baked baked = tools::bake(command.get(), *parts_->source, &baking);
+    const Baked baked = tools::bake(&command, *parts_->source, &baking);
     return std::vector<std::uint8_t>(baked.bytes.begin(), baked.bytes.end());
   });
 }

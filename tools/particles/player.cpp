@@ -51,29 +51,50 @@ Vec2i nearest_ball(const ParticleWorld& world, Vec2i at, std::int32_t reach) {
 }
 
 constexpr std::array<const char*, 4> kButtons{"", "left", "middle", "right"};
-// In the order of `InputKind`.
-constexpr std::array<const char*, 6> kVerbs{"key", "move", "press", "release", "wheel", "end"};
-constexpr std::array<std::pair<const char*, host::Key>, 9> kNamedKeys{{{"space", host::Key::kSpace},
-                                                                       {"up", host::Key::kUp},
-                                                                       {"down", host::Key::kDown},
-                                                                       {"left", host::Key::kLeft},
-                                                                       {"right", host::Key::kRight},
-                                                                       {"enter", host::Key::kEnter},
-                                                                       {"tab", host::Key::kTab},
-                                                                       {"escape", host::Key::kEscape},
-                                                                       {"backspace", host::Key::kBackspace}}};
+using host::EventKind;
+using host::Key;
+// The first of a kind is its word.
+constexpr std::array<std::pair<const char*, EventKind>, 7> kVerbs{{{"key", EventKind::kText},
+                                                                   {"key", EventKind::kKeyDown},
+                                                                   {"move", EventKind::kMouseMove},
+                                                                   {"press", EventKind::kMouseDown},
+                                                                   {"release", EventKind::kMouseUp},
+                                                                   {"wheel", EventKind::kWheel},
+                                                                   {"end", EventKind::kClose}}};
+constexpr std::array<std::pair<const char*, Key>, 9> kNamedKeys{{{"space", Key::kSpace},
+                                                                 {"up", Key::kUp},
+                                                                 {"down", Key::kDown},
+                                                                 {"left", Key::kLeft},
+                                                                 {"right", Key::kRight},
+                                                                 {"enter", Key::kEnter},
+                                                                 {"tab", Key::kTab},
+                                                                 {"escape", Key::kEscape},
+                                                                 {"backspace", Key::kBackspace}}};
 constexpr std::int64_t kMostTicks = std::numeric_limits<std::int64_t>::max() - 1;
 constexpr std::int64_t kFarthest = 1'000'000;
 constexpr std::int64_t kMostWheelSteps = 1000;
 
-bool is_key(std::string_view word) {
-  return (word.size() == 1 && word[0] > ' ' && word[0] <= '~') ||
-         std::any_of(kNamedKeys.begin(), kNamedKeys.end(),
-                     [&](const auto& named) { return word == named.first; });
+// What stands beside a word of such a table, or the word beside it; null where it is not there.
+template <class Pairs>
+const auto* named(const Pairs& pairs, std::string_view word) {
+  const auto* const found =
+      std::find_if(pairs.begin(), pairs.end(), [&](const auto& pair) { return word == pair.first; });
+  return found == pairs.end() ? nullptr : &found->second;
+}
+template <class Pairs, class Value>
+const char* name_of(const Pairs& pairs, Value value) {
+  const auto* const found =
+      std::find_if(pairs.begin(), pairs.end(), [&](const auto& pair) { return value == pair.second; });
+  return found == pairs.end() ? nullptr : found->first;
+}
+
+constexpr bool is_letter(char32_t character) {
+  return character > U' ' && character <= U'~';
 }
 
 bool has_place(const InputEvent& event) {
-  return event.kind != InputKind::kKey && event.kind != InputKind::kEnd;
+  return event.kind != EventKind::kText && event.kind != EventKind::kKeyDown &&
+         event.kind != EventKind::kClose;
 }
 
 void read_place(LineWords* words, InputEvent* event) {
@@ -83,8 +104,8 @@ void read_place(LineWords* words, InputEvent* event) {
   const auto cell = [&](std::string_view text, const char* what) {
     return static_cast<std::int32_t>(words->whole_of(text, what, -kFarthest, kFarthest));
   };
-  event->x = cell(both.substr(0, comma), "x");
-  event->y = cell(both.substr(comma + 1), "y");
+  event->x_px = cell(both.substr(0, comma), "x");
+  event->y_px = cell(both.substr(comma + 1), "y");
 }
 
 InputEvent read_event(std::string_view line, LineWords* words) {
@@ -97,22 +118,26 @@ InputEvent read_event(std::string_view line, LineWords* words) {
   words->end(" is too much after the tick");
   words->enter(line.substr(colon + 1));
   const std::string_view verb = words->word("an event: key, move, press, release, wheel or end");
-  const auto* const found = std::find(kVerbs.begin(), kVerbs.end(), verb);
-  words->fail_if(found == kVerbs.end(), verb, quoted(verb),
-                 " is not key, move, press, release, wheel or end");
-  event.kind = static_cast<InputKind>(found - kVerbs.begin());
-  if (event.kind == InputKind::kKey) {
+  const auto* const kind = named(kVerbs, verb);
+  words->fail_if(kind == nullptr, verb, quoted(verb), " is not key, move, press, release, wheel or end");
+  event.kind = *kind;
+  if (event.kind == EventKind::kText) {
     const std::string_view key = words->word("the key");
+    if (const Key* const found = named(kNamedKeys, key)) {
+      event.kind = EventKind::kKeyDown;
+      event.key = *found;
+    } else {
+      event.character = static_cast<unsigned char>(key[0]);
+    }
     words->fail_if(
-        !is_key(key), key, quoted(key),
+        event.kind == EventKind::kText && (key.size() != 1 || !is_letter(event.character)), key, quoted(key),
         " is not a key: one character, or space, up, down, left, right, enter, tab, escape or backspace");
-    event.key = key;
-  } else if (event.kind == InputKind::kPress || event.kind == InputKind::kRelease) {
+  } else if (event.kind == EventKind::kMouseDown || event.kind == EventKind::kMouseUp) {
     const std::string_view button = words->word("the button: left, middle or right");
     const auto* const pressed = std::find(kButtons.begin() + 1, kButtons.end(), button);
     words->fail_if(pressed == kButtons.end(), button, quoted(button), " is not left, middle or right");
     event.button = static_cast<std::uint8_t>(pressed - kButtons.begin());
-  } else if (event.kind == InputKind::kWheel) {
+  } else if (event.kind == EventKind::kWheel) {
     event.steps =
         static_cast<std::int32_t>(words->whole("the number of steps", -kMostWheelSteps, kMostWheelSteps));
   }
@@ -140,27 +165,28 @@ Tool Player::held_tool() const {
 void Player::take(const InputEvent& event) {
   const Vec2i before = place_;
   switch (event.kind) {
-    case InputKind::kKey:
+    case EventKind::kKeyDown:
       take_key(event.key);
       return;
-    case InputKind::kEnd:
+    case EventKind::kText:
+      take_character(static_cast<char>(event.character));
+      return;
+    case EventKind::kClose:
       has_ended_ = true;
       return;
-    case InputKind::kWheel:
+    case EventKind::kWheel:
       change_reach(is_held() ? held_tool() : tool_, event.steps);
       return;
-    case InputKind::kMove:
-    case InputKind::kPress:
-    case InputKind::kRelease:
+    default:
       break;
   }
-  place_ = {event.x, event.y};
-  if (event.kind == InputKind::kPress) {
+  place_ = {event.x_px, event.y_px};
+  if (event.kind == EventKind::kMouseDown) {
     press(event);
   } else if (is_held() && !is_released_ && held_tool() == Tool::kWall) {
     world_->world().draw_wall(before, place_, 2 * reach_[index_of(Tool::kWall)] - 1);
   }
-  if (event.kind == InputKind::kRelease && event.button == held_button_) {
+  if (event.kind == EventKind::kMouseUp && event.button == held_button_) {
     is_released_ = true;
   }
 }
@@ -244,21 +270,25 @@ void Player::change_reach(Tool tool, std::int32_t steps) {
   }
 }
 
-void Player::take_key(const std::string& key) {
+void Player::take_key(Key key) {
   const std::int32_t strength = std::max(std::abs(strong_gravity_.x), std::abs(strong_gravity_.y));
-  if (key == "left" || key == "right") {
-    set_gravity({key == "left" ? -strength : strength, 0});
-  } else if (key == "up" || key == "down") {
-    set_gravity({0, key == "up" ? -strength : strength});
-  } else if (key == "space") {
+  if (key == Key::kLeft || key == Key::kRight) {
+    set_gravity({key == Key::kLeft ? -strength : strength, 0});
+  } else if (key == Key::kUp || key == Key::kDown) {
+    set_gravity({0, key == Key::kUp ? -strength : strength});
+  } else if (key == Key::kSpace) {
     is_paused_ = !is_paused_;
-  } else if (key == "escape") {
+  } else if (key == Key::kEscape) {
     has_ended_ = true;
-  } else if (key.size() == 1 && key[0] >= '1' && key[0] <= '6') {
-    tool_ = static_cast<Tool>(key[0] - '1');
-  } else if (key.size() == 1) {
-    change_setting(key[0]);
-    command(key[0]);
+  }
+}
+
+void Player::take_character(char key) {
+  if (key >= '1' && key <= '6') {
+    tool_ = static_cast<Tool>(key - '1');
+  } else {
+    change_setting(key);
+    command(key);
   }
 }
 
@@ -387,64 +417,32 @@ std::string Player::help() {
 }
 
 std::optional<InputEvent> input_event(const host::Event& event, std::uint64_t tick) {
-  InputEvent input;
-  input.tick = tick;
-  const auto limited = [](std::int32_t cell) {
-    return std::clamp(cell, -static_cast<std::int32_t>(kFarthest), static_cast<std::int32_t>(kFarthest));
-  };
-  input.x = limited(event.x_px);
-  input.y = limited(event.y_px);
-  switch (event.kind) {
-    case host::EventKind::kKeyDown: {
-      const auto* const named = std::find_if(kNamedKeys.begin(), kNamedKeys.end(),
-                                             [&](const auto& pair) { return pair.second == event.key; });
-      if (named == kNamedKeys.end()) {
-        return std::nullopt;  // kText says which character it gives
-      }
-      input.kind = InputKind::kKey;
-      input.key = named->first;
-      return input;
-    }
-    case host::EventKind::kText:
-      if (event.character <= U' ' || event.character > U'~') {
-        return std::nullopt;
-      }
-      input.kind = InputKind::kKey;
-      input.key = static_cast<char>(event.character);
-      return input;
-    case host::EventKind::kMouseMove:
-      input.kind = InputKind::kMove;
-      return input;
-    case host::EventKind::kMouseDown:
-    case host::EventKind::kMouseUp:
-      if (event.button < 1 || event.button > 3) {
-        return std::nullopt;
-      }
-      input.kind = event.kind == host::EventKind::kMouseDown ? InputKind::kPress : InputKind::kRelease;
-      input.button = event.button;
-      return input;
-    case host::EventKind::kWheel:
-      input.kind = InputKind::kWheel;
-      input.steps = event.steps;
-      return input;
-    case host::EventKind::kClose:
-      return input;  // the end
-    case host::EventKind::kKeyUp:
-    case host::EventKind::kResize:
-    case host::EventKind::kDrop:
-      break;
+  const bool is_press = event.kind == EventKind::kMouseDown || event.kind == EventKind::kMouseUp;
+  if (name_of(kVerbs, event.kind) == nullptr ||
+      (event.kind == EventKind::kKeyDown && name_of(kNamedKeys, event.key) == nullptr) ||
+      (event.kind == EventKind::kText && !is_letter(event.character)) ||
+      (is_press && (event.button < 1 || event.button > 3))) {
+    return std::nullopt;  // of other keys a kText says which character they give
   }
-  return std::nullopt;
+  InputEvent input{event, tick};
+  for (std::int32_t* const cell : {&input.x_px, &input.y_px}) {
+    *cell = static_cast<std::int32_t>(std::clamp<std::int64_t>(*cell, -kFarthest, kFarthest));
+  }
+  return input;
 }
 
 std::string to_text(const InputEvent& event) {
-  const std::string what = event.kind == InputKind::kKey       ? " " + event.key
-                           : event.kind == InputKind::kPress   ? concat(" ", kButtons[event.button])
-                           : event.kind == InputKind::kRelease ? concat(" ", kButtons[event.button])
-                           : event.kind == InputKind::kWheel   ? concat(" ", event.steps)
-                                                               : "";
-  return concat(event.tick, ": ", kVerbs[static_cast<std::size_t>(event.kind)], what,
-                has_place(event) ? concat(" ", event.x, ",", event.y) : "", "\n");
+  std::string text = concat(event.tick, ": ", name_of(kVerbs, event.kind));
+  if (event.kind == EventKind::kKeyDown) {
+    text += concat(" ", name_of(kNamedKeys, event.key));
+  } else if (event.kind == EventKind::kText) {
+    text += concat(" ", static_cast<char>(event.character));
+  } else if (event.kind == EventKind::kMouseDown || event.kind == EventKind::kMouseUp) {
+    text += concat(" ", kButtons[event.button]);
+  } else if (event.kind == EventKind::kWheel) {
+    text += concat(" ", event.steps);
+  }
+  return text + (has_place(event) ? concat(" ", event.x_px, ",", event.y_px) : "") + "\n";
 }
 
 std::vector<InputEvent> read_input(std::string_view text) {
@@ -462,7 +460,7 @@ std::vector<InputEvent> read_input(std::string_view text) {
     if (!events.empty()) {
       const InputEvent& last = events.back();
       words.fail_if(event.tick < last.tick, first, "tick ", event.tick, " comes after tick ", last.tick);
-      words.fail_if(last.kind == InputKind::kEnd, first, "an event follows the end");
+      words.fail_if(last.kind == EventKind::kClose, first, "an event follows the end");
     }
     events.push_back(std::move(event));
   }

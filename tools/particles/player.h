@@ -33,19 +33,12 @@ namespace thimble::tools {
 // backspace. Buttons are left, middle and right; places are cells of the world, also beyond it; steps of the
 // wheel away from the user are above 0. After `end` comes nothing.
 
-enum class InputKind : std::uint8_t { kKey, kMove, kPress, kRelease, kWheel, kEnd };
-
-struct InputEvent {
+/// A key that is a character is a kText, the others are a kKeyDown; `end` is a kClose.
+struct InputEvent : host::Event {
   std::uint64_t tick = 0;
-  InputKind kind = InputKind::kEnd;
-  std::string key;
-  std::uint8_t button = 0;  ///< 1 left, 2 middle, 3 right
-  std::int32_t steps = 0;   ///< of the wheel, away from the user above 0
-  std::int32_t x = 0;       ///< cell
-  std::int32_t y = 0;
 };
 
-/// What a screen's event means here; nothing for those that mean nothing.
+/// A screen's event; nothing for those that mean nothing here.
 std::optional<InputEvent> input_event(const host::Event& event, std::uint64_t tick);
 
 /// The event's line, with its line feed.
@@ -97,7 +90,8 @@ class Player {
  private:
   bool is_held() const { return held_button_ != 0; }
   Tool held_tool() const;
-  void take_key(const std::string& key);
+  void take_key(host::Key key);
+  void take_character(char key);
   void change_setting(char key);
   void command(char key);
   void set_sizes(std::int32_t least, std::int32_t most);
