@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "output/png.h"
+#include "output/image.h"
 #include "support/pictures.h"
 #include "support/ray_cases.h"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "output/png.h"
+#include "output/image.h"
 #include "readers/formats.h"
 #include "readers/read_any.h"
 #include "readers/texture.h"

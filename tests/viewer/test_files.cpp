@@ -85,6 +85,15 @@ TEST_CASE("saving: the command -> only what is not the default, quoted where a s
   CHECK(render_command(upright, view, {"--samples", "4"}, "b.png") ==
         "thimble render x.ply --z-up --size 640x480 --eye -1.5,2,0.125 --target 0,0,0 --fov 35 --samples 4 "
         "-o b.png");
+  SceneArguments array;
+  array.scene = "x.npz";
+  array.as_points = array.as_heights = array.as_voxels = true;
+  array.full_color = 65535;
+  array.fit_percent = 99.5;
+  array.clip = {-1, 0, 0.5, 1, 2, 3};
+  CHECK(render_command(array, {}, {}, "c.png").substr(21) ==
+        "--as-voxels --as-points --as-heights --colors 65535 --fit 99.5 --clip -1,0,0.5,1,2,3 --size 800x600 "
+        "--view paper -o c.png");
   CHECK(quoted_for_shell("") == "''");
   CHECK(quoted_for_shell("$(rm)") == "'$(rm)'");
 }

@@ -9,8 +9,8 @@
 
 #include "commands/arguments.h"
 #include "commands/render_command.h"
+#include "output/image.h"
 #include "output/plot.h"
-#include "output/png.h"
 #include "output/units.h"
 #include "output/version.h"
 #include "readers/file_bytes.h"

@@ -101,6 +101,11 @@ Setting best_setting(int most_across) {
   return setting;
 }
 
+template <int LightSetting::*kKnob>
+void set_light(LightSetting* setting, double value) {
+  setting->*kKnob = static_cast<int>(value);
+}
+
 // Draws lit pictures of a compact tree, which stays the caller's.
 class LightStudio {
  public:
@@ -145,20 +150,13 @@ class LightStudio {
     std::vector<Knob<LightSetting>> knobs;
     if (own_.occlusion_rays >= 0) {
       knobs.push_back(
-          {"occlusion_rays", {0, 4, 8, 16, 32}, {0, 4, 8, 32}, [](LightSetting* setting, double rays) {
-             setting->occlusion_rays = static_cast<int>(rays);
-           }});
+          {"occlusion_rays", {0, 4, 8, 16, 32}, {0, 4, 8, 32}, set_light<&LightSetting::occlusion_rays>});
     }
     if (own_.roughness_rays >= 0) {
-      knobs.push_back({"roughness_rays", {1, 4}, {1, 4}, [](LightSetting* setting, double rays) {
-                         setting->roughness_rays = static_cast<int>(rays);
-                       }});
+      knobs.push_back({"roughness_rays", {1, 4}, {1, 4}, set_light<&LightSetting::roughness_rays>});
     }
     if (own_.bounces >= 0) {
-      knobs.push_back(
-          {"bounces", {0, 1, 2, 3, 4, 6, 8}, {0, 1, 2, 4, 8}, [](LightSetting* setting, double bounces) {
-             setting->bounces = static_cast<int>(bounces);
-           }});
+      knobs.push_back({"bounces", {0, 1, 2, 3, 4, 6, 8}, {0, 1, 2, 4, 8}, set_light<&LightSetting::bounces>});
     }
     return knobs.empty() ? std::vector<Trial<LightSetting>>() : trials_of(own_, knobs, best());
   }

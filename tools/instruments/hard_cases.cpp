@@ -293,7 +293,7 @@ void trace_all(const CaseWorld& world, const reference::Ray& ray, HardCaseRow* r
   }
   const auto in_each_arithmetic = [&](const auto& traverse) {
     next(traverse(0.0F));
-    next(traverse(kFloatEpsilon));
+    next(traverse(static_cast<float>(kFloatEpsilon)));
     next(traverse(0.0));
     next(traverse(kDoubleEpsilon));
   };
@@ -336,17 +336,13 @@ JsonRow empty_object(const char* row) {
   return object;
 }
 
-double epsilon_of(const TracerName& tracer) {
-  return !tracer.has_epsilon ? 0 : std::string(tracer.arithmetic) == "float" ? 1e-4 : kDoubleEpsilon;
-}
-
 void add_case(const HardCaseRow& row, JsonRow* rows) {
   for (std::size_t i = 0; i < kTracers; ++i) {
     const TracerName& tracer = kTracerNames[i];
     JsonRow object = empty_object("rays");
     put_all(&object, "case", row.name, "level", row.level == 0 ? JsonRow(nullptr) : JsonRow(row.level),
             "tracer", tracer.key, "traversal", tracer.traversal, "arithmetic", tracer.arithmetic,
-            "epsilon_voxels", epsilon_of(tracer), "rays", row.rays, "hits", row.hits, "wrong", row.wrong[i],
+            "epsilon_voxels", tracer.epsilon, "rays", row.rays, "hits", row.hits, "wrong", row.wrong[i],
             "wrong_face", row.wrong_face[i]);
     rows->push_back(object);
   }
@@ -362,7 +358,7 @@ std::string totals_table(const HardCaseRow& all) {
     const std::uint64_t wrong = all.wrong[i];
     const std::uint64_t wrong_face = all.wrong_face[i];
     return cells_of(tracer.traversal, tracer.arithmetic,
-                    tracer.has_epsilon ? four_digits(epsilon_of(tracer)) : "-", grouped(wrong),
+                    tracer.epsilon != 0 ? four_digits(tracer.epsilon) : "-", grouped(wrong),
                     of_rays(wrong, all.rays), grouped(wrong_face), of_rays(wrong_face, all.rays));
   };
   return grouped(all.rays) + " near-degenerate rays, " + grouped(all.hits) +
@@ -378,7 +374,7 @@ std::string cases_table(const std::vector<HardCaseRow>& cases, std::size_t first
   std::vector<Cells> rows{{std::string("rays wrong: ") + kTracerNames[first].traversal, "rays", "thimble"}};
   for (std::size_t i = first; i < first + kArithmetics; ++i) {
     const TracerName& tracer = kTracerNames[i];
-    rows.front().push_back(std::string(tracer.arithmetic) + (tracer.has_epsilon ? ", epsilon" : ""));
+    rows.front().push_back(std::string(tracer.arithmetic) + (tracer.epsilon != 0 ? ", epsilon" : ""));
   }
   for (const HardCaseRow& row : cases) {
     Cells cells{row.name, grouped(row.rays), grouped(row.wrong[0] + row.wrong[1])};

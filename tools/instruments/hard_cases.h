@@ -52,34 +52,34 @@ struct OperationError {
 std::vector<OperationError> sweep_operations(std::uint64_t cases, std::uint64_t seed,
                                              const Progress& progress);
 
+/// The usual epsilons, in voxels.
+inline constexpr double kFloatEpsilon = 1e-4;
+inline constexpr double kDoubleEpsilon = 1e-6;
+
 /// What is compared, in the columns' order. The first two are this tracer's.
 inline constexpr std::size_t kTracers = 14;
 struct TracerName {
   const char* key;         ///< for CSV and JSON: "walk_float_epsilon"
   const char* traversal;   ///< "grid walk"
   const char* arithmetic;  ///< "float"
-  bool has_epsilon;
+  double epsilon;          ///< in voxels; 0: none
 };
 inline constexpr std::array<TracerName, kTracers> kTracerNames{{
-    {"thimble_64", "thimble", "64 bits", false},
-    {"thimble_32", "thimble", "32 bits", false},
-    {"walk_float", "grid walk", "float", false},
-    {"walk_float_epsilon", "grid walk", "float", true},
-    {"walk_double", "grid walk", "double", false},
-    {"walk_double_epsilon", "grid walk", "double", true},
-    {"points_float", "point steps", "float", false},
-    {"points_float_epsilon", "point steps", "float", true},
-    {"points_double", "point steps", "double", false},
-    {"points_double_epsilon", "point steps", "double", true},
-    {"octree_float", "octree", "float", false},
-    {"octree_float_epsilon", "octree", "float", true},
-    {"octree_double", "octree", "double", false},
-    {"octree_double_epsilon", "octree", "double", true},
+    {"thimble_64", "thimble", "64 bits", 0},
+    {"thimble_32", "thimble", "32 bits", 0},
+    {"walk_float", "grid walk", "float", 0},
+    {"walk_float_epsilon", "grid walk", "float", kFloatEpsilon},
+    {"walk_double", "grid walk", "double", 0},
+    {"walk_double_epsilon", "grid walk", "double", kDoubleEpsilon},
+    {"points_float", "point steps", "float", 0},
+    {"points_float_epsilon", "point steps", "float", kFloatEpsilon},
+    {"points_double", "point steps", "double", 0},
+    {"points_double_epsilon", "point steps", "double", kDoubleEpsilon},
+    {"octree_float", "octree", "float", 0},
+    {"octree_float_epsilon", "octree", "float", kFloatEpsilon},
+    {"octree_double", "octree", "double", 0},
+    {"octree_double_epsilon", "octree", "double", kDoubleEpsilon},
 }};
-
-/// The usual epsilons, in voxels.
-inline constexpr float kFloatEpsilon = 1e-4F;
-inline constexpr double kDoubleEpsilon = 1e-6;
 
 struct HardCaseRow {
   std::string name;  ///< "through an edge"

@@ -3,7 +3,6 @@
 #include <bit>
 
 #include "output/output_file.h"
-#include "output/png.h"
 #include "output/units.h"
 #include "thimble/picture/render.h"
 

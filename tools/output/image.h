@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,5 +59,14 @@ void write_picture(OutputFile* file, const std::string& path, const Image& image
 /// Writes float32 values, row by row from the top, as a little-endian PFM (whose rows go from the bottom).
 void write_pfm(OutputFile* file, std::int32_t width_px, std::int32_t height_px,
                const std::vector<float>& values);
+
+/// A whole PNG (ISO/IEC 15948), 8 bits a channel. `pixels`: rows from the top without gaps, `channels` bytes a pixel: 3 (r, g, b) or 4 (and
+/// alpha). Sides are 1 or more. Throws std::bad_alloc.
+std::vector<unsigned char> png_file(std::int32_t width_px, std::int32_t height_px, int channels,
+                                    std::span<const std::uint8_t> pixels);
+
+/// The same for a baseline JPEG (ISO/IEC 10918-1) of 3 channels with a quality of 1 to 100; up to 90 colours have half the resolution.
+std::vector<unsigned char> jpeg_file(std::int32_t width_px, std::int32_t height_px,
+                                     std::span<const std::uint8_t> pixels, int quality = 90);
 
 }  // namespace thimble::tools

@@ -121,16 +121,12 @@ std::size_t PartHeader::unit_bytes() const {
 }
 
 PartWriter::PartWriter(OutputFile* file, const PartHeader& header) : file_(file) {
-  write(bytes_of(header));
-}
-
-void PartWriter::write(std::span<const std::uint8_t> bytes) {
-  crc_ = crc_from(crc_, bytes);
-  file_->write(bytes);
+  add(bytes_of(header));
 }
 
 void PartWriter::add(std::span<const std::uint8_t> bytes) {
-  write(bytes);
+  crc_ = crc_from(crc_, bytes);
+  file_->write(bytes);
 }
 
 void PartWriter::end() {

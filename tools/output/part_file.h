@@ -65,8 +65,6 @@ class PartWriter {
   void end();
 
  private:
-  void write(std::span<const std::uint8_t> bytes);
-
   OutputFile* file_;
   std::uint32_t crc_ = 0;
 };

@@ -1,6 +1,6 @@
 // stb_image_write chooses the filters and writes the file; zlib deflates, which takes a third of the time and leaves
 // smaller files than the encoder's own. JPEGs are all the encoder's.
-#include "output/png.h"
+#include "output/image.h"
 
 #include <zlib.h>
 

@@ -48,7 +48,7 @@ ViewWishes CameraState::wishes(std::int32_t width_px, std::int32_t height_px) co
   return wishes;
 }
 
-void CameraState::place(const Framing& now, const OpenScene& scene) {
+void CameraState::hold(const Framing& now, const OpenScene& scene) {
   if (orbit_) {
     return;
   }
@@ -72,7 +72,7 @@ void CameraState::place(const Framing& now, const OpenScene& scene) {
 }
 
 void CameraState::apply(const Motion& motion, const Framing& now, const OpenScene& scene) {
-  place(now, scene);
+  hold(now, scene);
   orbit_->turn(motion.turn_right * kTurnRadians, motion.turn_up * kTurnRadians);
   const Camera& camera = now.camera;
   const double height = lens_.orthographic ? *lens_.span * camera.height_px() / camera.width_px()
@@ -88,7 +88,7 @@ void CameraState::apply(const Motion& motion, const Framing& now, const OpenScen
 }
 
 void CameraState::look_at(const Real3& point, const Framing& now, const OpenScene& scene) {
-  place(now, scene);
+  hold(now, scene);
   orbit_->look_at(point);
 }
 
@@ -102,7 +102,7 @@ void CameraState::choose(Action view, const Framing& now, const OpenScene& scene
   wishes.fov_degrees = static_cast<double>(now.kept.fov_degrees.raw) / Q16::kOne;
   wishes.width_px = now.camera.width_px();
   wishes.height_px = now.camera.height_px();
-  place(framed_from(scene, wishes, side_of(view)), scene);
+  hold(framed_from(scene, wishes, side_of(view)), scene);
 }
 
 void CameraState::change_scene(const OpenScene& scene) {

@@ -66,13 +66,11 @@ class CameraState {
   /// One of the named views, the scene framed in it. `now` gives the field of view.
   void choose(Action view, const Framing& now, const OpenScene& scene);
   /// The camera of `now` stays, whatever would be framed.
-  void hold(const Framing& now, const OpenScene& scene) { place(now, scene); }
+  void hold(const Framing& now, const OpenScene& scene);
   /// Another scene in place of the one that was: the camera stays, as far as that scene allows.
   void change_scene(const OpenScene& scene);
 
  private:
-  void place(const Framing& now, const OpenScene& scene);
-
   ViewWishes first_;
   std::optional<Orbit> orbit_;
   ViewWishes lens_;  // of the orbit: projection, field of view, span

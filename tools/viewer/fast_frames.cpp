@@ -23,14 +23,12 @@ FastFrames::FastFrames(std::shared_ptr<const OpenScene> scene, bool is_plain, in
     : scene_(std::move(scene)), threads_(threads), pace_(kFrameSeconds, is_plain) {
   const bool may_list = is_plain && !scene_->built->draws_from_file();
   const std::size_t bytes = may_list ? wide::VoxelLists::bytes(scene_->tree()) : 0;
-  if (bytes == 0 || bytes > kMostListBytes) {
-    pace_ = Pace(kFrameSeconds, false);
-    return;
-  }
   try {
-    list_memory_ = HostMemory(bytes + 64);
-    list_arena_ = Arena(list_memory_.bytes());
-    has_lists_ = wide::VoxelLists::make(scene_->tree(), &list_arena_, &lists_) == Status::kOk;
+    if (bytes != 0 && bytes <= kMostListBytes) {
+      list_memory_ = HostMemory(bytes + 64);
+      list_arena_ = Arena(list_memory_.bytes());
+      has_lists_ = wide::VoxelLists::make(scene_->tree(), &list_arena_, &lists_) == Status::kOk;
+    }
   } catch (const std::bad_alloc&) {
     // The machine has no room for lists.
   }

@@ -22,8 +22,7 @@ FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWis
   used_ = used_materials(scene_->tree());
   choose(wishes);
   lit_ = lit_scene_for(lighting_, used_, effects_);
-  quick_effects_ = effects_ & kQuickEffects;
-  quick_ = lit_scene_for(lighting_, used_, quick_effects_);
+  quick_ = lit_scene_for(lighting_, used_, effects_ & kQuickEffects);
   empty_bytes_.resize(4096);
   Arena arena(Bytes(empty_bytes_.data(), empty_bytes_.size()));
   Octree octree;

@@ -75,8 +75,7 @@ class FinishedLook {
   UsedMaterials used_;
   EffectSet effects_ = Effect::kNone;
   LitScene lit_;
-  EffectSet quick_effects_ = Effect::kNone;  // of pictures while the camera moves
-  LitScene quick_;
+  LitScene quick_;  // of pictures while the camera moves
   ShadeMode mode_ = ShadeMode::kDepth;
   int across_ = 1;
   bool at_edges_ = false;

@@ -74,14 +74,26 @@ std::string render_command(const SceneArguments& scene, const ViewWishes& view,
   if (scene.depth) {
     add("--depth", std::to_string(*scene.depth));
   }
-  if (scene.as_voxels) {
-    words.emplace_back("--as-voxels");
+  for (const auto& [is_set, name] : {std::pair{scene.as_voxels, "--as-voxels"},
+                                     {scene.as_points, "--as-points"},
+                                     {scene.as_heights, "--as-heights"},
+                                     {scene.z_up, "--z-up"}}) {
+    if (is_set) {
+      words.emplace_back(name);
+    }
+  }
+  if (scene.full_color != 0) {
+    add("--colors", std::to_string(scene.full_color));
+  }
+  if (scene.fit_percent) {
+    add("--fit", shortest(*scene.fit_percent));
+  }
+  if (const auto& box = scene.clip) {
+    add("--clip",
+        text_of({(*box)[0], (*box)[1], (*box)[2]}) + "," + text_of({(*box)[3], (*box)[4], (*box)[5]}));
   }
   if (scene.frame) {
     add("--frame", std::to_string(*scene.frame));
-  }
-  if (scene.z_up) {
-    words.emplace_back("--z-up");
   }
   add("--size", std::to_string(view.width_px) + "x" + std::to_string(view.height_px));
   if (view.orthographic) {
