@@ -16,7 +16,8 @@ struct Kernel<Result(Arguments...)> {
 
 /// Defines the kernel `name` that a header declares, behind the functions of that name in the namespaces of all
 /// instruction sets.
-#define THIMBLE_KERNEL(name)              \
-  HWY_EXPORT(name);                       \
-  constinit const decltype(name) name = { \
-      [] { return &HWY_DYNAMIC_DISPATCH(name); }}  // NOLINT: what it declares
+// NOLINTBEGIN(bugprone-macro-parentheses): a name that is declared has none.
+#define THIMBLE_KERNEL(name) \
+  HWY_EXPORT(name);          \
+  constinit const decltype(name) name = {[] { return &HWY_DYNAMIC_DISPATCH(name); }}
+// NOLINTEND(bugprone-macro-parentheses)

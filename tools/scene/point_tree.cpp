@@ -10,6 +10,7 @@
 #include <future>
 #include <vector>
 
+#include "output/units.h"
 #include "readers/oct.h"
 #include "scene/host_memory.h"
 #include "scene/scene_source.h"
