@@ -276,7 +276,7 @@ Notes notes_of_file(Reader reader, const std::string& file) {
 TEST_CASE("binvox: runs -> voxels, y fastest, then z, then x") {
   // Index = (x * 2 + z) * 3 + y; solid: x 0, z 1, y 0 and 1.
   const std::string file = binvox("1 2 3", std::string("\0\x03\x01\x02\0\x01", 6));
-  CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
+  CHECK(find_reader("", file) != nullptr);
   const auto voxels = read_voxels(read_binvox, file);
   REQUIRE(voxels.size() == 2);
   CHECK(voxels[0] == GridVoxel{0, 0, 1, {}});
@@ -322,7 +322,7 @@ TEST_CASE("schematic: numbers, data and added bits -> colours") {
   const std::string file =
       schematic(bytes_tag("Blocks", std::string("\x01\0\0\x23\0\x01", 6)) +
                 bytes_tag("Data", std::string(6, '\0')) + bytes_tag("AddBlocks", std::string("\0\0\x01", 3)));
-  CHECK(looks_like_schematic(SharedBytes::own(file).bytes));
+  CHECK(looks_like_schematic(file));
   const auto voxels = read_voxels(read_schematic, file);
   REQUIRE(voxels.size() == 3);
   CHECK(voxels[0] == GridVoxel{0, 2, 0, *block_color("stone")});
@@ -384,7 +384,7 @@ TEST_CASE("litematic: regions, packed across words, sizes below zero -> voxels w
   const std::string wall = region("wall", {10, -3, 7}, {3, 5, 1}, palette, words);
   const std::string file = litematic(wall);
   const Rgb stone = *block_color("stone");
-  CHECK(looks_like_schematic(SharedBytes::own(file).bytes));
+  CHECK(looks_like_schematic(file));
   CHECK(read_voxels(read_schematic, file) ==
         std::vector<GridVoxel>{{0, 0, 0, stone}, {0, 0, 4, *block_color("oak_log")}, {2, 0, 4, stone}});
   // The same box from its other corner, and one block of another palette beside it.
@@ -422,7 +422,7 @@ TEST_CASE("structure: pos and state of a list -> voxels; of several palettes the
       list_tag("palette", {block_name("air"), block_name("stone"), block_name("gold_block")});
   const std::vector<std::string> blocks{listed({0, 0, 0}, 0), listed({1, 2, 0}, 1), listed({0, 1, 3}, 2)};
   const std::string file = structure(names, blocks);
-  CHECK(looks_like_schematic(SharedBytes::own(file).bytes));
+  CHECK(looks_like_schematic(file));
   const std::vector<GridVoxel> wanted{{1, 3, 2, *block_color("stone")},
                                       {0, 0, 1, *block_color("gold_block")}};
   CHECK(read_voxels(read_schematic, file) == wanted);
@@ -456,7 +456,7 @@ TEST_CASE("octomap: occupied leaves of every level -> cubes") {
   const std::string binary =
       little(0xC000, 2) + repeated(little(3, 2), 13) + little(0x36, 2) + little(0x840, 2);
   const std::string file = octomap(binary, true);
-  CHECK(looks_like_octomap(SharedBytes::own(file).bytes));
+  CHECK(looks_like_octomap(file));
   auto voxels = read_voxels(read_octomap, file);
   REQUIRE(voxels.size() == 9);
   CHECK(voxels[7] == GridVoxel{1, 1, 1, {}});
@@ -555,7 +555,7 @@ TEST_CASE("npz: stored and deflated -> the largest array; damage -> a sentence")
   for (const bool deflate : {false, true}) {
     const std::string file =
         zip({{"dx.npy", scalar}, {"a.npy", small}, {"b.npy", large}, {"c.txt", "text"}}, deflate);
-    CHECK(looks_like_npy(SharedBytes::own(file).bytes));
+    CHECK(looks_like_npy(file));
     CHECK(read_voxels(read_npy, file).size() == 4);
     CHECK(accepted_lengths(read_npy, file).empty());
   }
@@ -605,7 +605,7 @@ TEST_CASE("zip: one scene among other files -> the scene; none or several -> a s
 
 TEST_CASE("asc: an ESRI grid -> a landscape; holes where there is no data") {
   const std::string head = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n";
-  CHECK(looks_like_height_grid(SharedBytes::own(head).bytes));
+  CHECK(looks_like_height_grid(head));
   const auto whole = read_voxels(read_height_grid, head + "1 2 3\n4 5 6\n");
   const auto holed = read_voxels(read_height_grid, head + "1 2 3\n4 5 -9999");
   CHECK(holed.size() < whole.size());
@@ -712,7 +712,7 @@ TEST_CASE("qbcl: matrices of models and compounds -> voxels with y up; what is h
   const std::string columns = little(3, 2) + kRedVoxel + little(0, 4) + kGreenVoxel + little(2, 2) +
                               std::string("\x03\0\0\x02", 4) + std::string("\0\0\xff\x01", 4);
   const std::string file = qbcl(qbcl_node(0, qbcl_matrix(-5, columns)));
-  CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
+  CHECK(find_reader("", file) != nullptr);
   const std::vector<GridVoxel> one{{0, 0, 0, {255, 0, 0}},
                                    {0, 0, 2, {0, 255, 0}},
                                    {1, 0, 0, {0, 0, 255}},
@@ -752,7 +752,7 @@ TEST_CASE("qbcl: damage -> a sentence, and nothing is believed") {
 
 TEST_CASE("kv6: columns -> voxels with z up; damage -> a sentence") {
   const std::string file = kv6(3, {2, 1});
-  CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
+  CHECK(find_reader("", file) != nullptr);
   CHECK(read_voxels(read_kv6, file) ==
         std::vector<GridVoxel>{{0, 0, 299, {3, 2, 1}}, {0, 0, 0, {6, 5, 4}}, {1, 0, 292, {9, 8, 7}}});
   CHECK(accepted_lengths(read_kv6, file).empty());
@@ -775,7 +775,7 @@ TEST_CASE("vxl: spans -> coloured voxels, earth between them, solid to the botto
   const std::string plain = span(0, 63, 63, 0, red);
   const auto voxels = read_voxels(read_vxl, vxl({bridge, plain}));
   const Rgb earth{103, 64, 40};
-  CHECK((find_reader("", SharedBytes::own(vxl({plain})).bytes)->read == read_vxl));
+  CHECK((find_reader("", vxl({plain}))->read == read_vxl));
   REQUIRE(voxels.size() == 9);
   for (const GridVoxel& voxel : std::vector<GridVoxel>{{0, 0, 53, {255, 0, 0}},
                                                        {0, 0, 52, earth},
@@ -822,7 +822,7 @@ TEST_CASE("gox: layers -> voxels, the later over the earlier; copies moved; hidd
   const std::string hidden = gox_entry("visible", std::string(1, '\0'));
   const std::string first = gox_layer(gox_place(0, 0), gox_entry("id", little(7, 4)) + visible);
   const std::string file = gox(blocks + first);
-  CHECK(find_reader("", SharedBytes::own(file).bytes) != nullptr);
+  CHECK(find_reader("", file) != nullptr);
   const std::vector<GridVoxel> one{{3, 0, 0, {0, 255, 0}}, {0, 2, 3, {255, 0, 0}}};
   CHECK(read_voxels(read_gox, file) == one);
   CHECK(accepted_lengths(read_gox, file).empty());

@@ -370,7 +370,7 @@ TEST_CASE("gadget: particles of all types, float and double, both byte orders ->
   for (const bool doubles : {false, true}) {
     for (const bool big : {false, true}) {
       const std::string file = snapshot({1, 2, 0, 1, 1, 3}, doubles, big);
-      CHECK(looks_like_gadget(SharedBytes::own(file).bytes));
+      CHECK(looks_like_gadget(file));
       const auto points = read_points(read_gadget, file);
       REQUIRE(points.size() == 8);
       constexpr std::array<std::size_t, 8> kTypes{0, 1, 1, 3, 4, 5, 5, 5};
@@ -405,13 +405,13 @@ TEST_CASE("gadget: damaged snapshots -> a sentence that names the place") {
   CHECK(contains(error_of(read_gadget, snapshot({0, 0, 0, 0, 0, 0})), "no particles"));
   CHECK(contains(error_of(read_gadget, record("HEAD1234") + whole), "format 2"));
   CHECK(contains(error_of(read_gadget, "text"), "256"));
-  CHECK_FALSE(looks_like_gadget(SharedBytes::own("text").bytes));
+  CHECK_FALSE(looks_like_gadget("text"));
 }
 
 TEST_CASE("read_any: endings of any case, gz and contents -> the reader") {
   const auto name_of = [](std::string_view path, std::string text) -> std::string {
     const SharedBytes file = SharedBytes::own(std::move(text));
-    const ReaderRow* row = find_reader(path, file.bytes);
+    const ReaderRow* row = find_reader(path, file.text());
     return row == nullptr ? "" : row->endings;
   };
   CHECK(name_of("a/b.PLY", "") == ".ply");

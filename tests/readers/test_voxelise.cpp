@@ -161,15 +161,12 @@ using CellVoxels = std::map<UnitPoint, std::uint8_t>;
 CellVoxels by_triangle(const std::vector<CellTriangle>& triangles) {
   CellVoxels voxels;
   for (const CellTriangle& triangle : triangles) {
-    voxelise_triangle(triangle.corners, triangle.material,
-                      [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
-                        voxels[{x, y, z}] = material;
-                      });
+    voxelise_triangle(triangle.corners, [&](const UnitPoint& at) { voxels[at] = triangle.number & 255; });
   }
   return voxels;
 }
 
-CellVoxels by_cell(const std::vector<CellTriangle>& triangles, int level, int* blocks) {
+CellVoxels by_cell(const std::vector<CellTriangle>& triangles, int level, bool is_shaded, int* blocks) {
   CellVoxels voxels;
   bool once = true;
   double last = 0;
@@ -181,11 +178,13 @@ CellVoxels by_cell(const std::vector<CellTriangle>& triangles, int level, int* b
       once = once && voxels.emplace(voxel, material).second;
     }
   };
-  voxelise_cells(triangles, level, sink, [&](double done) {
+  const CellShade shade = [](const CellTriangle& triangle, auto&) { return triangle.number & 255; };
+  const auto told = [&](double done) {
     CHECK(done >= last);
     CHECK(done <= 1);
     last = done;
-  });
+  };
+  voxelise_cells(triangles, level, sink, told, is_shaded ? shade : CellShade());
   CHECK(last == 1);
   CHECK(once);
   return voxels;
@@ -235,10 +234,10 @@ TEST_CASE("voxelise: one triangle, small or large -> each voxel it meets exactly
     const int level = 1 + static_cast<int>(random.below(4));
     const UnitTriangle triangle = random_triangle(random, level);
     std::vector<int> seen(std::size_t{1} << 3 * level);
-    voxelise_triangle(triangle, 5, [&](int x, int y, int z, std::uint8_t material) {
-      CHECK(material == 5);
-      REQUIRE((std::min({x, y, z}) >= 0 && std::max({x, y, z}) < 1 << level));
-      ++seen[static_cast<std::size_t>((z << level | y) << level | x)];
+    voxelise_triangle(triangle, [&](const UnitPoint& at) {
+      REQUIRE(*std::min_element(at.begin(), at.end()) >= 0);
+      REQUIRE(*std::max_element(at.begin(), at.end()) < 1 << level);
+      ++seen[static_cast<std::size_t>((at[2] << level | at[1]) << level | at[0])];
     });
     for (int z = 0; z < 1 << level; ++z) {
       for (int y = 0; y < 1 << level; ++y) {
@@ -284,7 +283,7 @@ TEST_CASE("voxelise: the largest triangles of the largest world -> exact to the 
 TEST_CASE("voxelise: points on a middle, a face, an edge, a corner -> 1, 2, 4, 8 voxels") {
   const auto count = [](const UnitPoint& p) {
     int voxels = 0;
-    voxelise_triangle({p, p, p}, 0, [&](int, int, int, std::uint8_t) { ++voxels; });
+    voxelise_triangle({p, p, p}, [&](const UnitPoint&) { ++voxels; });
     return voxels;
   };
   CHECK(count({384, 384, 384}) == 1);
@@ -422,11 +421,10 @@ TEST_CASE("voxelise_cells: random triangles -> what each of them meets, with the
     std::vector<CellTriangle> triangles;
     const int count = round < 50 ? random.between(1, 30) : 1500;
     for (int i = 0; i < count; ++i) {
-      triangles.push_back(
-          {random_triangle(random, level), static_cast<std::uint8_t>(many_materials ? random.below(3) : 0)});
+      triangles.push_back({random_triangle(random, level), false, many_materials ? random.below(3) : 0});
     }
     CAPTURE(round);
-    CHECK((by_cell(triangles, level, &blocks) == by_triangle(triangles)));
+    CHECK((by_cell(triangles, level, many_materials, &blocks) == by_triangle(triangles)));
   }
   CHECK(blocks > 100);
 }

@@ -300,7 +300,7 @@ Real3 some_voxel(const CompactTree& tree, const Camera& camera) {
     return {hit.voxel.x + 0.5, hit.voxel.y + 0.5, hit.voxel.z + 0.5};
   }
   std::optional<Real3> found;
-  tools::for_each_block(tree, [&](const Vec3i& at, int, std::uint8_t) {
+  tools::walk_blocks(tree, [&](const Vec3i& at, int, std::uint8_t) {
     if (!found) {
       found = Real3{at.x + 0.5, at.y + 0.5, at.z + 0.5};
     }

@@ -1,7 +1,6 @@
 #include "commands/arguments.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "output/units.h"
@@ -16,15 +15,6 @@ class Subcommand : public CLI::App {
       : CLI::App(description, name, &parent) {}
   std::vector<std::function<void()>> checks;
 };
-
-// The number that all of `text` is.
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-  Number number{};
-  const char* const end = text.data() + text.size();
-  const auto [next, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc{} && next == end ? std::optional(number) : std::nullopt;
-}
 
 constexpr std::size_t kHelpColumn = 30;
 constexpr char kOffered[] = "offered";  // the name of a check that keeps words

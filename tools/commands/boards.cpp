@@ -66,7 +66,7 @@ BakedSize size_when_baked(const BoardsCommand& command, const SceneSource& sourc
   // are filled to solid blocks then; an eighth is left for them.
   const CompactTree& tree = baked.scene.tree();
   std::uint64_t voxels = 0;
-  for_each_block(tree, [&](const Vec3i&, int level, std::uint8_t) { voxels += level == 0 ? 1U : 0U; });
+  walk_blocks(tree, [&](const Vec3i&, int level, std::uint8_t) { voxels += level == 0 ? 1U : 0U; });
   return {baked.bytes.size(), (tree.node_count() + voxels) / 8 * 7, baked.effects};
 }
 

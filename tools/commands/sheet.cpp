@@ -60,8 +60,7 @@ bool is_scene_file(const std::filesystem::path& path) {
   std::array<char, kFirstLookBytes> first{};
   std::ifstream file(path, std::ios::binary);
   file.read(first.data(), first.size());
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(first.data());
-  return find_reader(path.string(), {bytes, static_cast<std::size_t>(file.gcount())}) != nullptr;
+  return find_reader(path.string(), {first.data(), static_cast<std::size_t>(file.gcount())}) != nullptr;
 }
 
 // The scenes of the folder and of those in it, by name; nothing hidden, and no link to a folder.

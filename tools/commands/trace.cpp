@@ -82,7 +82,7 @@ class RayFile {
   /// One ray a line, ox,oy,oz,dx,dy,dz in voxels; a header line is allowed before, empty lines anywhere. Or a NumPy
   /// array, one ray a row. Looks at a few bytes a chunk.
   RayFile(const SharedBytes& file, const RayRules& rules) : file_(file), rules_(rules) {
-    if (!looks_like_npy(file.bytes)) {
+    if (!looks_like_npy(file.text())) {
       find_lines();
       return;
     }
@@ -256,7 +256,7 @@ void run(const TraceCommand& command) {
   BuiltScene built = command.scene.build(*source);
   const RayFile file = about(command.rays_path, [&] {
     const auto look = [](std::span<const std::uint8_t> first) {
-      if (!looks_like_npy(first)) {
+      if (!looks_like_npy(SharedBytes{first, nullptr}.text())) {
         refuse_zero_bytes(first, "rays, one a line");
       }
     };

@@ -43,8 +43,6 @@ inline constexpr ChipCost kChipCostCut{152, 1486, 273};
 /// Of `average_samples`: a pixel, and each of its samples.
 inline constexpr double kChipCostPixel = 70;
 inline constexpr double kChipCostSample = 10;
-/// The fit's largest relative error on the frames that it was made from.
-inline constexpr double kChipCostError = 0.19;
 
 /// Instructions of a frame with those counts, of `samples` a pixel.
 inline double chip_instructions(const RenderCounts& counts, bool cuts, int samples) {

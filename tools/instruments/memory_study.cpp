@@ -273,11 +273,8 @@ std::vector<BudgetRow> budgets_of(const StudyOptions& options, const std::vector
   if (options.budget_sweep) {
     const auto& own = depths.back().structures;
     const std::uint64_t whole = std::max({own[kPool].bytes, own[kCompact].bytes, own[kShared].bytes});
-    for (std::uint64_t budget = 1024;; budget *= 2) {
+    for (std::uint64_t budget = 1024; budgets.empty() || budgets.back() < whole; budget *= 2) {
       budgets.push_back(budget);
-      if (budget >= whole) {
-        break;
-      }
     }
   }
   if (options.budget_bytes &&
@@ -307,16 +304,14 @@ MemoryStudy study_memory(const SceneSource& source, const std::string& name, con
   const int own_depth = source.level();
   std::vector<SolidBlock> blocks;
   std::vector<Rgb8> palette;
+  int last_color = 0;
   {
     const BuiltScene built(source, {}, [&](double done) { progress(0.2 * done); });
     walk_blocks(built.compact(), [&](const Vec3i& corner, int level, std::uint8_t material) {
       blocks.push_back({corner, static_cast<std::uint8_t>(level), material});
+      last_color = std::max<int>(last_color, material);
     });
     palette = built.palette();
-  }
-  int last_color = 0;
-  for (const SolidBlock& block : blocks) {
-    last_color = std::max<int>(last_color, block.material);
   }
 
   // The deepest one is the judge: all pictures are of its rays, so that nothing but the scene differs.

@@ -553,9 +553,7 @@ std::vector<OperationError> sweep_operations(std::uint64_t cases, std::uint64_t 
     }
     errors.push_back({operation.name, operation.bound_name, operation.unit, static_cast<double>(found.error),
                       operation.bound, found.cases});
-    if (progress) {
-      progress(static_cast<double>(errors.size()) / static_cast<double>(std::size(kOperations)));
-    }
+    tell(progress, static_cast<double>(errors.size()) / static_cast<double>(std::size(kOperations)));
   }
   return errors;
 }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
 #include <mutex>
 #include <system_error>
 
 #include "output/output_file.h"
+#include "output/units.h"
 
 namespace thimble::tools {
 namespace {
@@ -15,9 +15,8 @@ namespace {
 // The number N of PROC/fd/N, as /dev/stdout and /dev/fd/N lead to, also of another process; else -1.
 int descriptor_at(const std::filesystem::path& path, bool* is_ours) {
   const std::string name = path.filename().string();
-  int number = -1;
-  const auto [end, fault] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (fault != std::errc{} || end != name.data() + name.size() || number < 0) {
+  const int number = number_in<int>(name).value_or(-1);
+  if (number < 0) {
     return -1;
   }
   std::error_code error;

@@ -1,7 +1,6 @@
 #include "output/units.h"
 
 #include <array>
-#include <charconv>
 #include <cstdio>
 
 namespace thimble::tools {
@@ -161,9 +160,8 @@ std::string printable(std::string_view text) {
 }
 
 std::string scene_title(std::string_view scene) {
-  const std::size_t slash = scene.rfind('/');
-  return printable(slash == std::string_view::npos || slash + 1 == scene.size() ? scene
-                                                                                : scene.substr(slash + 1));
+  const std::string_view name = scene.substr(scene.rfind('/') + 1);
+  return printable(name.empty() ? scene : name);
 }
 
 std::string in_quotes(std::string_view text) {

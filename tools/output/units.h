@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -21,6 +22,15 @@ std::string counted(std::uint64_t number, const std::string& one, const std::str
 /// "65536", "64K", "2M", "1G" (powers of 1024, either case, an optional B or iB after the letter) as bytes;
 /// nothing for anything else and for what exceeds 2^63 - 1.
 std::optional<std::uint64_t> parse_bytes(std::string_view text);
+
+/// The number that is all of `text`, whatever the locale says; of whole ones to that base.
+template <class Number, class... Base>
+std::optional<Number> number_in(std::string_view text, Base... base) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, number, base...);
+  return error == std::errc{} && next == end ? std::optional(number) : std::nullopt;
+}
 
 /// A double with the fewest digits up to 17 significant ones that read back as the same double.
 std::string shortest(double number);

@@ -11,6 +11,7 @@
 #include "output/hit_rows.h"
 #include "output/units.h"
 #include "readers/oct.h"
+#include "readers/text.h"
 
 namespace thimble::tools {
 namespace {
@@ -21,25 +22,14 @@ constexpr std::size_t kPieceBytes = 1 << 16;
 // Calls visit(voxel, material) for every voxel, and `progress` now and then.
 template <class Visit>
 void for_each_voxel(const CompactTree& tree, const Progress& progress, const Visit& visit) {
-  constexpr std::uint64_t kBetween = 1 << 16;
-  const auto all = static_cast<double>(tree.voxel_count());
+  ProgressMeter meter(progress, tree.voxel_count());
   std::uint64_t done = 0;
   walk_blocks(tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
     for_voxels(corner, level, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       visit(Vec3i{x, y, z}, material);
-      if (++done % kBetween == 0 && progress) {
-        progress(static_cast<double>(done) / all);
-      }
+      meter.at(++done);
     });
   });
-}
-
-using Used = std::array<bool, 256>;
-
-Used used_materials(const CompactTree& tree) {
-  Used used{};
-  walk_blocks(tree, [&](const Vec3i&, int, std::uint8_t material) { used[material] = true; });
-  return used;
 }
 
 class Writer {
@@ -99,16 +89,16 @@ void write_csv(Writer* to, const CompactTree& tree, const Palette& palette, bool
                const Progress& progress) {
   std::array<std::string, 256> colors;
   if (has_colors) {
-    const Used used = used_materials(tree);
+    const UsedMaterials used = used_materials(tree);
     int highest = 0;
-    for (std::size_t i = 0; i < used.size(); ++i) {
+    for (std::size_t i = 0; i < palette.size(); ++i) {
       const Rgb& color = palette[i].color;
-      highest = std::max(highest, used[i] ? std::max({color.r, color.g, color.b}) : 0);
+      highest = std::max(highest, used.is[i] ? std::max({color.r, color.g, color.b}) : 0);
     }
     const auto word = [&](std::uint8_t part) {
       return std::string(",") + (highest > 1 ? std::to_string(part) : part == 0 ? "0" : "0.0039215686");
     };
-    for (std::size_t i = 0; i < used.size(); ++i) {
+    for (std::size_t i = 0; i < palette.size(); ++i) {
       const Rgb& color = palette[i].color;
       colors[i] = word(color.r) + word(color.g) + word(color.b);
     }
@@ -159,9 +149,9 @@ constexpr int kModelBits = 8;  // a model has at most 256 voxels a side
 // the two that are nearest share one.
 struct VoxColors {
   explicit VoxColors(const CompactTree& tree, const Palette& palette) {
-    const Used used = used_materials(tree);
-    for (std::size_t i = 0; i < used.size(); ++i) {
-      if (!used[i]) {
+    const UsedMaterials used = used_materials(tree);
+    for (std::size_t i = 0; i < palette.size(); ++i) {
+      if (!used.is[i]) {
         continue;
       }
       const Rgb& color = palette[i].color;

@@ -89,7 +89,6 @@ constexpr auto kBlockKinds = std::to_array<Entry>({
     {"blue_ice", {116, 168, 248}},
     {"ice", {156, 190, 244}},
     {"snow", {244, 250, 250}},
-    {"powder_snow", {244, 250, 250}},
     {"glass", {196, 224, 232}},
     // Ores and what is made of them.
     {"diamond", {106, 220, 212}},
@@ -212,8 +211,7 @@ constexpr std::array<std::string_view, kBlockNumbers> names_by_number() {
 
 std::optional<Rgb> block_color(std::string_view name) {
   name = name.substr(0, name.find('['));
-  const std::size_t colon = name.find(':');
-  name.remove_prefix(colon == std::string_view::npos ? 0 : colon + 1);
+  name.remove_prefix(name.find(':') + 1);  // of none all stays
   if (std::find(kInvisible.begin(), kInvisible.end(), name) != kInvisible.end()) {
     return std::nullopt;
   }

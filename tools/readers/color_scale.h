@@ -35,16 +35,12 @@ class ColorScale {
   double full() const { return stated_ != 0 ? stated_ : highest_ <= 1 ? 1 : highest_ <= 255 ? 255 : 65535; }
   /// Says what they are taken for where they could be something else.
   void add_note(Notes& notes) const {
-    if (!is_valid_) {
-      notes.push_back(
-          "colors below 0, above 65535 or that are no numbers are taken for what is next to them");
-    }
+    note_if(!is_valid_, notes,
+            "colors below 0, above 65535 or that are no numbers are taken for what is next to them");
     const bool is_small = highest_ > 0 && highest_ <= 2 && (is_whole_ || highest_ > 1);
-    if (stated_ == 0 && is_valid_ && (highest_ > 255 || is_small)) {
-      notes.push_back(concat("no color is above ", static_cast<int>(std::ceil(highest_)),
-                             ": full is taken to be ", static_cast<int>(full()),
-                             " (--colors says otherwise)"));
-    }
+    note_if(stated_ == 0 && is_valid_ && (highest_ > 255 || is_small), notes, "no color is above ",
+            static_cast<int>(std::ceil(std::min(highest_, 65535.0))), ": full is taken to be ",
+            static_cast<int>(full()), " (--colors says otherwise)");
   }
 
   Rgb color(double red, double green, double blue) const {

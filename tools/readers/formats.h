@@ -54,7 +54,7 @@ FormatReader read_binvox, read_gadget, read_gltf, read_gox, read_height_grid, re
 inline constexpr std::string_view kVoxlapMagic("\x00\x20\x07\x09", 4);
 
 /// Whether a file that begins so is of the format.
-using FormatLook = bool(std::span<const std::uint8_t> bytes);
+using FormatLook = bool(std::string_view text);
 FormatLook looks_like_gadget, looks_like_gltf, looks_like_height_grid, looks_like_npy, looks_like_octomap,
     looks_like_off, looks_like_pcd, looks_like_ply, looks_like_schematic, looks_like_stl;
 

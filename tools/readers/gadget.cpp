@@ -49,10 +49,8 @@ Record record_at(std::span<const std::uint8_t> bytes, std::size_t offset, bool i
   record.offset = offset + kMarkerBytes;
   record.size_bytes = static_cast<std::uint32_t>(load_bits(&bytes[offset], kMarkerBytes, is_big_endian));
   const std::uint64_t left = bytes.size() - record.offset;
-  if (std::uint64_t{record.size_bytes} + kMarkerBytes > left) {
-    throw InputError(place, ": it takes ", record.size_bytes, " bytes and a marker of ", kMarkerBytes,
-                     ", but ", left, " bytes are left");
-  }
+  fail_if(std::uint64_t{record.size_bytes} + kMarkerBytes > left, place, ": it takes ", record.size_bytes,
+          " bytes and a marker of ", kMarkerBytes, ", but ", left, " bytes are left");
   const std::uint64_t marker =
       load_bits(&bytes[record.offset + record.size_bytes], kMarkerBytes, is_big_endian);
   fail_if(marker != record.size_bytes, place, ": its length is ", record.size_bytes, " before the data and ",
@@ -69,17 +67,12 @@ class GadgetCloud final : public PointCloud {
   std::size_t number_bytes = sizeof(float);
 
   void for_each(const Visit& visit) const override {
-    CloudPoint point;
-    std::size_t offset = positions_offset;
+    std::uint64_t line = 0;
     for (std::size_t type = 0; type < kParticleTypes; ++type) {
-      point.color = kGadgetColors[type];
       for (std::uint32_t i = 0; i < counts[type]; ++i) {
-        point.x = number(offset);
-        point.y = number(offset + number_bytes);
-        point.z = number(offset + 2 * number_bytes);
-        offset += 3 * number_bytes;
-        ++point.line;
-        visit(point);
+        const std::size_t first = positions_offset + static_cast<std::size_t>(line) * 3 * number_bytes;
+        visit({number(first), number(first + number_bytes), number(first + 2 * number_bytes),
+               kGadgetColors[type], ++line});
       }
     }
   }
@@ -110,18 +103,12 @@ bool is_file_big_endian(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 /// True when the bytes begin with a record of 256 bytes in either byte order.
-bool looks_like_gadget(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kMarkerBytes + kGadgetHeaderBytes + kMarkerBytes) {
-    return false;
-  }
-  for (const bool is_big_endian : {false, true}) {
-    if (load_bits(&bytes[0], kMarkerBytes, is_big_endian) == kGadgetHeaderBytes &&
-        load_bits(&bytes[kMarkerBytes + kGadgetHeaderBytes], kMarkerBytes, is_big_endian) ==
-            kGadgetHeaderBytes) {
-      return true;
-    }
-  }
-  return false;
+bool looks_like_gadget(std::string_view text) {
+  constexpr std::array kMarkers{std::string_view("\0\1\0\0", 4), std::string_view("\0\0\1\0", 4)};
+  return std::any_of(kMarkers.begin(), kMarkers.end(), [&](std::string_view marker) {
+    return text.starts_with(marker) && text.substr(kMarkerBytes).size() >= kGadgetHeaderBytes &&
+           text.substr(kMarkerBytes + kGadgetHeaderBytes).starts_with(marker);
+  });
 }
 
 /// `CloudPoint::line` is the particle's number, from 1.

@@ -135,9 +135,7 @@ class Scene {
     std::size_t done = 0;
     for (const Part& part : parts_) {
       add(part);
-      if (progress_) {
-        progress_(static_cast<double>(++done) / static_cast<double>(parts_.size()));
-      }
+      tell(progress_, static_cast<double>(++done) / static_cast<double>(parts_.size()));
     }
     if (!is_colored_) {
       mesh_.colors = {};
@@ -598,27 +596,20 @@ class Scene {
   }
 
   void add_notes() {
-    textures_.add_notes(mesh_.notes);
+    Notes& notes = mesh_.notes;
+    textures_.add_notes(notes);
     for (const auto& [what, primitives] : undrawn_) {
-      if (primitives != 0) {
-        mesh_.notes.push_back(what + " of " + counted(primitives, "primitive") + " are not drawn");
-      }
+      note_if(primitives != 0, notes, what, " of ", counted(primitives, "primitive"), " are not drawn");
     }
-    if (file_.count("scenes") > 1) {
-      mesh_.notes.push_back(concat("of its ", file_.count("scenes"), " scenes the default one is drawn"));
-    }
+    note_if(file_.count("scenes") > 1, notes, "of its ", file_.count("scenes"),
+            " scenes the default one is drawn");
     mesh_.is_unlit = unlit_ != 0 && !has_lit_;
-    if (unlit_ != 0 && has_lit_) {
-      mesh_.notes.push_back(counted(unlit_, "material is", "materials are") +
-                            " unlit in the file and drawn in the scene's light like the others");
-    }
-    if (blended_ != 0) {
-      mesh_.notes.push_back("of " + counted(blended_, "blended material") +
-                            " (BLEND) what is at least a tenth opaque is drawn solid");
-    }
-    if (file_.count("animations") != 0 || file_.count("skins") != 0) {
-      mesh_.notes.push_back("its animations and skins are not drawn: all stands as it does at rest");
-    }
+    note_if(unlit_ != 0 && has_lit_, notes, counted(unlit_, "material is", "materials are"),
+            " unlit in the file and drawn in the scene's light like the others");
+    note_if(blended_ != 0, notes, "of ", counted(blended_, "blended material"),
+            " (BLEND) what is at least a tenth opaque is drawn solid");
+    note_if(file_.count("animations") != 0 || file_.count("skins") != 0, notes,
+            "its animations and skins are not drawn: all stands as it does at rest");
   }
 
   enum : std::uint64_t { kRepeat = 10497, kClamp = 33071, kMirror = 33648 };
@@ -645,8 +636,7 @@ class Scene {
 
 }  // namespace
 
-bool looks_like_gltf(std::span<const std::uint8_t> bytes) {
-  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+bool looks_like_gltf(std::string_view text) {
   if (text.starts_with("glTF")) {
     return true;
   }

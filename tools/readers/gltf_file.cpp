@@ -1,5 +1,6 @@
 #include "readers/gltf_file.h"
 
+#include "output/units.h"
 #include "readers/formats.h"
 
 namespace thimble::tools {
@@ -83,19 +84,11 @@ std::optional<std::string> decode_base64(std::string_view text) {
 /// A link with %20 and the like written out.
 std::string decode_percent(const std::string& uri) {
   std::string out;
-  const auto digit = [](char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-                                  : -1;
-  };
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
-      out.push_back(static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2])));
-      i += 2;
-    } else {
-      out.push_back(uri[i]);
-    }
+    const auto code = number_in<std::uint8_t>(std::string_view(uri).substr(i + 1, 2), 16);
+    const bool is_coded = uri[i] == '%' && i + 2 < uri.size() && code;
+    out.push_back(is_coded ? static_cast<char>(code.value_or(0)) : uri[i]);
+    i += is_coded ? 2 : 0;
   }
   return out;
 }
@@ -197,7 +190,7 @@ std::uint32_t GltfAccessor::index(std::uint64_t i) const {
 
 GltfFile::GltfFile(const SharedBytes& file, const std::string& path)
     : file_(file), path_(path), bytes_read_(file.bytes.size()) {
-  fail_if(!looks_like_gltf(file.bytes),
+  fail_if(!looks_like_gltf(file.text()),
           "is no glTF file: it begins neither with \"glTF\" nor with a JSON object that names its asset");
   if (!file.text().starts_with("glTF")) {
     json_ = parse_json(file.text());
@@ -287,9 +280,8 @@ std::span<const std::uint8_t> GltfFile::buffer(std::uint64_t i) {
   }
   fail_if(!uri->is_string(), place, ": its link is no text");
   SharedBytes bytes;
-  if (const std::string fault = link(uri->get_ref<const std::string&>(), place, bytes); !fault.empty()) {
-    throw InputError(fault);
-  }
+  const std::string fault = link(uri->get_ref<const std::string&>(), place, bytes);
+  fail_if(!fault.empty(), fault);
   return buffers_.emplace(i, std::move(bytes)).first->second.bytes;
 }
 

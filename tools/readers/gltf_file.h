@@ -76,8 +76,6 @@ class GltfFile {
   void unpacked(std::uint64_t view, std::uint64_t bytes) {
     bytes_read_ += unpacked_.insert(view).second ? bytes : 0;
   }
-  /// The file and what it loaded.
-  std::uint64_t bytes_read() const { return bytes_read_; }
   /// What accessors take that no buffer holds as they are: sparse and unpacked ones.
   std::uint64_t bytes_made() const { return bytes_made_; }
   /// What all that is made of the file may take: three times what was read, and 64 MB.

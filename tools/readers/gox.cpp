@@ -33,10 +33,8 @@ class GoxGrid final : public VoxelGrid {
  public:
   explicit GoxGrid(const SharedBytes& file) : file_(file) {
     read_chunks();
-    if (left_out_ != 0) {
-      notes.push_back(counted(left_out_, "layer is", "layers are") +
-                      " not drawn: a shape, or a copy of another that is more than moved by whole voxels");
-    }
+    note_if(left_out_ != 0, notes, counted(left_out_, "layer is", "layers are"),
+            " not drawn: a shape, or a copy of another that is more than moved by whole voxels");
     place_blocks();
     measure();
   }
@@ -214,18 +212,12 @@ class GoxGrid final : public VoxelGrid {
   }
 
   void measure() {
-    Corner high{};
-    bool is_solid = false;
-    stream([&](const Corner& at, Rgb) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low_[axis] = is_solid ? std::min(low_[axis], at[axis]) : at[axis];
-        high[axis] = is_solid ? std::max(high[axis], at[axis]) : at[axis];
-      }
-      is_solid = true;
-    });
-    fail_if(!is_solid, "the file holds no voxels that are drawn");
+    Extent<std::int64_t> box;
+    stream([&](const Corner& at, Rgb) { box.add(at); });
+    fail_if(box.empty, "the file holds no voxels that are drawn");
+    low_ = box.low;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::int64_t side = high[axis] - low_[axis] + 1;
+      const std::int64_t side = box.high[axis] - low_[axis] + 1;
       fail_if(side > std::int64_t{kGridSideLimit}, "the layers reach over ", side, " voxels, the limit is ",
               kGridSideLimit);
       size_[axis] = static_cast<std::int32_t>(side);

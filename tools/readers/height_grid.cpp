@@ -142,15 +142,14 @@ Source height_landscape(std::uint64_t columns, std::uint64_t rows, const HeightA
   return std::make_unique<Landscape>(columns, rows, height);
 }
 
-bool looks_like_height_grid(std::span<const std::uint8_t> bytes) {
-  const std::string_view word = WordReader(SharedBytes{bytes, nullptr}.text()).next();
-  return equals_ignoring_case(word, "ncols");
+bool looks_like_height_grid(std::string_view text) {
+  return equals_ignoring_case(WordReader(text).next(), "ncols");
 }
 
 /// Memory: 4 bytes a height.
 /// @throws InputError  naming the line: a number that is none, too few or too many of them
 Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progress& progress) {
-  fail_if(!looks_like_height_grid(file.bytes),
+  fail_if(!looks_like_height_grid(file.text()),
           "is no grid of heights: it does not begin with the word ncols");
   ProgressMeter meter(progress, file.bytes.size());
   WordReader words(file.text());
@@ -178,15 +177,11 @@ Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progr
   std::vector<float> heights;
   heights.reserve(static_cast<std::size_t>(columns * rows));
   for (; !word.empty(); word = words.next()) {
-    double value = 0;
-    if (parse_number(word, value) == NumberKind::kGarbage) {
-      fail_at_line(words.line(), quoted(word), " is not a number");
-    }
+    const double value = number_or_nan(word, words.line());
     if (heights.size() == columns * rows) {
       fail_at_line(words.line(), quoted(word), " comes after the last of ", columns * rows, " heights");
     }
-    const bool is_there = parse_number(word, value) == NumberKind::kFinite && value != nothing;
-    heights.push_back(is_there ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN());
+    heights.push_back(value == nothing ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value));
     meter.at(words.offset());
   }
   fail_if(heights.size() != columns * rows, "the header announces ", columns * rows,

@@ -165,10 +165,8 @@ class VxlGrid final : public ColumnGrid {
         });
     sides_[2] = deepest <= kDepths[0] ? kDepths[0] : kDepths[1];
     set_size(sides_[0], sides_[1], sides_[2]);
-    if (left != 0) {
-      notes.push_back(
-          concat(left, " bytes behind the last of ", sides_[0], " x ", sides_[1], " columns are not read"));
-    }
+    note_if(left != 0, notes, left, " bytes behind the last of ", sides_[0], " x ", sides_[1],
+            " columns are not read");
     check_solid("the map holds no voxels");
   }
 

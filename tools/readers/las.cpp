@@ -47,7 +47,7 @@ class LasCloud final : public PointCloud {
       for (std::size_t channel = 0; color != nullptr && channel < 3; ++channel) {
         highest = std::max(highest, component(color, channel));
       }
-      meter.at(static_cast<std::size_t>(first_offset_ + (point.line - 1) * record_bytes_));
+      meter.at(first_offset_ + (point.line - 1) * record_bytes_);
     });
     fail_if(kept == 0, count_ == 0 ? "the file holds no points" : "all points of the file are withheld");
     has_color_ = highest > 0;
@@ -57,10 +57,8 @@ class LasCloud final : public PointCloud {
             : highest <= 4080       ? 4080
             : highest <= 4095       ? 4095
                                     : 65535;
-    if (has_color_ && full_ != 65535 && options.full_color == 0) {
-      notes.push_back(concat("no color is above ", highest, ": they are taken for ",
-                             full_ == 255 ? "8" : "12", " bits, not 16 (--colors says otherwise)"));
-    }
+    note_if(has_color_ && full_ != 65535 && options.full_color == 0, notes, "no color is above ", highest,
+            ": they are taken for ", full_ == 255 ? "8" : "12", " bits, not 16 (--colors says otherwise)");
   }
 
   void for_each(const Visit& visit) const override {
@@ -134,11 +132,7 @@ class LasCloud final : public PointCloud {
       return static_cast<std::int32_t>(bits) * scale_[axis] + offset_[axis];
     };
     for (std::uint64_t i = 0; i < count_; ++i, record += record_bytes_) {
-      CloudPoint point;
-      point.x = coordinate(0);
-      point.y = coordinate(1);
-      point.z = coordinate(2);
-      point.line = i + 1;
+      CloudPoint point{coordinate(0), coordinate(1), coordinate(2), {}, i + 1};
       const bool is_withheld = (record[15] & (is_new_format_ ? 0x04U : 0x80U)) != 0;
       if (!is_withheld) {
         take(point, color_offset_ == kNoColor ? nullptr : record + color_offset_);

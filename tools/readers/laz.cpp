@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "output/units.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -663,26 +664,19 @@ std::vector<std::uint32_t> read_chunk_table(const SharedBytes& file, std::uint64
   return counts;
 }
 
-void put_little(std::vector<std::uint8_t>* out, std::uint32_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i) {
-    out->push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+void put_point(std::string* out, const Point& point, bool has_color) {
+  for (const std::uint32_t number : {point.x, point.y, point.z, std::uint32_t{point.mark} << 24}) {
+    append_little(out, number);
   }
-}
-
-void put_point(std::vector<std::uint8_t>* out, const Point& point, bool has_color) {
-  for (const std::uint32_t axis : {point.x, point.y, point.z}) {
-    put_little(out, axis, 4);
-  }
-  put_little(out, std::uint32_t{point.mark} << 24, 4);
   for (std::size_t i = 0; i < 3 && has_color; ++i) {
-    put_little(out, point.color[i], 2);
+    append_little(out, point.color[i], 2);
   }
 }
 
 /// The records of `points` points from the chunk that begins at `bytes`. @return how many bytes it took
 template <class Chunk>
 std::size_t unpack_chunk(std::span<const std::uint8_t> bytes, const Layout& layout, std::uint64_t points,
-                         bool has_color, std::vector<std::uint8_t>* out) {
+                         bool has_color, std::string* out) {
   refuse_damaged_if(bytes.size() < layout.record_bytes);
   Chunk chunk(bytes, layout);
   put_point(out, chunk.first(), has_color);
@@ -715,8 +709,8 @@ SharedBytes unpack_laz(const SharedBytes& file, const LasPoints& points, bool ha
     }
     refuse_damaged_if(packing.chunk_points == 0);
   }
-  auto out = std::make_shared<std::vector<std::uint8_t>>();
-  out->reserve(static_cast<std::size_t>(points.count * record_bytes));
+  std::string out;
+  out.reserve(static_cast<std::size_t>(points.count * record_bytes));
   ProgressMeter meter(progress, file.bytes.size());
   std::uint64_t left = points.count;
   for (std::size_t i = 0; left != 0; ++i) {
@@ -728,12 +722,12 @@ SharedBytes unpack_laz(const SharedBytes& file, const LasPoints& points, bool ha
     const std::uint64_t count = std::min(chunk, left);
     const auto bytes = file.bytes.subspan(static_cast<std::size_t>(offset));
     offset += packing.is_layered
-                  ? unpack_chunk<LayeredChunk>(bytes, packing.layout, count, has_color, out.get())
-                  : unpack_chunk<PointwiseChunk>(bytes, packing.layout, count, has_color, out.get());
+                  ? unpack_chunk<LayeredChunk>(bytes, packing.layout, count, has_color, &out)
+                  : unpack_chunk<PointwiseChunk>(bytes, packing.layout, count, has_color, &out);
     left -= count;
-    meter.at(static_cast<std::size_t>(offset));
+    meter.at(offset);
   }
-  return {*out, out};
+  return SharedBytes::own(std::move(out));
 }
 
 }  // namespace thimble::tools

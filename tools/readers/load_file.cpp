@@ -41,9 +41,7 @@ class Descriptor {
     if (fd_ < 0 && (errno == EMFILE || errno == ENFILE || errno == ENOMEM)) {
       throw ShortageError("cannot be opened: " + reason(errno));
     }
-    if (fd_ < 0) {
-      throw InputError("cannot be opened: ", reason(errno));
-    }
+    fail_if(fd_ < 0, "cannot be opened: ", reason(errno));
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -52,9 +50,8 @@ class Descriptor {
   /// Size of a regular file, 0 where only reading to the end tells.
   std::uint64_t size_hint_bytes() const {
     struct stat status {};
-    if (::fstat(fd_, &status) != 0) {
-      throw InputError("cannot be examined: ", reason(errno));
-    }
+    const bool is_known = ::fstat(fd_, &status) == 0;
+    fail_if(!is_known, "cannot be examined: ", reason(errno));
     fail_if(S_ISDIR(status.st_mode), "is a directory, not a file");
     return S_ISREG(status.st_mode) && status.st_size > 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
   }

@@ -13,16 +13,9 @@ class VertexCloud final : public PointCloud {
   explicit VertexCloud(TriangleMesh mesh) : mesh_(std::move(mesh)) { notes = std::move(mesh_.notes); }
 
   void for_each(const Visit& visit) const override {
-    CloudPoint point;
     for (std::size_t i = 0; i < mesh_.positions.size(); ++i) {
-      point.x = mesh_.positions[i][0];
-      point.y = mesh_.positions[i][1];
-      point.z = mesh_.positions[i][2];
-      if (has_color()) {
-        point.color = mesh_.colors[i];
-      }
-      point.line = i + 1;
-      visit(point);
+      const auto& [x, y, z] = mesh_.positions[i];
+      visit({x, y, z, has_color() ? mesh_.colors[i] : Rgb{}, i + 1});
     }
   }
   bool has_color() const override { return !mesh_.colors.empty(); }
@@ -188,11 +181,8 @@ void check_texcoords(TriangleMesh& mesh) {
 
 void TriangleStrip::add(std::uint32_t corner) {
   if (corners_ >= 2 && older_ != last_ && last_ != corner && corner != older_) {
-    if (corners_ % 2 == 0) {
-      mesh_.triangles.push_back({older_, last_, corner});
-    } else {
-      mesh_.triangles.push_back({last_, older_, corner});
-    }
+    const bool is_turned = corners_ % 2 != 0;
+    mesh_.triangles.push_back({is_turned ? last_ : older_, is_turned ? older_ : last_, corner});
   }
   older_ = last_;
   last_ = corner;
@@ -213,10 +203,8 @@ Notes notes_of(const Source& source) {
 }
 
 void note_left_out(Notes& notes, std::uint64_t points) {
-  if (points != 0) {
-    notes.push_back(counted(points, "point is not finite and is", "points are not finite and are") +
-                    " left out");
-  }
+  note_if(points != 0, notes, counted(points, "point is not finite and is", "points are not finite and are"),
+          " left out");
 }
 
 Source mesh_or_points(TriangleMesh mesh, std::uint64_t face_count) {

@@ -45,7 +45,7 @@ std::uint64_t numbers_of(const NpyHeader& header) {
 /// What stands behind a key in the header's dictionary, up to the next key.
 std::string_view value_of(std::string_view dictionary, std::string_view key) {
   const std::size_t at = dictionary.find("'" + std::string(key) + "'");
-  const std::size_t colon = at == std::string_view::npos ? at : dictionary.find(':', at);
+  const std::size_t colon = dictionary.find(':', at);
   fail_if(colon == std::string_view::npos, "the header has no ", quoted(key));
   std::string_view value = dictionary.substr(colon + 1);
   value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
@@ -87,9 +87,8 @@ void read_shape(std::string_view value, NpyHeader& header) {
 }
 
 NpyHeader read_npy_header(std::span<const std::uint8_t> bytes) {
-  if (!SharedBytes{bytes, nullptr}.text().starts_with(kNpyMagic)) {
-    throw InputError("is no NumPy array: it does not begin with \"\\x93NUMPY\"");
-  }
+  fail_if(!SharedBytes{bytes, nullptr}.text().starts_with(kNpyMagic),
+          "is no NumPy array: it does not begin with \"\\x93NUMPY\"");
   ByteReader reader(bytes, "the header");
   reader.skip(kNpyMagic.size());
   const unsigned version = reader.u8();
@@ -150,15 +149,12 @@ class ArrayPoints final : public PointCloud {
       scale_.add_note(notes);
     }
     const std::uint64_t used = has_color_ ? 6 : 3;
-    if (columns > used) {
-      notes.push_back(concat("of the array's ", columns, " columns, ",
-                             has_color_ ? concat("1 to 3 are taken for places and ", first_color_ + 1, " to ",
-                                                 first_color_ + 3, " for colors")
-                                        : "the first three are taken for places, none for colors"));
-    } else if (array_.header.type.kind != 'f' && options.as == ArrayAs::kByShape) {
-      notes.emplace_back(
-          "its rows of whole numbers are places; --as-voxels makes them voxels, --as-heights heights");
-    }
+    note_if(columns > used, notes, "of the array's ", columns, " columns, ",
+            has_color_ ? concat("1 to 3 are taken for places and ", first_color_ + 1, " to ",
+                                first_color_ + 3, " for colors")
+                       : "the first three are taken for places, none for colors");
+    note_if(columns <= used && array_.header.type.kind != 'f' && options.as == ArrayAs::kByShape, notes,
+            "its rows of whole numbers are places; --as-voxels makes them voxels, --as-heights heights");
   }
   void for_each(const Visit& visit) const override {
     walk([&](CloudPoint& point) {
@@ -308,13 +304,12 @@ Array array_of(const SharedBytes& file) {
 }  // namespace
 
 /// True for a `.npy` and for a `.zip` whose first member's name ends so.
-bool looks_like_npy(std::span<const std::uint8_t> bytes) {
-  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+bool looks_like_npy(std::string_view text) {
   constexpr std::size_t kNameLength = 26;
   constexpr std::size_t kName = 30;
-  if (text.starts_with(kZipMagic) && bytes.size() > kName) {
-    const std::uint64_t length = load_bits(&bytes[kNameLength], 2, false);
-    return text.substr(kName, length).ends_with(".npy");
+  if (text.starts_with(kZipMagic) && text.size() > kName) {
+    const auto byte = [&](std::size_t i) { return std::size_t{static_cast<std::uint8_t>(text[i])}; };
+    return text.substr(kName, byte(kNameLength) | byte(kNameLength + 1) << 8).ends_with(".npy");
   }
   return text.starts_with(kNpyMagic);
 }

@@ -109,13 +109,10 @@ void note_clearness(const std::vector<ObjMaterial>& used, std::vector<std::strin
     unread += material.has_transparency && !material.opacity ? 1U : 0U;
     partly += material.opacity && *material.opacity > 0 && *material.opacity < 1 ? 1U : 0U;
   }
-  if (unread != 0) {
-    notes.push_back(counted(unread, "material has", "materials have") +
-                    " Tr and no d: Tr is not read, since programs contradict each other in it");
-  }
-  if (partly != 0) {
-    notes.push_back(counted(partly, "material is", "materials are") + " partly clear (d) and drawn solid");
-  }
+  note_if(unread != 0, notes, counted(unread, "material has", "materials have"),
+          " Tr and no d: Tr is not read, since programs contradict each other in it");
+  note_if(partly != 0, notes, counted(partly, "material is", "materials are"),
+          " partly clear (d) and drawn solid");
 }
 
 /// Which face has which material, by the names that an `.obj` uses, and what files beside it say of these.
@@ -196,16 +193,12 @@ class ObjMaterials {
     }
     textures.add_notes(mesh.notes);
     const bool has_others = !mesh.colors.empty() && !has_picture;  // vertices' colours, which are drawn
-    if (missing != 0 && described.is_read && !has_others) {
-      mesh.notes.push_back(counted(missing, "material has", "materials have") +
-                           " no description and no color");
-    } else if (missing != 0 && libraries_.empty() && !has_others) {
-      mesh.notes.push_back("its materials are not drawn: no file is named that describes them (mtllib)");
-    }
+    note_if(missing != 0 && described.is_read && !has_others, mesh.notes,
+            counted(missing, "material has", "materials have"), " no description and no color");
+    note_if(missing != 0 && libraries_.empty() && !has_others, mesh.notes,
+            "its materials are not drawn: no file is named that describes them (mtllib)");
     note_clearness(used, mesh.notes);
-    if (has_more_) {
-      mesh.notes.push_back(concat("materials behind the first ", kMostMaterials - 1, " are not drawn"));
-    }
+    note_if(has_more_, mesh.notes, "materials behind the first ", kMostMaterials - 1, " are not drawn");
     if (has_picture) {
       mesh.colors = {};
     }
@@ -269,15 +262,12 @@ class ObjMaterials {
     for (std::size_t i = 0;
          !fault.empty() && rest.find(kBetween) != std::string_view::npos && i < kMostLibraries; ++i) {
       const std::size_t end = rest.find(kBetween) + kBetween.size();
-      if (std::string missing = read(std::string(trimmed(rest.substr(0, end)))); !missing.empty()) {
-        notes.push_back(std::move(missing));
-      }
+      const std::string missing = read(std::string(trimmed(rest.substr(0, end))));
+      note_if(!missing.empty(), notes, missing);
       rest = trimmed(rest.substr(end));
       fault = rest.find(kBetween) == std::string_view::npos ? read(std::string(rest)) : fault;
     }
-    if (!fault.empty()) {
-      notes.push_back(std::move(fault));
-    }
+    note_if(!fault.empty(), notes, fault);
   }
 
   std::vector<std::string> libraries_;
@@ -322,10 +312,8 @@ class ObjParser {
       scale_.add_note(mesh_.notes);
       mesh_.colors = scale_.colors(std::exchange(colors_, {}));
     }
-    if (undrawn_ != 0) {
-      mesh_.notes.push_back("lines, points, curves and surfaces (l, p, curv, surf; " +
-                            std::to_string(undrawn_) + " in all) are not drawn");
-    }
+    note_if(undrawn_ != 0, mesh_.notes, "lines, points, curves and surfaces (l, p, curv, surf; ", undrawn_,
+            " in all) are not drawn");
     polygons_.cut_ears();
     if (mesh_.texcoord_corners.empty()) {
       mesh_.texcoords = {};  // no face has any

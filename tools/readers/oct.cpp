@@ -107,6 +107,17 @@ Source read_oct(const SharedBytes& file, const ReadOptions&, const Progress&) {
   return result;
 }
 
+UsedMaterials used_materials(const CompactTree& tree) {
+  UsedMaterials used;
+  for (const std::uint8_t material : tree.materials()) {
+    used.is[material] = true;
+  }
+  if (!tree.empty() && !tree.many_materials()) {
+    used.is[tree.uniform_material()] = true;
+  }
+  return used;
+}
+
 Vec3i corner_of(const CompactTree& tree, std::uint32_t number) {
   Vec3i corner;
   int up = 0;
@@ -131,10 +142,6 @@ Vec3i corner_of(const CompactTree& tree, std::uint32_t number) {
   }
   const int level = tree.level() - up;
   return {corner.x << level, corner.y << level, corner.z << level};
-}
-
-void for_each_block(const CompactTree& tree, const VisitBlock& visit) {
-  walk_blocks(tree, visit);
 }
 
 }  // namespace thimble::tools

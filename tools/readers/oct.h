@@ -23,6 +23,15 @@ inline unsigned count_bits(Span<const std::uint64_t> words) {
   return static_cast<unsigned>(((bytes & kEven) + (bytes >> 8 & kEven)) * 0x0001000100010001 >> 48);
 }
 
+/// Which palette entries occur in what was built.
+struct UsedMaterials {
+  bool is[256] = {};
+  friend bool operator==(const UsedMaterials&, const UsedMaterials&) = default;
+};
+
+/// Of a tree, block by block.
+UsedMaterials used_materials(const CompactTree& tree);
+
 /// A solid block of one material: its lowest corner, the log2 of its side (0 for a voxel), its material.
 using VisitBlock = std::function<void(const Vec3i& corner, int level, std::uint8_t material)>;
 
@@ -30,10 +39,7 @@ using VisitBlock = std::function<void(const Vec3i& corner, int level, std::uint8
 /// a voxel.
 Vec3i corner_of(const CompactTree& tree, std::uint32_t number);
 
-/// Visits everything solid of a sound tree, in Morton order.
-void for_each_block(const CompactTree& tree, const VisitBlock& visit);
-
-/// The same with the call inlined, for walks that many wait for: visit(corner, level, material).
+/// Visits everything solid of a sound tree, in Morton order: visit(corner, level, material).
 template <class Visit>
 void walk_blocks(const CompactTree& tree, const Visit& visit) {
   if (tree.empty()) {

@@ -23,7 +23,7 @@ class OctomapGrid final : public VoxelGrid {
  public:
   explicit OctomapGrid(const SharedBytes& file) : file_(file) {
     is_binary_ = file.text().starts_with(kBinaryMapMagic);
-    fail_if(!looks_like_octomap(file.bytes), "is no OctoMap file: it does not begin with \"", kFullMapMagic,
+    fail_if(!looks_like_octomap(file.text()), "is no OctoMap file: it does not begin with \"", kFullMapMagic,
             "\" or \"", kBinaryMapMagic, "\"");
     read_head();
     std::uint64_t voxels = 0;
@@ -114,8 +114,7 @@ class OctomapGrid final : public VoxelGrid {
 
 }  // namespace
 
-bool looks_like_octomap(std::span<const std::uint8_t> bytes) {
-  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+bool looks_like_octomap(std::string_view text) {
   return text.starts_with(kBinaryMapMagic) || text.starts_with(kFullMapMagic);
 }
 

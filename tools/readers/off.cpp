@@ -62,10 +62,9 @@ class OffParser {
     header();
     vertices();
     faces();
-    if (const std::string_view word = words_.next(); !word.empty()) {
-      mesh_.notes.push_back(concat("line ", words_.line(), ": ", quoted(word),
-                                   " and what follows comes after the last face and is not read"));
-    }
+    const std::string_view word = words_.next();
+    note_if(!word.empty(), mesh_.notes, "line ", words_.line(), ": ", quoted(word),
+            " and what follows comes after the last face and is not read");
     (face_colors_.empty() ? scale_ : face_scale_).add_note(mesh_.notes);
     return mesh_or_points(std::move(mesh_), face_count_);
   }
@@ -219,9 +218,8 @@ class OffParser {
 }  // namespace
 
 /// True when the first word is a keyword that `read_off` accepts.
-bool looks_like_off(std::span<const std::uint8_t> bytes) {
-  const SharedBytes file{bytes, nullptr};
-  return parse_keyword(WordReader(file.text(), '#').next()).known;
+bool looks_like_off(std::string_view text) {
+  return parse_keyword(WordReader(text, '#').next()).known;
 }
 
 /// Memory: 24 bytes a vertex, 15 more with colour (12 of them only while reading), 12 a triangle. The counts

@@ -206,9 +206,8 @@ class PcdCloud final : public PointCloud {
     fail_if(finite == 0, count_ == 0 ? "the header counts no points" : "no point of the file is finite");
     fail_if(has_parts_ && !scale_.is_valid(), "the fields r, g and b hold values that are no colors");
     note_left_out(notes, count_ - finite);
-    if (header.is_turned) {
-      notes.emplace_back("its points are drawn as the sensor saw them, without the header's VIEWPOINT");
-    }
+    note_if(header.is_turned, notes,
+            "its points are drawn as the sensor saw them, without the header's VIEWPOINT");
     scale_.add_note(notes);
   }
 
@@ -276,7 +275,7 @@ class PcdCloud final : public PointCloud {
       return;
     }
     for (std::uint64_t i = 0; i < count_; ++i) {
-      meter.at(static_cast<std::size_t>(data_offset_ + i * record_));
+      meter.at(data_offset_ + i * record_);
       const auto color = [&] {
         return color_of(static_cast<std::uint32_t>(load_bits(place(columns_[kColor], i), 4, false)));
       };
@@ -327,20 +326,13 @@ class PcdCloud final : public PointCloud {
       const std::uint64_t line_number = data_line_ + lines.line_number() - 1;
       fail_at_line_if(at <= last, line_number, at, " values, but the fields of the header take more");
       give(
-          line_number, [&](std::size_t column) { return number(words[column], line_number); },
+          line_number, [&](std::size_t column) { return number_or_nan(words[column], line_number); },
           [&] { return written_color(words[kColor], line_number); }, take);
     }
   }
 
-  static double number(std::string_view word, std::uint64_t line) {
-    double value = std::numeric_limits<double>::quiet_NaN();
-    if (parse_number(word, value) == NumberKind::kGarbage) {
-      fail_at_line(line, quoted(word), " is not a number");
-    }
-    return value;
-  }
   Rgb written_color(std::string_view word, std::uint64_t line) const {
-    const double value = number(word, line);
+    const double value = number_or_nan(word, line);
     if (columns_[kColor].field.type.kind == 'f') {
       // Too large to be a float: its bytes stand for no colour either.
       return std::fabs(value) <= static_cast<double>(std::numeric_limits<float>::max())
@@ -376,8 +368,7 @@ class PcdCloud final : public PointCloud {
 
 /// True when the first word that is no comment is one that a header begins with, or the first comment says
 /// it.
-bool looks_like_pcd(std::span<const std::uint8_t> bytes) {
-  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+bool looks_like_pcd(std::string_view text) {
   if (text.starts_with("# .PCD")) {
     return true;
   }

@@ -15,7 +15,6 @@
 // it is passed over. Text behind the last value is noted; bytes after the last binary element are ignored.
 //
 // Source of the format: Greg Turk, "The PLY Polygon File Format", 1994.
-#include <limits>
 
 #include "readers/color_scale.h"
 #include "readers/ply_header.h"
@@ -26,8 +25,7 @@ namespace thimble::tools {
 namespace {
 
 bool has_color(const PlyElement& element) {
-  return has_role(element, PlyRole::kRed) && has_role(element, PlyRole::kGreen) &&
-         has_role(element, PlyRole::kBlue);
+  return element.has(PlyRole::kRed) && element.has(PlyRole::kGreen) && element.has(PlyRole::kBlue);
 }
 
 bool is_splat(const PlyElement& element) {
@@ -57,11 +55,7 @@ class AsciiBody {
 
   double scalar(const NumberType&) {
     const std::string_view word = next();
-    double value = std::numeric_limits<double>::quiet_NaN();
-    if (parse_number(word, value) == NumberKind::kGarbage) {
-      fail_at_line(words_.line(), quoted(word), " is not a number");
-    }
-    return value;
+    return number_or_nan(word, words_.line());
   }
   void skip(const NumberType&, std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -105,15 +99,10 @@ class AsciiBody {
     }
   }
   void finish(Notes& notes) {
-    if (has_more_) {
-      notes.push_back("its lines hold more values than the header declares; those are not read");
-    }
+    note_if(has_more_, notes, "its lines hold more values than the header declares; those are not read");
     const std::string_view word = words_.next();
-    if (!word.empty()) {
-      notes.push_back(
-          concat("line ", words_.line(), ": ", quoted(word),
-                 " and what follows comes after the last value that the header declares and is not read"));
-    }
+    note_if(!word.empty(), notes, "line ", words_.line(), ": ", quoted(word),
+            " and what follows comes after the last value that the header declares and is not read");
   }
 
  private:
@@ -404,12 +393,12 @@ void read_faces(Body& body, const PlyElement& element, std::uint64_t vertex_coun
 }
 
 bool holds_polygons(const PlyElement& element) {
-  return element.count != 0 && has_role(element, PlyRole::kIndices);
+  return element.count != 0 && element.has(PlyRole::kIndices);
 }
 
 bool has_face_texcoords(const PlyHeader& header) {
   return std::any_of(header.elements.begin(), header.elements.end(),
-                     [](const PlyElement& element) { return has_role(element, PlyRole::kTexcoords); });
+                     [](const PlyElement& element) { return element.has(PlyRole::kTexcoords); });
 }
 
 /// Gives the mesh the pictures that its file names.
@@ -471,8 +460,8 @@ TriangleMesh read_mesh(Body body, const PlyHeader& header, const PlyElement& ver
       mesh.positions.reserve(static_cast<std::size_t>(element.count));
       const bool colored = has_color(element);
       // Those of corners count before those of vertices.
-      const bool has_places = !header.pictures.empty() && has_role(element, PlyRole::kU) &&
-                              has_role(element, PlyRole::kV) && !has_face_texcoords(header);
+      const bool has_places = !header.pictures.empty() && element.has(PlyRole::kU) &&
+                              element.has(PlyRole::kV) && !has_face_texcoords(header);
       Body first = body;
       ColorParts parts(element, options);
       read_vertices(body, element, meter, [&](const PlyVertex& vertex) {
@@ -530,29 +519,20 @@ class PlyCloud final : public PointCloud {
             finite == 0 ? "no vertex of the file is finite" : "all splats of the file are nearly clear");
     note_left_out(notes, vertices_.count - finite);
     parts_.add_note(notes);
-    if (is_splat(vertices_)) {
-      const std::string clear = concat(finite - drawn, " of ", finite);
-      notes.push_back("Gaussian splats are drawn as points" +
-                      (finite == drawn ? "" : "; " + clear + " are nearly clear and left out"));
-    }
+    const std::string clear = concat("; ", finite - drawn, " of ", finite, " are nearly clear and left out");
+    note_if(is_splat(vertices_), notes, "Gaussian splats are drawn as points", finite == drawn ? "" : clear);
   }
 
   void for_each(const Visit& visit) const override {
     Body body = body_;
     ProgressMeter meter;
-    CloudPoint point;
     std::uint64_t number = 0;
     read_vertices(body, vertices_, meter, [&](const PlyVertex& vertex) {
       ++number;
-      if (!is_drawn(vertex)) {
-        return;
+      if (is_drawn(vertex)) {
+        const auto [x, y, z] = vertex.position();
+        visit({x, y, z, has_color() ? parts_.color(vertex) : Rgb{}, vertex.line != 0 ? vertex.line : number});
       }
-      point.x = vertex.values[0];
-      point.y = vertex.values[1];
-      point.z = vertex.values[2];
-      point.color = has_color() ? parts_.color(vertex) : Rgb{};
-      point.line = vertex.line != 0 ? vertex.line : number;
-      visit(point);
     });
   }
   bool has_color() const override { return tools::has_color(vertices_); }
@@ -560,7 +540,7 @@ class PlyCloud final : public PointCloud {
 
  private:
   bool is_drawn(const PlyVertex& vertex) const {
-    const bool may_be_clear = is_splat(vertices_) && has_role(vertices_, PlyRole::kOpacity);
+    const bool may_be_clear = is_splat(vertices_) && vertices_.has(PlyRole::kOpacity);
     return vertex.is_finite() && !(may_be_clear && vertex.is_clear());
   }
 
@@ -583,7 +563,7 @@ Source read_body(const SharedBytes& file, const ReadOptions& options, const PlyH
   }
   fail_if(vertices == nullptr || vertices->count == 0, "the file holds no vertices");
   for (const PlyRole role : {PlyRole::kX, PlyRole::kY, PlyRole::kZ}) {
-    fail_if(!has_role(*vertices, role), "element 'vertex' has no property x, y or z that is a number");
+    fail_if(!vertices->has(role), "element 'vertex' has no property x, y or z that is a number");
   }
   ProgressMeter meter(progress, file.bytes.size());
   Body body(file, header);
@@ -607,9 +587,8 @@ Source read_body(const SharedBytes& file, const ReadOptions& options, const PlyH
 }  // namespace
 
 /// True when the bytes begin with the line "ply".
-bool looks_like_ply(std::span<const std::uint8_t> bytes) {
-  return bytes.size() >= 4 && bytes[0] == 'p' && bytes[1] == 'l' && bytes[2] == 'y' &&
-         (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
+bool looks_like_ply(std::string_view text) {
+  return text.starts_with("ply\n") || text.starts_with("ply\r") || text.starts_with("ply ");
 }
 
 /// Checks the whole file; a mesh is returned as read, a point cloud keeps `file` and reads it again each
@@ -625,7 +604,7 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes) {
 /// @throws InputError  a broken header; a count that the bytes cannot hold; a file that ends early; text that
 ///   is no number; a coordinate that is not finite; an index out of range; no vertex
 Source read_ply(const SharedBytes& file, const ReadOptions& options, const Progress& progress) {
-  const PlyHeader header = read_ply_header(file.text());
+  const PlyHeader header = PlyHeaderParser(file.text()).parse();
   if (header.encoding == PlyEncoding::kAscii) {
     return read_body<AsciiBody>(file, options, header, progress);
   }

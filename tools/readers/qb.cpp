@@ -233,23 +233,19 @@ class QubicleGrid final : public VoxelGrid {
   }
 
   void place() {
-    std::array<std::int64_t, 3> high{};
-    bool any = false;
+    Extent<std::int64_t> box;
     for (const Matrix& matrix : matrices_) {
-      if (matrix.size[0] == 0 || matrix.size[1] == 0 || matrix.size[2] == 0) {
-        continue;
+      if (matrix.size[0] != 0 && matrix.size[1] != 0 && matrix.size[2] != 0) {
+        box.add(matrix.position);
+        box.add({matrix.position[0] + matrix.size[0], matrix.position[1] + matrix.size[1],
+                 matrix.position[2] + matrix.size[2]});
       }
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::int64_t end = matrix.position[axis] + matrix.size[axis];
-        low_[axis] = any ? std::min(low_[axis], matrix.position[axis]) : matrix.position[axis];
-        high[axis] = any ? std::max(high[axis], end) : end;
-      }
-      any = true;
     }
-    fail_if(!any, "the file holds no voxels");
+    fail_if(box.empty, "the file holds no voxels");
+    low_ = box.low;
     constexpr std::array<std::size_t, 3> kTurned{0, 2, 1};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::int64_t side = high[axis] - low_[axis];
+      const std::int64_t side = box.high[axis] - low_[axis];
       fail_if(side > std::int64_t{kGridSideLimit}, "the matrices reach over ", side, " voxels, the limit is ",
               kGridSideLimit);
       size_[kTurned[axis]] = static_cast<std::int32_t>(side);

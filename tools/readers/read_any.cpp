@@ -19,9 +19,9 @@ ZipMember scene_member(const SharedBytes& file) {
       continue;  // folders, and what systems leave
     }
     const SharedBytes beginning = zip_beginning(member, kFirstLookBytes);
-    const ReaderRow* const row = find_reader(name, beginning.bytes);
+    const ReaderRow* const row = find_reader(name, beginning.text());
     if (row == nullptr || row->read == read_zip ||
-        (row->beginning == Beginning::kMagic && !row->knows(beginning.bytes))) {
+        (row->beginning == Beginning::kMagic && !row->knows(beginning.text()))) {
       continue;
     }
     (name.ends_with(".txt") ? texts : scenes).push_back(member);
@@ -81,8 +81,8 @@ bool has_ending(std::string_view path, std::string_view ending) {
          equals_ignoring_case(path.substr(path.size() - ending.size()), ending);
 }
 
-const ReaderRow& row_for(std::string_view path, std::span<const std::uint8_t> bytes) {
-  const ReaderRow* row = find_reader(path, bytes);
+const ReaderRow& row_for(std::string_view path, std::string_view text) {
+  const ReaderRow* row = find_reader(path, text);
   fail_if(row == nullptr,
           "neither the name nor the contents tell what this file is; thimble info --help lists what is read");
   return *row;
@@ -103,9 +103,9 @@ std::span<const ReaderRow> reader_rows() {
   return kRows;
 }
 
-const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t> bytes) {
+const ReaderRow* find_reader(std::string_view path, std::string_view text) {
   for (const ReaderRow& row : kRows) {
-    if (row.knows(bytes)) {
+    if (row.knows(text)) {
       return &row;
     }
   }
@@ -127,9 +127,10 @@ const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t
 }
 
 void check_beginning(std::string_view path, std::span<const std::uint8_t> first) {
-  const ReaderRow& row = row_for(path, first);
-  if (row.beginning == Beginning::kMagic && !row.knows(first)) {
-    row.read({first, nullptr}, {}, {});  // says how such a file begins
+  const SharedBytes file{first, nullptr};
+  const ReaderRow& row = row_for(path, file.text());
+  if (row.beginning == Beginning::kMagic && !row.knows(file.text())) {
+    row.read(file, {}, {});  // says how such a file begins
   }
   if (row.beginning == Beginning::kText) {
     check_text(first, row.name);
@@ -137,7 +138,7 @@ void check_beginning(std::string_view path, std::span<const std::uint8_t> first)
 }
 
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress) {
-  const ReaderRow& row = row_for(options.path, file.bytes);
+  const ReaderRow& row = row_for(options.path, file.text());
   fail_if(options.frame && row.read != read_vox && row.read != read_zip,
           "--frame and --frames are for .vox files with frames, and this is a ", row.name);
   fail_if(options.as != ArrayAs::kByShape && row.read != read_npy && row.read != read_zip,
@@ -148,9 +149,7 @@ Source read_any(const ReadOptions& options, const SharedBytes& file, const Progr
               std::find(kColorGuessers.begin(), kColorGuessers.end(), row.read) == kColorGuessers.end(),
           "--colors is for formats that do not say what a full color is, and this is a ", row.name);
   Source source = row.read(file, options, progress);
-  if (progress) {
-    progress(1);
-  }
+  tell(progress, 1);
   return source;
 }
 

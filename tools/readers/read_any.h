@@ -22,19 +22,18 @@ struct ReaderRow {
   FormatLook* looks_like;  ///< counts for more than the name; null where the first bytes do not tell
   Beginning beginning = Beginning::kAny;
   std::string_view magic{};  ///< what a file begins with, in place of `looks_like`
-  bool knows(std::span<const std::uint8_t> bytes) const {
-    return magic.empty() ? looks_like != nullptr && looks_like(bytes)
-                         : SharedBytes{bytes, nullptr}.text().starts_with(magic);
+  bool knows(std::string_view text) const {
+    return magic.empty() ? looks_like != nullptr && looks_like(text) : text.starts_with(magic);
   }
 };
 
 /// The table's rows, in the order in which they are tried.
 std::span<const ReaderRow> reader_rows();
 
-/// The first row that recognises `bytes`; otherwise the one whose ending `path` has, in any case and before a
+/// The first row that recognises `text`, the first bytes of the file; otherwise the one whose ending `path` has, in any case and before a
 /// final `.gz`, `.zst` or `.xz`; null when there is none. So what a file holds counts for more than its name, and a `.ply`
 /// that no reader recognises is a broken `.ply`.
-const ReaderRow* find_reader(std::string_view path, std::span<const std::uint8_t> bytes);
+const ReaderRow* find_reader(std::string_view path, std::string_view text);
 
 /// Refuses a file by its first bytes where these suffice for it.
 /// @throws InputError  no reader knows the file, or the one that does says how such a file begins

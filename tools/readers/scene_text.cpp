@@ -178,9 +178,8 @@ void box(TextLine& line, TextPlace place, SceneText* scene) {
                 {"to", [&](const Word& word) { part.high = corner(word); }}});
   clauses.need("from");
   clauses.need("to");
-  if (VoxelBox{part.low, part.high}.empty()) {
-    fail_at(place, "this box holds no voxel: each number after to must be above the one after from");
-  }
+  fail_if(VoxelBox{part.low, part.high}.empty(), place,
+          "this box holds no voxel: each number after to must be above the one after from");
 }
 
 void ball(TextLine& line, TextPlace place, SceneText* scene) {
@@ -259,7 +258,9 @@ std::array<double, 3> direction(TextLine& line, const Word& word) {
   return result;
 }
 
-void read_light(TextLine& line, TextPlace place, SceneText* scene, bool is_point) {
+// A lamp at a place, or a sun.
+template <bool is_point>
+void read_light(TextLine& line, TextPlace place, SceneText* scene) {
   fail_if(scene->lights.size() == kMaxLights, place, "there are more lights than the limit of ", kMaxLights);
   Clauses clauses(is_point ? "lamp" : "sun", &line);
   Light light;
@@ -324,13 +325,6 @@ void camera(TextLine& line, TextPlace place, SceneText* scene) {
   result.up = largest(up) == 0 ? Vec3i{} : to_integers(up, kMaxViewComponent);
   scene->camera = result;
   scene->camera_place = place;
-}
-
-void sun(TextLine& line, TextPlace place, SceneText* scene) {
-  read_light(line, place, scene, false);
-}
-void lamp(TextLine& line, TextPlace place, SceneText* scene) {
-  read_light(line, place, scene, true);
 }
 
 void ambient(TextLine& line, TextPlace, SceneText* scene) {
@@ -430,8 +424,8 @@ constexpr std::array<Statement, 15> kStatements{{
     {"material", statements::material, false},
     {"depth", statements::depth, true},
     {"camera", statements::camera, true},
-    {"sun", statements::sun, false},
-    {"lamp", statements::lamp, false},
+    {"sun", statements::read_light<false>, false},
+    {"lamp", statements::read_light<true>, false},
     {"ambient", statements::ambient, true},
     {"sky", statements::sky, true},
     {"fog", statements::fog, true},

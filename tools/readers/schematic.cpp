@@ -202,7 +202,7 @@ class SchematicGrid final : public VoxelGrid {
       check();
       return;
     }
-    fail_if(!looks_like_schematic(file.bytes),
+    fail_if(!looks_like_schematic(file.text()),
             "is no schematic: it does not begin with a compound tag, nameless or named Schematic");
     ByteReader reader(file.bytes, "the tags");
     std::string_view name;
@@ -320,9 +320,7 @@ class SchematicGrid final : public VoxelGrid {
           nbt_skip(reader, of);
         }
       }
-      if (count > 1) {
-        notes.push_back(concat("of its ", count, " palettes the first is shown"));
-      }
+      note_if(count > 1, notes, "of its ", count, " palettes the first is shown");
     } else {
       const std::size_t from = static_cast<std::size_t>(reader.offset());
       nbt_skip(reader, NbtKind::kList);
@@ -511,13 +509,12 @@ class SchematicGrid final : public VoxelGrid {
 }  // namespace
 
 /// True for a compound named Schematic, or a nameless one whose first tag has a name, unpacked.
-bool looks_like_schematic(std::span<const std::uint8_t> bytes) {
-  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+bool looks_like_schematic(std::string_view text) {
   constexpr std::string_view kNamed("\x0A\x00\x09Schematic", 12);
   constexpr std::string_view kNameless("\x0A\x00\x00", 3);
-  return text.starts_with(kNamed) || (text.starts_with(kNameless) && text.size() > 6 && bytes[3] > 0 &&
-                                      bytes[3] <= static_cast<std::uint8_t>(NbtKind::kLongs) &&
-                                      bytes[4] == 0 && bytes[5] > 0 && bytes[6] > ' ');
+  return text.starts_with(kNamed) || (text.starts_with(kNameless) && text.size() > 6 && text[3] > 0 &&
+                                      text[3] <= static_cast<char>(NbtKind::kLongs) && text[4] == 0 &&
+                                      text[5] != 0 && static_cast<std::uint8_t>(text[6]) > ' ');
 }
 
 /// Memory: 4 bytes a palette entry, 80 a region.

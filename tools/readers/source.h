@@ -5,6 +5,7 @@
 /// header claims. Streaming methods may be called any number of times and give the same sequence each time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <variant>
@@ -46,6 +47,29 @@ using Palette = std::array<Material, 256>;
 /// What a file says and its source leaves out or had to decide: a sentence each, without "note:" and without a
 /// full stop.
 using Notes = std::vector<std::string>;
+/// Adds one of these pieces where `is_so`.
+template <class... Pieces>
+void note_if(bool is_so, Notes& notes, const Pieces&... pieces) {
+  if (is_so) {
+    notes.push_back(concat(pieces...));
+  }
+}
+
+/// The smallest box along the axes that holds the points added.
+template <class Number>
+struct Extent {
+  std::array<Number, 3> low{}, high{};
+  bool empty = true;
+
+  /// Grows the box; of reals, finite ones.
+  void add(const std::array<Number, 3>& point) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = empty ? point[axis] : std::min(low[axis], point[axis]);
+      high[axis] = empty ? point[axis] : std::max(high[axis], point[axis]);
+    }
+    empty = false;
+  }
+};
 
 /// Voxels with whole-number positions: `.vox`.
 class VoxelModel {

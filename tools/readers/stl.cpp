@@ -59,18 +59,14 @@ TriangleMesh read_binary(const SharedBytes& file, ProgressMeter& meter) {
     }
     attributed += reader.u16() != 0 ? 1U : 0U;
     add(mesh, corners);
-    meter.at(static_cast<std::size_t>(reader.offset()));
+    meter.at(reader.offset());
   }
   fail_if(count == 0 && reader.remaining() != 0, "the header counts no triangles, but ", reader.remaining(),
           " bytes follow it");
-  if (attributed != 0) {
-    mesh.notes.push_back(counted(attributed, "triangle has", "triangles have") +
-                         " attributes, which may be colors; they are not read");
-  }
-  if (reader.remaining() != 0) {
-    mesh.notes.push_back(concat(reader.remaining(), " bytes behind the last of the ", count,
-                                " triangles that the header counts are not read"));
-  }
+  note_if(attributed != 0, mesh.notes, counted(attributed, "triangle has", "triangles have"),
+          " attributes, which may be colors; they are not read");
+  note_if(reader.remaining() != 0, mesh.notes, reader.remaining(), " bytes behind the last of the ", count,
+          " triangles that the header counts are not read");
   return mesh;
 }
 
@@ -121,8 +117,7 @@ TriangleMesh read_text(std::string_view text, ProgressMeter& meter) {
 }  // namespace
 
 /// Recognises the text form; a binary file does not say what it is.
-bool looks_like_stl(std::span<const std::uint8_t> bytes) {
-  const std::string_view text = SharedBytes{bytes, nullptr}.text();
+bool looks_like_stl(std::string_view text) {
   return begins_with_solid(text) && text.substr(0, kFirstLookBytes).find("facet") != std::string_view::npos &&
          text.substr(0, kFirstLookBytes).find('\0') == std::string_view::npos;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "output/units.h"
+
 namespace thimble::tools {
 
 namespace {
@@ -76,18 +78,21 @@ double finite_number(std::string_view word, std::uint64_t line, const std::strin
   fail_at_line(line, what, " is ", quoted(word), ", which is not a number");
 }
 
+double number_or_nan(std::string_view word, std::uint64_t line) {
+  double value = std::nan("");
+  if (parse_number(word, value) == NumberKind::kGarbage) {
+    fail_at_line(line, quoted(word), " is not a number");
+  }
+  return value;
+}
+
 bool parse_integer(std::string_view word, std::int64_t& value) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') {
     word.remove_prefix(1);
   }
-  std::int64_t parsed = 0;
-  const char* end = word.data() + word.size();
-  const std::from_chars_result result = std::from_chars(word.data(), end, parsed);
-  if (result.ec != std::errc{} || result.ptr != end) {
-    return false;
-  }
-  value = parsed;
-  return true;
+  const auto parsed = number_in<std::int64_t>(word);
+  value = parsed.value_or(value);
+  return parsed.has_value();
 }
 
 std::string_view take_word(std::string_view& line) {

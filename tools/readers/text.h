@@ -4,6 +4,7 @@
 /// a point whatever the locale says; a leading + is accepted. Nothing here allocates except to throw.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -50,6 +51,10 @@ NumberKind parse_number(std::string_view word, double& value);
 /// @param what  names the place within the line, for example "x of vertex 3"
 /// @throws InputError naming the line for anything that is no finite number
 double finite_number(std::string_view word, std::uint64_t line, const std::string& what);
+
+/// The number that `word` is; NaN for one that is not finite.
+/// @throws InputError naming the line for anything that is no number
+double number_or_nan(std::string_view word, std::uint64_t line);
 
 /// Reads all of `word` as an integer of 64 bits; false for anything else, and `value` is then unchanged.
 bool parse_integer(std::string_view word, std::int64_t& value);
@@ -122,28 +127,27 @@ class WordReader {
   std::uint64_t line_;
 };
 
-/// Calls a `Progress` about once a quarter of a megabyte, so that asking costs nothing.
+/// Calls a `Progress` about once a quarter of a megabyte, or of a million voxels, so that asking costs nothing.
 class ProgressMeter {
  public:
   /// Of what nobody waits for.
   ProgressMeter() = default;
-  ProgressMeter(const Progress& progress, std::size_t total_bytes)
-      : progress_(&progress), total_bytes_(total_bytes) {}
+  ProgressMeter(const Progress& progress, std::uint64_t total) : progress_(&progress), total_(total) {}
 
-  void at(std::size_t offset) {
+  void at(std::uint64_t offset) {
     if (offset >= due_) {
-      due_ = offset + kStepBytes;
+      due_ = offset + kStep;
       if (progress_ != nullptr && *progress_) {
-        (*progress_)(static_cast<double>(offset) / static_cast<double>(total_bytes_ + 1));
+        (*progress_)(std::min(1.0, static_cast<double>(offset) / static_cast<double>(total_ + 1)));
       }
     }
   }
 
  private:
-  static constexpr std::size_t kStepBytes = 1 << 18;
+  static constexpr std::uint64_t kStep = 1 << 18;
   const Progress* progress_ = nullptr;
-  std::size_t total_bytes_ = 0;
-  std::size_t due_ = kStepBytes;
+  std::uint64_t total_ = 0;
+  std::uint64_t due_ = kStep;
 };
 
 }  // namespace thimble::tools

@@ -232,10 +232,8 @@ void Textures::add_notes(Notes& notes) const {
   for (std::size_t i = 0; i < std::min(faults_.size(), kMostSentences); ++i) {
     notes.push_back(faults_[i]);
   }
-  if (faults_.size() > kMostSentences) {
-    const std::size_t more = faults_.size() - kMostSentences;
-    notes.push_back(counted(more, "more picture is", "more pictures are") + " not drawn");
-  }
+  note_if(faults_.size() > kMostSentences, notes,
+          counted(faults_.size() - kMostSentences, "more picture is", "more pictures are"), " not drawn");
 }
 
 }  // namespace thimble::tools

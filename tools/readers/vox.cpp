@@ -152,7 +152,7 @@ void read_matl(ByteReader& chunk, Palette& palette) {
                       : text == "_media" ? SurfaceKind::kMedia
                                          : SurfaceKind::kDiffuse;
     }
-    const double value = vox_number<double>(text).value_or(std::nan(""));
+    const double value = number_in<double>(text).value_or(std::nan(""));
     for (std::size_t i = 0; i < kProperties.size() && !key.empty() && !std::isnan(value); ++i) {
       const bool is_newer = key == kProperties[i].name;
       if (is_newer || (key == kProperties[i].old_name && !has_newer[i])) {
@@ -162,73 +162,6 @@ void read_matl(ByteReader& chunk, Palette& palette) {
     }
   });
 }
-
-class VoxFile final : public VoxelModel {
- public:
-  VoxFile(SharedBytes file, const Progress& progress, std::optional<std::uint32_t> frame)
-      : file_(std::move(file)), frame_(frame) {
-    ProgressMeter meter(progress, file_.bytes.size());
-    read_chunks(meter);
-    place_models();
-    set_size();
-  }
-
-  void for_each(const Visit& visit) const override { visit_placed(instances_, visit); }
-  void for_each_in_frames(const Visit& visit) const override { visit_placed(in_frames_, visit); }
-  std::array<std::int32_t, 3> size() const override { return size_; }
-  const Palette& palette() const override { return palette_; }
-  std::uint32_t frames() const override { return frames_; }
-
- private:
-  template <class Instances>
-  void visit_placed(const Instances& instances, const Visit& visit) const {
-    for (const Instance& instance : instances) {
-      const std::span<const std::uint8_t> voxels = models_[instance.model].voxels;
-      for (std::size_t at = 0; at < voxels.size(); at += kVoxelBytes) {
-        const std::uint8_t* voxel = voxels.data() + at;
-        if (voxel[3] == 0) {
-          continue;
-        }
-        const auto world = [&](std::size_t i) {
-          return instance.sign[i] * voxel[instance.axis[i]] + instance.offset[i] - low_[i];
-        };
-        visit(world(0), world(1), world(2), voxel[3]);
-      }
-    }
-  }
-  void read_chunks(ProgressMeter& meter);
-  void read_size(ByteReader& chunk);
-  void read_voxels(ByteReader& chunk, ProgressMeter& meter);
-  void read_packed(ByteReader& chunk, ProgressMeter& meter);
-  Model take_size(ByteReader& chunk);
-  void check_size_used() const;
-  void place_models();
-  void place_frames();
-  void place_scene();
-  void add_to_frames(const Instance& instance);
-  void set_size();
-
-  SharedBytes file_;
-  Palette palette_ = vox_default_palette();
-  std::deque<std::vector<std::uint8_t>> unpacked_;  // voxels of models that were packed
-  std::vector<Model> models_;
-  std::vector<Instance> instances_;
-  std::set<Instance> in_frames_;  // those of all frames, each once
-  std::array<std::int32_t, 3> size_{};
-  std::array<std::int32_t, 3> low_{};  // of all frames' boxes: what lies there is at 0,0,0
-  std::uint32_t frames_ = 1;
-
-  // Only while reading.
-  VoxScene scene_;
-  std::optional<std::uint32_t> frame_;
-  std::array<std::int32_t, 3> high_{};
-  std::uint64_t voxels_in_frames_ = 0;
-  bool has_box_ = false;
-  std::uint64_t unpacked_bytes_ = 0;  // of all packed models
-  bool size_pending_ = false;         // a SIZE waits for its XYZI
-  std::array<std::uint32_t, 3> pending_size_{};
-  std::string pending_place_;
-};
 
 struct ChunkHead {
   std::string_view id;
@@ -250,213 +183,261 @@ ChunkHead read_head(ByteReader& reader) {
   return head;
 }
 
-void VoxFile::read_chunks(ProgressMeter& meter) {
-  ByteReader file(file_.bytes);
-  file.expect("VOX ", "MagicaVoxel file");
-  const std::uint32_t version = file.u32();
-  fail_if(version != 150 && version != 200, "version ", version,
-          " at byte offset 4 is not supported, only 150 and 200 are");
-  const ChunkHead main = read_head(file);
-  fail_if(main.id != "MAIN", vox_place(main.id, main.offset), ": the first chunk must be MAIN");
-  file.skip(main.content_bytes);
-  ByteReader chunks = file.sub(main.children_bytes, vox_place(main.id, main.offset));
-  while (chunks.remaining() > 0) {
-    const ChunkHead head = read_head(chunks);
-    ByteReader chunk = chunks.sub(head.content_bytes, vox_place(head.id, head.offset));
-    chunks.skip(head.children_bytes);  // no known chunk but MAIN has children
-    if (head.id == "SIZE") {
-      read_size(chunk);
-    } else if (head.id == "XYZI") {
-      read_voxels(chunk, meter);
-    } else if (head.id == "TDCZ") {
-      read_packed(chunk, meter);
-    } else if (head.id == "RGBA") {
-      read_rgba(chunk, palette_);
-    } else if (head.id == "MATT") {
-      read_matt(chunk, palette_);
-    } else if (head.id == "MATL") {
-      read_matl(chunk, palette_);
-    } else if (const auto* const node = std::find(kVoxNodes.begin(), kVoxNodes.end(), head.id);
-               node != kVoxNodes.end()) {
-      scene_.add_node(chunk, static_cast<std::size_t>(node - kVoxNodes.begin()), head.offset);
-    } else if (head.id == "LAYR") {
-      scene_.add_layer(chunk);
-    }
-    // PACK only repeats the number of models, which their chunks tell better.
-    meter.at(static_cast<std::size_t>(chunks.offset()));
+class VoxFile final : public VoxelModel {
+ public:
+  VoxFile(SharedBytes file, const Progress& progress, std::optional<std::uint32_t> frame)
+      : file_(std::move(file)), frame_(frame) {
+    ProgressMeter meter(progress, file_.bytes.size());
+    read_chunks(meter);
+    place_models();
   }
-  check_size_used();
-  fail_if(models_.empty(), vox_place(main.id, main.offset),
-          ": holds no model, no XYZI or TDCZ chunk is there");
-}
 
-void VoxFile::check_size_used() const {
-  fail_if(size_pending_, pending_place_, ": no XYZI chunk follows before the next SIZE or the end");
-}
-
-void VoxFile::read_size(ByteReader& chunk) {
-  check_size_used();
-  for (std::uint32_t& side : pending_size_) {
-    side = chunk.u32();
-    chunk.fail_if(side > kVoxModelSideLimit, "a side of ", side, " voxels is over the limit of ",
-                  kVoxModelSideLimit);
-  }
-  size_pending_ = true;
-  pending_place_ = chunk.place();
-}
-
-Model VoxFile::take_size(ByteReader& chunk) {
-  chunk.fail_if(!size_pending_, "no SIZE chunk stands before it");
-  size_pending_ = false;
-  Model model;
-  model.size = pending_size_;
-  return model;
-}
-
-/// As the game Teardown writes it: the size again, then a byte a voxel, x the fastest, by zlib.
-void VoxFile::read_packed(ByteReader& chunk, ProgressMeter& meter) {
-  Model model = take_size(chunk);
-  std::uint64_t count = 1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    chunk.fail_if(chunk.u32() != model.size[i], "its size is not that of the SIZE chunk before it");
-    count *= model.size[i];
-  }
-  constexpr std::uint64_t kAlwaysBytes = 256 << 20;
-  unpacked_bytes_ += count;
-  chunk.fail_if(unpacked_bytes_ > kAlwaysBytes && unpacked_bytes_ / 100 > file_.bytes.size(),
-                "packed models are more than 100 times what the file has");
-  const SharedBytes dense =
-      inflate_bytes(chunk.take(chunk.remaining()), Deflated::kZlib, count, chunk.place());
-  chunk.fail_if(dense.bytes.size() != count, "it unpacks to ", dense.bytes.size(), " voxels, not ", count);
-  const auto solid =
-      count - static_cast<std::uint64_t>(std::count(dense.bytes.begin(), dense.bytes.end(), 0));
-  std::vector<std::uint8_t> voxels;
-  voxels.reserve(static_cast<std::size_t>(solid * kVoxelBytes));
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const std::uint8_t material = dense.bytes[i];
-    if (material != 0) {
-      const std::uint64_t row = i / model.size[0];
-      voxels.insert(voxels.end(), {static_cast<std::uint8_t>(i % model.size[0]),
-                                   static_cast<std::uint8_t>(row % model.size[1]),
-                                   static_cast<std::uint8_t>(row / model.size[1]), material});
-    }
-  }
-  model.empty = voxels.empty();
-  model.voxels = unpacked_.emplace_back(std::move(voxels));
-  models_.push_back(model);
-  meter.at(static_cast<std::size_t>(chunk.offset()));
-}
-
-void VoxFile::read_voxels(ByteReader& chunk, ProgressMeter& meter) {
-  Model model = take_size(chunk);
-  const std::uint32_t count = chunk.u32();
-  chunk.fail_if(chunk.remaining() / kVoxelBytes < count, count, " voxels of 4 bytes do not fit the ",
-                chunk.remaining(), " bytes that are left");
-  const std::uint64_t first_offset = chunk.offset();
-  model.voxels = chunk.take(std::uint64_t{count} * kVoxelBytes);
-  for (std::size_t at = 0; at < model.voxels.size(); at += kVoxelBytes) {
-    const std::uint8_t* voxel = model.voxels.data() + at;
-    for (std::size_t i = 0; i < 3; ++i) {
-      chunk.fail_if(voxel[i] >= model.size[i], "the voxel at byte offset ", first_offset + at, " lies at ",
-                    voxel[i], " on the ", "xyz"[i], " axis, outside its model of ", model.size[i], " voxels");
-    }
-    model.empty = model.empty && voxel[3] == 0;
-    meter.at(static_cast<std::size_t>(first_offset) + at);
-  }
-  models_.push_back(model);
-}
-
-void VoxFile::place_models() {
-  if (scene_.empty()) {
-    frames_ = static_cast<std::uint32_t>(models_.size());
-  } else if (const auto& keys = scene_.frames(); !keys.empty()) {
-    frames_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(keys.back(), 0, UINT32_MAX - 1) + 1);
-  }
-  if (frame_ && *frame_ >= frames_) {
-    throw InputError("there is no frame ", *frame_, "; the file has ",
-                     frames_ == 1 ? "only frame 0" : "frames 0 to " + std::to_string(frames_ - 1));
-  }
-  if (scene_.empty()) {
-    place_frames();
-  } else {
-    place_scene();
-  }
-}
-
-/// Files from before the scene graph: further models are frames of an animation.
-void VoxFile::place_frames() {
-  for (std::size_t number = 0; number < models_.size(); ++number) {
-    const Instance instance =
-        make_instance(static_cast<std::uint32_t>(number), models_[number], VoxTransform{});
-    if (number == frame_.value_or(0)) {
-      instances_.push_back(instance);
-    }
-    add_to_frames(instance);
-  }
-}
-
-void VoxFile::place_scene() {
-  std::uint64_t placed_voxels = 0;
-  const std::int64_t frame = frame_ ? std::int64_t{*frame_} : std::numeric_limits<std::int64_t>::min();
-  const std::uint32_t visits = scene_.place_models(
-      frame, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t offset) {
-        const std::string at = vox_place("nSHP", offset);
-        fail_if(number >= models_.size(), at, ": model ", number, " is not among the ", models_.size(),
-                " models of this file");
-        fail_if(instances_.size() == kVoxInstanceLimit, at, ": the scene places more than the limit of ",
-                kVoxInstanceLimit, " models");
-        const Model& model = models_[number];
-        placed_voxels += model.voxels.size() / kVoxelBytes;
-        fail_if(placed_voxels > kVoxPlacedVoxelLimit, at, ": the scene places more than the limit of ",
-                kVoxPlacedVoxelLimit, " voxels");
-        instances_.push_back(make_instance(number, model, transform));
-        add_to_frames(instances_.back());
-      });
-  const std::vector<std::int64_t>& keys = scene_.frames();
-  if (keys.size() * visits <= kVoxAnimationLimit) {
-    for (const std::int64_t key : keys) {
-      scene_.place_models(key, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t) {
-        if (keys.size() > 1 && number < models_.size()) {
-          add_to_frames(make_instance(number, models_[number], transform));
-        } else if (keys.size() > 1 && notes.empty()) {
-          notes.push_back(concat("frame ", key, " is broken: it shows model ", number,
-                                 ", which is not among the ", models_.size(), " models of this file"));
-        }
-      });
-    }
-  }
-  scene_ = VoxScene{};
-  std::erase_if(instances_, [&](const Instance& instance) { return models_[instance.model].empty; });
-}
-
-/// The boxes that the file declares count, not only what is solid in them, so that the voxels of a single
-/// model keep their indices.
-void VoxFile::add_to_frames(const Instance& instance) {
-  const Model& model = models_[instance.model];
-  if (model.empty) {
-    return;
-  }
-  const std::uint64_t voxels = model.voxels.size() / kVoxelBytes;
-  if (in_frames_.size() < kVoxInstanceLimit && voxels <= kVoxPlacedVoxelLimit - voxels_in_frames_ &&
-      in_frames_.insert(instance).second) {
-    voxels_in_frames_ += voxels;
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int32_t a = instance.offset[i];
-    const std::int32_t b =
-        instance.sign[i] * (static_cast<std::int32_t>(model.size[instance.axis[i]]) - 1) + instance.offset[i];
-    low_[i] = has_box_ ? std::min({low_[i], a, b}) : std::min(a, b);
-    high_[i] = has_box_ ? std::max({high_[i], a, b}) : std::max(a, b);
-  }
-  has_box_ = true;
-}
-
-void VoxFile::set_size() {
-  for (std::size_t i = 0; has_box_ && i < 3; ++i) {
+  void for_each(const Visit& visit) const override { visit_placed(instances_, visit); }
+  void for_each_in_frames(const Visit& visit) const override { visit_placed(in_frames_, visit); }
+  std::array<std::int32_t, 3> size() const override {
     // At most 2^25 + 512 apart, by the limit on translations.
-    size_[i] = high_[i] - low_[i] + 1;
+    const auto side = [this](std::size_t i) { return box_.empty ? 0 : box_.high[i] - box_.low[i] + 1; };
+    return {side(0), side(1), side(2)};
   }
-}
+  const Palette& palette() const override { return palette_; }
+  std::uint32_t frames() const override { return frames_; }
+
+ private:
+  template <class Instances>
+  void visit_placed(const Instances& instances, const Visit& visit) const {
+    for (const Instance& instance : instances) {
+      const std::span<const std::uint8_t> voxels = models_[instance.model].voxels;
+      for (std::size_t at = 0; at < voxels.size(); at += kVoxelBytes) {
+        const std::uint8_t* voxel = voxels.data() + at;
+        if (voxel[3] == 0) {
+          continue;
+        }
+        const auto world = [&](std::size_t i) {
+          return instance.sign[i] * voxel[instance.axis[i]] + instance.offset[i] - box_.low[i];
+        };
+        visit(world(0), world(1), world(2), voxel[3]);
+      }
+    }
+  }
+
+  void read_chunks(ProgressMeter& meter) {
+    ByteReader file(file_.bytes);
+    file.expect("VOX ", "MagicaVoxel file");
+    const std::uint32_t version = file.u32();
+    fail_if(version != 150 && version != 200, "version ", version,
+            " at byte offset 4 is not supported, only 150 and 200 are");
+    const ChunkHead main = read_head(file);
+    fail_if(main.id != "MAIN", vox_place(main.id, main.offset), ": the first chunk must be MAIN");
+    file.skip(main.content_bytes);
+    ByteReader chunks = file.sub(main.children_bytes, vox_place(main.id, main.offset));
+    while (chunks.remaining() > 0) {
+      const ChunkHead head = read_head(chunks);
+      ByteReader chunk = chunks.sub(head.content_bytes, vox_place(head.id, head.offset));
+      chunks.skip(head.children_bytes);  // no known chunk but MAIN has children
+      if (head.id == "SIZE") {
+        read_size(chunk);
+      } else if (head.id == "XYZI") {
+        read_voxels(chunk, meter);
+      } else if (head.id == "TDCZ") {
+        read_packed(chunk, meter);
+      } else if (head.id == "RGBA") {
+        read_rgba(chunk, palette_);
+      } else if (head.id == "MATT") {
+        read_matt(chunk, palette_);
+      } else if (head.id == "MATL") {
+        read_matl(chunk, palette_);
+      } else if (const auto* const node = std::find(kVoxNodes.begin(), kVoxNodes.end(), head.id);
+                 node != kVoxNodes.end()) {
+        scene_.add_node(chunk, static_cast<std::size_t>(node - kVoxNodes.begin()), head.offset);
+      } else if (head.id == "LAYR") {
+        scene_.add_layer(chunk);
+      }
+      // PACK only repeats the number of models, which their chunks tell better.
+      meter.at(chunks.offset());
+    }
+    check_size_used();
+    fail_if(models_.empty(), vox_place(main.id, main.offset),
+            ": holds no model, no XYZI or TDCZ chunk is there");
+  }
+
+  void check_size_used() const {
+    fail_if(size_pending_, pending_place_, ": no XYZI chunk follows before the next SIZE or the end");
+  }
+
+  void read_size(ByteReader& chunk) {
+    check_size_used();
+    for (std::uint32_t& side : pending_size_) {
+      side = chunk.u32();
+      chunk.fail_if(side > kVoxModelSideLimit, "a side of ", side, " voxels is over the limit of ",
+                    kVoxModelSideLimit);
+    }
+    size_pending_ = true;
+    pending_place_ = chunk.place();
+  }
+
+  Model take_size(ByteReader& chunk) {
+    chunk.fail_if(!size_pending_, "no SIZE chunk stands before it");
+    size_pending_ = false;
+    Model model;
+    model.size = pending_size_;
+    return model;
+  }
+
+  /// As the game Teardown writes it: the size again, then a byte a voxel, x the fastest, by zlib.
+  void read_packed(ByteReader& chunk, ProgressMeter& meter) {
+    Model model = take_size(chunk);
+    std::uint64_t count = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      chunk.fail_if(chunk.u32() != model.size[i], "its size is not that of the SIZE chunk before it");
+      count *= model.size[i];
+    }
+    constexpr std::uint64_t kAlwaysBytes = 256 << 20;
+    unpacked_bytes_ += count;
+    chunk.fail_if(unpacked_bytes_ > kAlwaysBytes && unpacked_bytes_ / 100 > file_.bytes.size(),
+                  "packed models are more than 100 times what the file has");
+    const SharedBytes dense =
+        inflate_bytes(chunk.take(chunk.remaining()), Deflated::kZlib, count, chunk.place());
+    chunk.fail_if(dense.bytes.size() != count, "it unpacks to ", dense.bytes.size(), " voxels, not ", count);
+    const auto solid =
+        count - static_cast<std::uint64_t>(std::count(dense.bytes.begin(), dense.bytes.end(), 0));
+    std::vector<std::uint8_t> voxels;
+    voxels.reserve(static_cast<std::size_t>(solid * kVoxelBytes));
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::uint8_t material = dense.bytes[i];
+      if (material != 0) {
+        const std::uint64_t row = i / model.size[0];
+        voxels.insert(voxels.end(), {static_cast<std::uint8_t>(i % model.size[0]),
+                                     static_cast<std::uint8_t>(row % model.size[1]),
+                                     static_cast<std::uint8_t>(row / model.size[1]), material});
+      }
+    }
+    model.empty = voxels.empty();
+    model.voxels = unpacked_.emplace_back(std::move(voxels));
+    models_.push_back(model);
+    meter.at(chunk.offset());
+  }
+
+  void read_voxels(ByteReader& chunk, ProgressMeter& meter) {
+    Model model = take_size(chunk);
+    const std::uint32_t count = chunk.u32();
+    chunk.fail_if(chunk.remaining() / kVoxelBytes < count, count, " voxels of 4 bytes do not fit the ",
+                  chunk.remaining(), " bytes that are left");
+    const std::uint64_t first_offset = chunk.offset();
+    model.voxels = chunk.take(std::uint64_t{count} * kVoxelBytes);
+    for (std::size_t at = 0; at < model.voxels.size(); at += kVoxelBytes) {
+      const std::uint8_t* voxel = model.voxels.data() + at;
+      for (std::size_t i = 0; i < 3; ++i) {
+        chunk.fail_if(voxel[i] >= model.size[i], "the voxel at byte offset ", first_offset + at, " lies at ",
+                      voxel[i], " on the ", "xyz"[i], " axis, outside its model of ", model.size[i],
+                      " voxels");
+      }
+      model.empty = model.empty && voxel[3] == 0;
+      meter.at(static_cast<std::size_t>(first_offset) + at);
+    }
+    models_.push_back(model);
+  }
+
+  void place_models() {
+    if (scene_.empty()) {
+      frames_ = static_cast<std::uint32_t>(models_.size());
+    } else if (const auto& keys = scene_.frames(); !keys.empty()) {
+      frames_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(keys.back(), 0, UINT32_MAX - 1) + 1);
+    }
+    if (frame_ && *frame_ >= frames_) {
+      throw InputError("there is no frame ", *frame_, "; the file has ",
+                       frames_ == 1 ? "only frame 0" : "frames 0 to " + std::to_string(frames_ - 1));
+    }
+    if (scene_.empty()) {
+      place_frames();
+    } else {
+      place_scene();
+    }
+  }
+
+  /// Files from before the scene graph: further models are frames of an animation.
+  void place_frames() {
+    for (std::size_t number = 0; number < models_.size(); ++number) {
+      const Instance instance =
+          make_instance(static_cast<std::uint32_t>(number), models_[number], VoxTransform{});
+      if (number == frame_.value_or(0)) {
+        instances_.push_back(instance);
+      }
+      add_to_frames(instance);
+    }
+  }
+
+  void place_scene() {
+    std::uint64_t placed_voxels = 0;
+    const std::int64_t frame = frame_ ? std::int64_t{*frame_} : std::numeric_limits<std::int64_t>::min();
+    const std::uint32_t visits = scene_.place_models(
+        frame, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t offset) {
+          const std::string at = vox_place("nSHP", offset);
+          fail_if(number >= models_.size(), at, ": model ", number, " is not among the ", models_.size(),
+                  " models of this file");
+          fail_if(instances_.size() == kVoxInstanceLimit, at, ": the scene places more than the limit of ",
+                  kVoxInstanceLimit, " models");
+          const Model& model = models_[number];
+          placed_voxels += model.voxels.size() / kVoxelBytes;
+          fail_if(placed_voxels > kVoxPlacedVoxelLimit, at, ": the scene places more than the limit of ",
+                  kVoxPlacedVoxelLimit, " voxels");
+          instances_.push_back(make_instance(number, model, transform));
+          add_to_frames(instances_.back());
+        });
+    const std::vector<std::int64_t>& keys = scene_.frames();
+    if (keys.size() * visits <= kVoxAnimationLimit) {
+      for (const std::int64_t key : keys) {
+        scene_.place_models(key, [&](std::uint32_t number, const VoxTransform& transform, std::uint64_t) {
+          if (keys.size() > 1 && number < models_.size()) {
+            add_to_frames(make_instance(number, models_[number], transform));
+          } else if (keys.size() > 1 && notes.empty()) {
+            notes.push_back(concat("frame ", key, " is broken: it shows model ", number,
+                                   ", which is not among the ", models_.size(), " models of this file"));
+          }
+        });
+      }
+    }
+    scene_ = VoxScene{};
+    std::erase_if(instances_, [&](const Instance& instance) { return models_[instance.model].empty; });
+  }
+
+  /// The boxes that the file declares count, not only what is solid in them, so that the voxels of a single
+  /// model keep their indices.
+  void add_to_frames(const Instance& instance) {
+    const Model& model = models_[instance.model];
+    if (model.empty) {
+      return;
+    }
+    const std::uint64_t voxels = model.voxels.size() / kVoxelBytes;
+    if (in_frames_.size() < kVoxInstanceLimit && voxels <= kVoxPlacedVoxelLimit - voxels_in_frames_ &&
+        in_frames_.insert(instance).second) {
+      voxels_in_frames_ += voxels;
+    }
+    std::array<std::int32_t, 3> last = instance.offset;
+    for (std::size_t i = 0; i < 3; ++i) {
+      last[i] += instance.sign[i] * (static_cast<std::int32_t>(model.size[instance.axis[i]]) - 1);
+    }
+    box_.add(instance.offset);
+    box_.add(last);
+  }
+
+  SharedBytes file_;
+  Palette palette_ = vox_default_palette();
+  std::deque<std::vector<std::uint8_t>> unpacked_;  // voxels of models that were packed
+  std::vector<Model> models_;
+  std::vector<Instance> instances_;
+  std::set<Instance> in_frames_;  // those of all frames, each once
+  Extent<std::int32_t> box_{};    // of all frames: what lies in its lowest corner is at 0,0,0
+  std::uint32_t frames_ = 1;
+
+  // Only while reading.
+  VoxScene scene_;
+  std::optional<std::uint32_t> frame_;
+  std::uint64_t voxels_in_frames_ = 0;
+  std::uint64_t unpacked_bytes_ = 0;  // of all packed models
+  bool size_pending_ = false;         // a SIZE waits for its XYZI
+  std::array<std::uint32_t, 3> pending_size_{};
+  std::string pending_place_;
+};
 
 }  // namespace
 

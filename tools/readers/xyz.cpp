@@ -566,23 +566,18 @@ Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progr
   if (layout.has_color) {
     layout.scale.add_note(cloud->notes);
   }
-  if (layout.title_line != 0) {
-    cloud->notes.push_back(concat("line ", layout.title_line,
-                                  " names no columns x, y and z: the first three are taken for places"));
-  } else if (layout.unread_columns != 0 && !layout.is_catalogue()) {
-    cloud->notes.push_back(
-        "the column " + quoted(layout.unread) +
-        (layout.unread_columns == 1 ? " is" : concat(" and ", layout.unread_columns - 1, " more are")) +
-        " not read");
-  }
-  if (layout.has_elements) {
-    cloud->notes.push_back("it is a molecule: its atoms are points, their elements are not shown");
-  } else if (columns > (layout.has_color ? 6U : 3U)) {
-    const std::size_t color = layout.columns[3] + 1;
-    cloud->notes.push_back(concat("no line names the ", columns, " columns: 1 to 3 are taken for places, ",
-                                  layout.has_color ? concat(color, " to ", color + 2) : "none",
-                                  " for colors"));
-  }
+  note_if(layout.title_line != 0, cloud->notes, "line ", layout.title_line,
+          " names no columns x, y and z: the first three are taken for places");
+  note_if(layout.title_line == 0 && layout.unread_columns != 0 && !layout.is_catalogue(), cloud->notes,
+          "the column ", quoted(layout.unread),
+          layout.unread_columns == 1 ? " is" : concat(" and ", layout.unread_columns - 1, " more are"),
+          " not read");
+  const std::size_t color = layout.columns[3] + 1;
+  note_if(layout.has_elements, cloud->notes,
+          "it is a molecule: its atoms are points, their elements are not shown");
+  note_if(!layout.has_elements && columns > (layout.has_color ? 6U : 3U), cloud->notes, "no line names the ",
+          columns, " columns: 1 to 3 are taken for places, ",
+          layout.has_color ? concat(color, " to ", color + 2) : "none", " for colors");
   return cloud;
 }
 

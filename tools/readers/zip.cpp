@@ -39,9 +39,8 @@ std::vector<ZipMember> zip_members(const SharedBytes& archive) {
   std::vector<ZipMember> members;
   for (unsigned i = 0; i < count; ++i) {
     const std::string place = concat("entry ", i + 1, " of the archive's directory");
-    if (whole.u32() != kEntrySignature) {
-      throw InputError(place, " is none, before byte offset ", whole.offset());
-    }
+    const std::uint32_t signature = whole.u32();
+    fail_if(signature != kEntrySignature, place, " is none, before byte offset ", whole.offset());
     whole.skip(4);
     const unsigned flags = whole.u16();
     const unsigned method = whole.u16();

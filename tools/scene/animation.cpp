@@ -22,7 +22,6 @@ namespace {
 // the NETSCAPE2.0 extension that repeats; for each frame its delay (a graphic control extension), an image descriptor
 // and its pixels, one byte an index, by LZW in blocks of at most 255 bytes; at the end 0x3B. LZW: codes from 9 to 12
 // bits, lowest bit first; 256 clears the table, 257 ends the frame, new words count from 258; a full table is cleared.
-using GifPalette = std::array<Rgb8, 256>;
 
 // Codes of a changing number of bits, in blocks that begin with their length.
 class Codes {
@@ -105,12 +104,12 @@ void put_size(std::string* out, const Image& image) {
 }
 
 /// What stands in front of the frames. Sides of 1 .. 65,535 pixels.
-std::string gif_header(const Image& image, const GifPalette& palette) {
+std::string gif_header(const Image& image, const Palette& palette) {
   std::string out = "GIF89a";
   put_size(&out, image);
   append_little(&out, 0xF7, 3);  // a palette of 2^8 colours, 8 bits a channel; background 0; square pixels
-  for (const Rgb8& color : palette) {
-    for (const std::uint8_t channel : {color.r, color.g, color.b}) {
+  for (const Material& entry : palette) {
+    for (const std::uint8_t channel : {entry.color.r, entry.color.g, entry.color.b}) {
       append_little(&out, channel, 1);
     }
   }
@@ -140,10 +139,7 @@ class GifColors {
 
   explicit GifColors(const ColorHistogram& histogram) {
     const PaletteMap map(histogram);
-    for (std::size_t i = 0; i < colors_.size(); ++i) {
-      const Rgb color = map.palette()[i].color;
-      colors_[i] = {color.r, color.g, color.b};
-    }
+    palette_ = map.palette();
     for (std::size_t bin = 0; bin < entries_.size(); ++bin) {
       const auto middle = [&](unsigned shift) {
         return static_cast<std::uint8_t>((bin >> shift & 31) * 8 + 4);
@@ -151,7 +147,7 @@ class GifColors {
       entries_[bin] = map.index({middle(10), middle(5), middle(0)});
     }
   }
-  const GifPalette& palette() const { return colors_; }
+  const Palette& palette() const { return palette_; }
   std::vector<std::uint8_t> indices(const Image& image) const {
     std::vector<std::uint8_t> result;
     for_pixels(image, [&](Rgb color) {
@@ -179,7 +175,7 @@ class GifColors {
     }
   }
 
-  GifPalette colors_{};
+  Palette palette_{};
   std::array<std::uint8_t, 1 << 3 * kBits> entries_{};  // of every bin
 };
 

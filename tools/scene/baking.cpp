@@ -179,7 +179,7 @@ class Coarsener {
     fail_if(Octree::make(tree.level(), memory_.bytes(), &octree_) != Status::kOk,
             "internal error: no pool to coarsen in");
     // In Morton order, so that the passes over the pool go through memory from front to back.
-    for_each_block(tree, [&](const Vec3i& at, int level, std::uint8_t material) {
+    walk_blocks(tree, [&](const Vec3i& at, int level, std::uint8_t material) {
       fail_if(octree_.insert_block(at, level, material) != Status::kOk,
               "the scene does not fit into this machine's memory");
     });
@@ -234,9 +234,7 @@ std::vector<std::uint8_t> coarsened_tree(const CompactTree& exact, std::uint64_t
   // Whether the pool's tree fits. If so it goes back to the last that did not, else continues from here.
   int trials = 0;
   const auto fits = [&] {
-    if (progress) {
-      progress(1 - 1.0 / (1 + ++trials));
-    }
+    tell(progress, 1 - 1.0 / (1 + ++trials));
     const std::size_t size = pool.tree_bytes();
     if (size == 0 || size > limit) {
       high = pool.octree().nodes_used();

@@ -74,7 +74,14 @@ PointTree parted_tree(const SceneSource& source, Bytes rest, const BuildOptions&
 // any workspace; the other structures are filled from it.
 class StructureBuilder {
  public:
-  struct Shortage {};  // thrown: the arena is too small
+  // Thrown where the arena is too small.
+  struct Shortage {
+    static void throw_if(bool is_short) {
+      if (is_short) {
+        throw Shortage{};
+      }
+    }
+  };
 
   // All that is given outlives the builder.
   StructureBuilder(const SceneSource& source, Arena* arena, const BuildOptions& options,
@@ -128,14 +135,10 @@ class StructureBuilder {
   void build_dense() {
     const Vec3i size = grid_size(extent_of(source_), source_.level());
     const Bytes bytes = arena_.take(dense_grid_bytes(size));
-    if (bytes.empty() || DenseGrid::make(size, bytes, &built_.dense) != Status::kOk) {
-      throw Shortage{};
-    }
+    Shortage::throw_if(bytes.empty() || DenseGrid::make(size, bytes, &built_.dense) != Status::kOk);
     source_.stream(
         [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
-          if (built_.dense.set({x, y, z}) != Status::kOk) {
-            throw InputError("a voxel lies outside the dense grid");
-          }
+          fail_if(built_.dense.set({x, y, z}) != Status::kOk, "a voxel lies outside the dense grid");
         },
         progress_);
   }
@@ -148,9 +151,8 @@ class StructureBuilder {
     // bytes, more where there are materials.
     const std::size_t pool_bytes =
         compact && coarsen ? (source_.single_material() ? rest.size / 8 * 7 : rest.size / 4 * 3) : rest.size;
-    if (Octree::make(source_.level(), rest.subspan(0, pool_bytes), &built_.pool) != Status::kOk) {
-      throw Shortage{};
-    }
+    Shortage::throw_if(Octree::make(source_.level(), rest.subspan(0, pool_bytes), &built_.pool) !=
+                       Status::kOk);
     built_.pool.set_coarsen(coarsen);
     source_.stream_blocks(
         [&](const Vec3i& at, int block_level, std::uint8_t material) { insert(at, block_level, material); },
@@ -175,9 +177,7 @@ class StructureBuilder {
       }
       status = CompactTree::make(built_.pool, target, nullptr, &size);
     }
-    if (status != Status::kOk) {
-      throw Shortage{};
-    }
+    Shortage::throw_if(status != Status::kOk);
     arena_.note_scratch(static_cast<std::size_t>(target.data - arena_.rest().data) + size);
     keep_compact(target.subspan(0, size));
   }
@@ -267,9 +267,8 @@ class StructureBuilder {
 
   // Fills the pool with part `part` (by its Morton number) of the world, `part_level` of its levels.
   void fill_part(Bytes pool, int part_level, std::size_t part) {
-    if (Octree::make(part_level, pool, &built_.pool) != Status::kOk || built_.pool.capacity() == 0) {
-      throw Shortage{};
-    }
+    Shortage::throw_if(Octree::make(part_level, pool, &built_.pool) != Status::kOk ||
+                       built_.pool.capacity() == 0);
     built_.pool.set_coarsen(true);
     const std::int32_t inside = (std::int32_t{1} << part_level) - 1;
     const auto number = [&](std::int32_t x) { return static_cast<std::uint32_t>(x >> part_level); };
@@ -295,12 +294,8 @@ class StructureBuilder {
       return;
     }
     const Status status = built_.pool.insert_block(voxel, block_level, material);
-    if (status == Status::kOutOfMemory) {
-      throw Shortage{};
-    }
-    if (status != Status::kOk) {
-      throw InputError("voxel ", voxel.x, ",", voxel.y, ",", voxel.z, " lies outside the world");
-    }
+    Shortage::throw_if(status == Status::kOutOfMemory);
+    fail_if(status != Status::kOk, "voxel ", voxel.x, ",", voxel.y, ",", voxel.z, " lies outside the world");
   }
 
   void take_baked(const CompactTree& tree) {
@@ -341,9 +336,8 @@ class StructureBuilder {
           if (count == std::min(capacity, wanted)) {
             // Repeats may have filled it.
             tidy();
-            if (streamed > capacity && (count > most_after_tidying(capacity) || capacity == 0)) {
-              throw Shortage{};
-            }
+            Shortage::throw_if(streamed > capacity &&
+                               (count > most_after_tidying(capacity) || capacity == 0));
             wanted = std::max(wanted, 2 * count);
           }
           const std::uint64_t code = morton_code(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
@@ -354,9 +348,7 @@ class StructureBuilder {
     tidy();
     // The same demand at the end, so that whether a scene fits is a matter of its counts and not of their
     // order.
-    if (streamed > capacity && count > most_after_tidying(capacity)) {
-      throw Shortage{};
-    }
+    Shortage::throw_if(streamed > capacity && count > most_after_tidying(capacity));
 
     const Bytes target = aligned(rest.subspan(count * sizeof(Key)), alignof(std::uint64_t));
     std::size_t size = 0;
@@ -367,9 +359,7 @@ class StructureBuilder {
     } else {
       status = CompactTree::make(sorted, source_.level(), target, nullptr, &size);
     }
-    if (status != Status::kOk) {
-      throw Shortage{};
-    }
+    Shortage::throw_if(status != Status::kOk);
     const std::size_t offset = static_cast<std::size_t>(rest.data - arena_.rest().data);
     arena_.note_scratch(
         std::max(offset + most, static_cast<std::size_t>(target.data - arena_.rest().data) + size));
@@ -380,9 +370,7 @@ class StructureBuilder {
   // Takes bytes for the tree at the front of what is free, and moves or copies it there.
   void keep_compact(ConstBytes tree) {
     const Bytes home = arena_.take(tree.size);
-    if (home.empty()) {
-      throw Shortage{};
-    }
+    Shortage::throw_if(home.empty());
     if (home.data != tree.data) {
       std::memmove(home.data, tree.data, tree.size);
     }
@@ -486,9 +474,7 @@ void BuiltScene::build(const SceneSource& source, std::uint64_t band_bytes, bool
   if (band_bytes != 0) {
     const bool has_state = !arena_.take(static_cast<std::size_t>(options_.render_state_bytes)).empty();
     band_ = has_state ? arena_.take(static_cast<std::size_t>(band_bytes)) : Bytes();
-    if (band_.empty()) {
-      throw StructureBuilder::Shortage{};
-    }
+    StructureBuilder::Shortage::throw_if(band_.empty());
   }
   StructureBuilder builder(source, &arena_, options_, progress);
   traced_ = builder.build(coarsen);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 
+#include "output/units.h"
 #include "readers/oct.h"
 #include "scene/scene_source.h"
 #include "thimble/trace/secondary_ray.h"
@@ -117,9 +117,7 @@ bool has_round_glass(const CompactTree& tree, const LitDescription& lighting) {
 Vec3i short_vector(const Real3& v) {
   constexpr double kLength = 1024;
   const double scale = kLength / std::sqrt(dot(v, v));
-  return {static_cast<std::int32_t>(std::lround(v[0] * scale)),
-          static_cast<std::int32_t>(std::lround(v[1] * scale)),
-          static_cast<std::int32_t>(std::lround(v[2] * scale))};
+  return {to_fixed(v[0], scale), to_fixed(v[1], scale), to_fixed(v[2], scale)};
 }
 
 // Towards a sun behind the viewer, to a side and above: what is seen is lit, and no two sides of a corner
@@ -201,15 +199,14 @@ std::string look_text(const SceneFacts& facts, const Look& look, bool own_light)
 }  // namespace
 
 LookNote note_of(const SceneFacts& facts) {
-  LookNote note;
-  note.is_mesh = facts.is_mesh;
-  note.is_points = facts.is_points;
-  note.has_colors = facts.has_colors;
-  note.has_own_light = states_light(facts.lighting);
-  note.has_own_sky = facts.lighting.rest.has_sky;
-  note.on = facts.lighting.on;
-  note.off = facts.lighting.off;
-  return note;
+  const LitDescription& lit = facts.lighting;
+  return {.is_mesh = facts.is_mesh,
+          .is_points = facts.is_points,
+          .has_colors = facts.has_colors,
+          .has_own_light = states_light(lit),
+          .has_own_sky = lit.rest.has_sky,
+          .on = lit.on,
+          .off = lit.off};
 }
 
 bool states_light(const LitDescription& lighting) {
@@ -245,11 +242,11 @@ bool parse_background(std::string_view text, Background* background) {
     background->kind = text == "none" ? BackgroundKind::kNone : BackgroundKind::kGradient;
     return true;
   }
-  std::uint32_t color = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), color, 16);
-  if (text.size() != 6 || read.ec != std::errc() || read.ptr != text.data() + text.size()) {
+  const auto number = number_in<std::uint32_t>(text, 16);
+  if (text.size() != 6 || !number) {
     return false;
   }
+  const std::uint32_t color = *number;
   background->kind = BackgroundKind::kColor;
   background->color = {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8 & 255U),
                        static_cast<std::uint8_t>(color & 255U)};

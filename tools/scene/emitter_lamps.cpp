@@ -33,7 +33,7 @@ std::vector<GlowingFace> glowing_faces(const CompactTree& tree, const std::vecto
   if (std::none_of(surfaces.begin(), surfaces.end(), glows)) {
     return faces;
   }
-  for_each_block(tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
+  walk_blocks(tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
     const Surface& surface = surfaces[material];
     if (!glows(surface)) {
       return;

@@ -460,7 +460,7 @@ Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   kept.target = saturated_q8(sight.target);
   kept.forward = sight.forward;
   kept.up = wishes.up ? sight.up : Vec3i{};
-  kept.fov_degrees = Q16::from_raw(static_cast<std::int32_t>(std::lround(wishes.fov_degrees * Q16::kOne)));
+  kept.fov_degrees = Q16::from_raw(to_fixed(wishes.fov_degrees, Q16::kOne));
   bool partial = false;
   if (wishes.orthographic) {
     partial = set_orthographic_camera(wishes, level, sight, 2 * room.half_width / wishes.fill, &framing);

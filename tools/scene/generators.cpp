@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
+#include "output/units.h"
 #include "scene/named_scenes.h"
 #include "scene/palette.h"
 #include "scene/random.h"
@@ -36,26 +36,21 @@ constexpr std::array<Name, 6> kGenerators{{{"points", GeneratorKind::kPoints},
 /// A whole number: decimal digits, or as in 1e6 and 2.5e6. Nothing for anything else, or too much for 64
 /// bits.
 std::optional<std::uint64_t> parse_number(const std::string& text) {
-  const auto whole = [](std::string_view digits) {
-    std::uint64_t value = 0;
-    const char* const end = digits.data() + digits.size();
-    const auto [next, error] = std::from_chars(digits.data(), end, value);
-    return error == std::errc{} && next == end ? std::optional(value) : std::nullopt;
-  };
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());
   const std::size_t point = std::min(text.find('.'), e);
   if (e == text.size() || point == 0) {
-    return whole(text);
+    return number_in<std::uint64_t>(text);
   }
   std::string digits =
       text.substr(0, point) + text.substr(std::min(point + 1, e), e - std::min(point + 1, e));
-  const auto exponent = e + 3 < text.size() ? std::nullopt : whole(std::string_view(text).substr(e + 1));
+  const auto exponent =
+      e + 3 < text.size() ? std::nullopt : number_in<std::uint64_t>(std::string_view(text).substr(e + 1));
   const std::size_t fraction = digits.size() - point;
   if (!exponent || *exponent < fraction) {
     return std::nullopt;
   }
   digits.append(*exponent - fraction, '0');
-  return whole(digits);
+  return number_in<std::uint64_t>(digits);
 }
 
 std::uint64_t parse_in_range(const std::string& name, const std::string& text, std::uint64_t low,

@@ -6,7 +6,6 @@
 
 #include "output/units.h"
 #include "readers/file_bytes.h"
-#include "readers/oct.h"
 #include "scene/scene_source.h"
 
 namespace thimble::tools {
@@ -42,17 +41,6 @@ constexpr std::uint8_t kDefaultOcclusionRays = 8;
 constexpr std::uint32_t kDefaultFogDensity = 65536 / 64;
 
 }  // namespace
-
-UsedMaterials used_materials(const CompactTree& tree) {
-  UsedMaterials used;
-  for (const std::uint8_t material : tree.materials()) {
-    used.is[material] = true;
-  }
-  if (!tree.empty() && !tree.many_materials()) {
-    used.is[tree.uniform_material()] = true;
-  }
-  return used;
-}
 
 UsedMaterials used_materials(const SceneSource& source) {
   if (source.baked() != nullptr) {
@@ -210,13 +198,10 @@ std::optional<EffectChoice> parse_effects(std::string_view text) {
   for (;;) {
     const std::size_t comma = std::min(text.find(','), text.size());
     const std::string_view name = text.substr(0, comma);
-    EffectSet found = Effect::kNone;
+    EffectSet found = name == "ao" ? Effect::kAmbientOcclusion : Effect::kNone;
     for (int bit = 0; bit < Effect::kCount; ++bit) {
       const EffectSet effect = EffectSet{1} << bit;
       found |= name == effect_name(effect) ? effect : Effect::kNone;
-    }
-    if (name == "ao") {
-      found = Effect::kAmbientOcclusion;
     }
     if (found == Effect::kNone || (choice.effects & found) != 0) {
       return std::nullopt;

@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "readers/oct.h"
 #include "readers/source.h"
 #include "scene/tone_table.h"
 #include "thimble/base/memory.h"
@@ -43,16 +44,8 @@ std::vector<Light> glow_lamps(const CompactTree& tree, const std::vector<Surface
 
 class SceneSource;
 
-/// Which palette entries occur in what was built.
-struct UsedMaterials {
-  bool is[256] = {};
-  friend bool operator==(const UsedMaterials&, const UsedMaterials&) = default;
-};
-
-/// Of a tree, block by block.
-UsedMaterials used_materials(const CompactTree& tree);
-/// Of all that a source streams, by streaming it (a baked one's by its tree). What is covered later counts
-/// too.
+/// Which palette entries occur in all that a source streams, by streaming it (a baked one's by its tree). What is
+/// covered later counts too.
 UsedMaterials used_materials(const SceneSource& source);
 
 struct LitDescription {

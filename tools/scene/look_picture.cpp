@@ -288,9 +288,7 @@ Status paint_rows(std::int32_t at_once, const std::vector<LitCounts>& counts, co
   Status status = Status::kOk;
   for (std::int32_t y = 0; y < height_px && status == Status::kOk; y += at_once) {
     status = draw(y, std::min(at_once, height_px - y));
-    if (progress) {
-      progress(static_cast<double>(y) / height_px);
-    }
+    tell(progress, static_cast<double>(y) / height_px);
   }
   for (const LitCounts& part : counts) {
     lit::add_counts(part, &painting->counts.lit);

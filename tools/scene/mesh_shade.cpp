@@ -332,7 +332,7 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
   const std::size_t count = mesh.triangles.size();
   const auto triangle_at = [&](std::size_t i) {
     const auto& [a, b, c] = mesh.triangles[i % count];
-    return CellTriangle{{units[a], units[b], units[c]}, 0, i >= count, static_cast<std::uint32_t>(i % count)};
+    return CellTriangle{{units[a], units[b], units[c]}, i >= count, static_cast<std::uint32_t>(i % count)};
   };
   std::vector<std::uint64_t> edges;
   for (std::size_t i = 0; i < count; ++i) {
@@ -348,9 +348,8 @@ void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
       shade.emplace(mesh, colors, number, triangle.corners);
     }
     const auto shown = shade->at(voxel, triangle.only_over, edges);
-    if (!shown && !triangle.only_over && ++clear > kMostClearVoxels) {
-      throw InputError("its triangles lie over each other too often where they are clear");
-    }
+    clear += !shown && !triangle.only_over ? 1U : 0U;
+    fail_if(clear > kMostClearVoxels, "its triangles lie over each other too often where they are clear");
     return shown ? std::optional<std::uint8_t>(material_of(shown->color, shown->power_q8)) : std::nullopt;
   };
   voxelise_triangles(count, 2, triangle_at, level, material_at, sink, progress);

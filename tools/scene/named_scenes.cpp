@@ -76,14 +76,10 @@ std::string scene_path(const std::string& scene) {
   if (const auto found = known.find(scene); found != known.end()) {
     return found->second;
   }
-  std::string names;
-  std::vector<std::string> words;
-  for (const auto& [name, path] : known) {
-    names += (names.empty() ? "" : ", ") + name;
-    words.push_back(name);
-  }
-  throw InputError("no such file, and no scene of that name", suggestion(scene, words),
-                   names.empty() ? " (none is installed beside the program)" : "; there are " + names);
+  const std::vector<std::string> names = scene_names();
+  throw InputError(
+      "no such file, and no scene of that name", suggestion(scene, names),
+      names.empty() ? " (none is installed beside the program)" : "; there are " + joined(names, ", "));
 }
 
 std::string file_name(const std::string& path) {

@@ -200,9 +200,7 @@ Status paint(const BandPainter& painter, std::int32_t width_px, const RowRange& 
     if (!painter.work.empty()) {
       std::memcpy(target.data, painter.work.data, target.size);
     }
-    if (progress) {
-      progress(static_cast<double>(y) / rows.count);
-    }
+    tell(progress, static_cast<double>(y) / rows.count);
   }
   if (const RenderCounts lit = totals_of(painting->counts.lit); lit.rays != 0) {
     painting->counts.all = lit;

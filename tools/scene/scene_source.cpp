@@ -5,6 +5,7 @@
 
 #include "output/units.h"
 #include "readers/read_any.h"
+#include "readers/text.h"
 #include "scene/generators.h"
 #include "scene/mesh_shade.h"
 #include "scene/named_scenes.h"
@@ -17,27 +18,10 @@
 namespace thimble::tools {
 namespace {
 
-// Tells `progress` the part done of what a source streams, once every so many voxels.
-class Meter {
- public:
-  Meter(const SourceFacts& facts, Progress progress)
-      : progress_(std::move(progress)),
-        total_(facts.points != 0 ? facts.points : std::uint64_t{1} << (3 * facts.level - 3)) {}
-  void add(std::uint64_t voxels) {
-    constexpr std::uint64_t kEvery = 1 << 16;
-    done_ += voxels;
-    if (done_ - told_ >= kEvery && progress_) {
-      told_ = done_;
-      progress_(std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)));
-    }
-  }
-
- private:
-  Progress progress_;
-  std::uint64_t total_;
-  std::uint64_t done_ = 0;
-  std::uint64_t told_ = 0;
-};
+// What a source will stream, about: where nothing counts it, as much as solid scenes have.
+std::uint64_t voxels_of(const SourceFacts& facts) {
+  return facts.points != 0 ? facts.points : std::uint64_t{1} << (3 * facts.level - 3);
+}
 
 std::unique_ptr<SceneSource> generated_scene(const GeneratorSpec& spec) {
   constexpr std::array kNames{"points", "cluster", "spheres", "water", "demo"};  // by GeneratorKind
@@ -342,7 +326,7 @@ std::unique_ptr<SceneSource> baked_scene(BakedFile read, std::optional<int> dept
   facts.baked = file;
   return std::make_unique<SceneSource>(std::move(facts),
                                        [file](const VisitBlock& visit, const Progress& /*progress*/) {
-                                         for_each_block(file->scene.tree(), visit);
+                                         walk_blocks(file->scene.tree(), visit);
                                        });
 }
 
@@ -378,10 +362,11 @@ void SceneSource::stream(const VoxelSink& sink, const Progress& progress) const 
         progress);
     return;
   }
-  Meter meter(facts_, progress);
+  ProgressMeter meter(progress, voxels_of(facts_));
+  std::uint64_t done = 0;
   stream_([&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t material) {
     sink(x, y, z, material);
-    meter.add(1);
+    meter.at(++done);
   });
 }
 
@@ -394,11 +379,12 @@ void SceneSource::stream_blocks(const VisitBlock& visit, const Progress& progres
         progress);
     return;
   }
-  Meter meter(facts_, facts_.is_mesh ? Progress{} : progress);
+  ProgressMeter meter = facts_.is_mesh ? ProgressMeter() : ProgressMeter(progress, voxels_of(facts_));
+  std::uint64_t done = 0;
   blocks_(
       [&](const Vec3i& corner, int level, std::uint8_t material) {
         visit(corner, level, material);
-        meter.add(std::uint64_t{1} << (3 * level));
+        meter.at(done += std::uint64_t{1} << (3 * level));
       },
       progress);
 }

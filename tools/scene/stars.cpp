@@ -220,9 +220,7 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
       counts[static_cast<std::size_t>(step_of(value))] += value != 0 ? 1 : 0;
       lit += value != 0 ? 1 : 0;
     }
-    if (progress) {
-      progress(static_cast<double>(y) / height / 2);
-    }
+    tell(progress, static_cast<double>(y) / height / 2);
   }
   std::size_t step = 0;
   std::uint64_t below = counts[0];
@@ -260,9 +258,7 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
         image.alpha[first + i] = static_cast<std::uint8_t>(most);
       }
     }
-    if (progress) {
-      progress(0.5 + static_cast<double>(y - image.first_row) / image.height_px / 2);
-    }
+    tell(progress, 0.5 + static_cast<double>(y - image.first_row) / image.height_px / 2);
   }
   return Status::kOk;
 }

@@ -74,13 +74,6 @@ std::string corner_text(const Vec3i& corner) {
   return concat(corner.x, " ", corner.y, " ", corner.z);
 }
 
-template <class... Pieces>
-void fail_at_if(bool is_wrong, const TextPlace& place, const Pieces&... pieces) {
-  if (is_wrong) {
-    fail_at(place, pieces...);
-  }
-}
-
 // What a scene text puts together, and how it streams.
 class TextScene {
  public:
@@ -249,12 +242,12 @@ class TextScene {
     }
     // Scenes within scenes multiply.
     facts_.placements += model.model->source->placements();
-    fail_at_if(facts_.placements > kMostPlacements, part.place,
-               "with this the scene places more than the limit of ", grouped(kMostPlacements),
-               " models, boxes and balls");
+    fail_if(facts_.placements > kMostPlacements, part.place,
+            "with this the scene places more than the limit of ", grouped(kMostPlacements),
+            " models, boxes and balls");
     surveyed_ += model.model->voxels;
-    fail_at_if(surveyed_ > kMostSceneVoxels, part.place, "with this the scene places more than the limit of ",
-               grouped(kMostSceneVoxels), " voxels");
+    fail_if(surveyed_ > kMostSceneVoxels, part.place, "with this the scene places more than the limit of ",
+            grouped(kMostSceneVoxels), " voxels");
     model.size = model.model->source->extent();
     const VoxelBox& solid = model.model->solid;
     if (!solid.empty()) {
@@ -302,8 +295,8 @@ class TextScene {
     if (level == 0) {
       level = std::clamp(static_cast<int>(std::bit_width(static_cast<unsigned>(largest - 1))), kMinLevel,
                          kMaxLevel);
-      fail_at_if(side() < largest, largest_place, "this reaches to ", largest, "; the largest world ends at ",
-                 side());
+      fail_if(side() < largest, largest_place, "this reaches to ", largest, "; the largest world ends at ",
+              side());
     }
   }
 
@@ -311,9 +304,9 @@ class TextScene {
     for (const Placement& model : models_) {
       const VoxelBox& box = model.solid;
       const VoxelBox kept = cut(box, side());
-      fail_at_if(!model.part->crop && !(kept == box), model.part->place, "the model's voxels from ",
-                 corner_text(box.low), " to ", corner_text(box.high), " leave the world of ", side(),
-                 " voxels a side (depth ", facts_.level, "); crop cuts them off");
+      fail_if(!model.part->crop && !(kept == box), model.part->place, "the model's voxels from ",
+              corner_text(box.low), " to ", corner_text(box.high), " leave the world of ", side(),
+              " voxels a side (depth ", facts_.level, "); crop cuts them off");
       take(kept, model.model->voxels);
     }
     std::uint64_t primitive_voxels = 0;
@@ -322,14 +315,14 @@ class TextScene {
         continue;
       }
       const VoxelBox box = cut(box_of(part), side());
-      fail_at_if(box.empty(), part.place, "all of this lies outside the world of ", side(),
-                 " voxels a side (depth ", facts_.level, ")");
+      fail_if(box.empty(), part.place, "all of this lies outside the world of ", side(),
+              " voxels a side (depth ", facts_.level, ")");
       const std::uint64_t volume = std::uint64_t{1} * static_cast<std::uint64_t>(box.high.x - box.low.x) *
                                    static_cast<std::uint64_t>(box.high.y - box.low.y) *
                                    static_cast<std::uint64_t>(box.high.z - box.low.z);
       primitive_voxels += volume;
-      fail_at_if(primitive_voxels > kMostPrimitiveVoxels, part.place, "boxes and balls up to here hold ",
-                 grouped(primitive_voxels), " voxels, the limit is ", grouped(kMostPrimitiveVoxels));
+      fail_if(primitive_voxels > kMostPrimitiveVoxels, part.place, "boxes and balls up to here hold ",
+              grouped(primitive_voxels), " voxels, the limit is ", grouped(kMostPrimitiveVoxels));
       take(box, volume);
     }
   }
@@ -352,22 +345,22 @@ class TextScene {
         concat(kMinOriginWorlds * side(), " to ", kMaxOriginWorlds * side(), " (-4 to 5 world sizes)");
     for (const SceneText::PlacedLight& each : text_.lights) {
       const Vec3i at = each.light.place;
-      fail_at_if(each.light.is_point && !(in_reach(at.x) && in_reach(at.y) && in_reach(at.z)), each.place,
-                 "the lamp is outside the accepted ", limits);
+      fail_if(each.light.is_point && !(in_reach(at.x) && in_reach(at.y) && in_reach(at.z)), each.place,
+              "the lamp is outside the accepted ", limits);
     }
     if (text_.camera) {
       const Vec3Q8& eye = text_.camera->eye;
-      fail_at_if(!(in_reach(eye.x.raw) && in_reach(eye.y.raw) && in_reach(eye.z.raw)), text_.camera_place,
-                 "the eye of the camera is outside the accepted ", limits);
+      fail_if(!(in_reach(eye.x.raw) && in_reach(eye.y.raw) && in_reach(eye.z.raw)), text_.camera_place,
+              "the eye of the camera is outside the accepted ", limits);
       Camera camera;
-      fail_at_if(set_camera(*text_.camera, 1, 1, facts_.level, &camera) == Status::kBadArgument,
-                 text_.camera_place, "up of the camera is parallel to the direction of view");
+      fail_if(set_camera(*text_.camera, 1, 1, facts_.level, &camera) == Status::kBadArgument,
+              text_.camera_place, "up of the camera is parallel to the direction of view");
     }
     if (text_.water) {
       const SceneText::WaterArea& water = *text_.water;
       const bool fits = !water.from_to || ((*water.from_to)[2] <= side() && (*water.from_to)[3] <= side());
-      fail_at_if(!fits || water.level_q8 > side() * Q8::kOne, water.place, "the water leaves the world of ",
-                 side(), " voxels a side (depth ", facts_.level, ")");
+      fail_if(!fits || water.level_q8 > side() * Q8::kOne, water.place, "the water leaves the world of ",
+              side(), " voxels a side (depth ", facts_.level, ")");
     }
   }
 
@@ -384,8 +377,8 @@ class TextScene {
     const auto end = begin + static_cast<std::ptrdiff_t>(materials_);
     const auto found = std::find(begin, end, surface);
     if (found == end) {
-      fail_at_if(materials_ == kMaxSurfaces, place, "with this the scene has more than the limit of ",
-                 kMaxSurfaces, " different materials");
+      fail_if(materials_ == kMaxSurfaces, place, "with this the scene has more than the limit of ",
+              kMaxSurfaces, " different materials");
       facts_.lighting->surfaces[materials_] = surface;
       facts_.palette[materials_] = material_of(surface);
       return static_cast<std::uint8_t>(materials_++);

@@ -37,20 +37,19 @@ std::array<double, 3> turned(const std::array<double, 3>& p, bool z_up) {
 }
 
 /// The voxels of a block of at least 4 a side that meet the triangle.
-void visit_met(const TriangleBoxTest& test, const TriangleBlock& block, std::uint8_t material,
-               const VoxelSink& sink) {
+void visit_met(const TriangleBoxTest& test, const TriangleBlock& block,
+               const std::function<void(const UnitPoint& voxel)>& visit) {
   if (block.level > 2) {
     for (int child = 0; child < 8; ++child) {
       const TriangleBlock part = child_of(block, child);
       if (meets_block(test, part)) {
-        visit_met(test, part, material, sink);
+        visit_met(test, part, visit);
       }
     }
     return;
   }
   for (std::uint64_t met = test.met_mask(block.voxel); met != 0; met &= met - 1) {
-    const UnitPoint at = voxel_of(block.voxel, met);
-    sink(at[0], at[1], at[2], material);
+    visit(voxel_of(block.voxel, met));
   }
 }
 
@@ -236,7 +235,8 @@ std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bo
   return units;
 }
 
-void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, const VoxelSink& sink) {
+void voxelise_triangle(const UnitTriangle& triangle,
+                       const std::function<void(const UnitPoint& voxel)>& visit) {
   const TriangleBoxTest test(triangle);
   // The least block of the octree that holds it. It keeps off the world's border, so no voxel that it meets is outside.
   TriangleBlock block{{}, 2};
@@ -249,7 +249,7 @@ void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, cons
   for (std::int32_t& coordinate : block.voxel) {
     coordinate = coordinate >> block.level << block.level;
   }
-  visit_met(test, block, material, sink);
+  visit_met(test, block, visit);
 }
 
 bool is_shaded(const TriangleMesh& mesh) {
@@ -282,9 +282,9 @@ void voxelise_triangles(std::size_t count, std::size_t passes,
     }
     const CellTriangle triangle = triangle_at(i);
     cost += rough_cost(triangle.corners);
-    voxelise_triangle(triangle.corners, 0, [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t) {
-      if (const auto material = shade ? shade(triangle, {x, y, z}) : std::optional(triangle.material)) {
-        sink({x, y, z}, 0, *material);
+    voxelise_triangle(triangle.corners, [&](const UnitPoint& voxel) {
+      if (const auto material = shade ? shade(triangle, voxel) : std::optional(std::uint8_t{0})) {
+        sink(voxel, 0, *material);
       }
     });
   }

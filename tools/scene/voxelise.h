@@ -99,10 +99,11 @@ using BlockSink = std::function<void(const UnitPoint& voxel, int level, std::uin
 /// (0,0,0). InputError "no triangles" when there are none.
 std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bool z_up);
 
-/// Calls `sink` once for each voxel of the world of 2^level whose closed box meets `triangle` (coordinates
+/// Calls `visit` once for each voxel of the world of 2^level whose closed box meets `triangle` (coordinates
 /// 1 .. 2^(level + 8) - 1). Cost: the least block of the octree that holds it is cut into eight, those that meet the
 /// triangle again, and so on down to 4 x 4 x 4 voxels, so a big triangle costs in proportion to its area. No heap.
-void voxelise_triangle(const UnitTriangle& triangle, std::uint8_t material, const VoxelSink& sink);
+void voxelise_triangle(const UnitTriangle& triangle,
+                       const std::function<void(const UnitPoint& voxel)>& visit);
 
 /// Whether its voxels have colours of their own (mesh_shade.h).
 bool is_shaded(const TriangleMesh& mesh);
@@ -139,10 +140,9 @@ TriangleBlock child_of(const TriangleBlock& block, int child);
 /// Whether the triangle meets the block.
 bool meets_block(const TriangleBoxTest& test, const TriangleBlock& block);
 
-/// A triangle and what its voxels are made of.
+/// A triangle and which of its voxels count.
 struct CellTriangle {
   UnitTriangle corners;
-  std::uint8_t material = 0;
   bool only_over = false;    ///< for a `CellShade`: only voxels whose middle is over it
   std::uint32_t number = 0;  ///< in its mesh
 };
@@ -152,7 +152,7 @@ using CellShade =
     std::function<std::optional<std::uint8_t>(const CellTriangle& triangle, const UnitPoint& voxel)>;
 
 /// Calls `sink` for blocks that together hold each voxel of the world of 2^level that a triangle meets, once,
-/// with the material of the last such triangle, or, where there is a `shade`, the last that it has one of.
+/// with material 0, or, where there is a `shade`, the material of the last such triangle that it has one of.
 ///
 /// Time: the world is cut into eight, and so on, each part with a list of the triangles that meet it, down to
 /// parts of 64 voxels a side. They are filled from the last triangle on, and what is full is left alone: its

@@ -17,8 +17,7 @@ constexpr std::uint64_t kFull = ~std::uint64_t{0};
 /// What one cell holds: a bit and a material a voxel.
 class Cell {
  public:
-  Cell(bool has_materials, const CellShade& shade)
-      : has_materials_(has_materials), shade_(shade), materials_(has_materials ? 4096 : 0) {}
+  explicit Cell(const CellShade& shade) : shade_(shade), materials_(shade ? 4096 : 0) {}
 
   void clear() {
     covered_.fill(0);
@@ -45,7 +44,7 @@ class Cell {
           if (shade_) {
             take_shaded(cube, met, triangle, block);
           } else {
-            take(cube, met, triangle.material);
+            take(cube, met, 0);
           }
         }
       }
@@ -91,7 +90,7 @@ class Cell {
     full_cubes_ |= std::uint64_t{covered_[cube] == kFull} << cube;
     is_uniform_ = is_uniform_ && first_material_.value_or(material) == material;
     first_material_ = first_material_.value_or(material);
-    for (; has_materials_ && added != 0; added &= added - 1) {
+    for (; shade_ && added != 0; added &= added - 1) {
       materials_[64 * cube + static_cast<std::size_t>(std::countr_zero(added))] = material;
     }
   }
@@ -113,11 +112,10 @@ class Cell {
     }
     for (; left != 0; left &= left - 1) {
       const auto bit = static_cast<std::size_t>(std::countr_zero(left));
-      sink(voxel_of(block.voxel, left), 0, has_materials_ ? materials_[64 * cube + bit] : *first_material_);
+      sink(voxel_of(block.voxel, left), 0, shade_ ? materials_[64 * cube + bit] : *first_material_);
     }
   }
 
-  bool has_materials_;
   const CellShade& shade_;
   std::array<std::uint64_t, kCubes> covered_{};  ///< by Morton number of the cube; bit x + 4 y + 16 z
   std::uint64_t full_cubes_ = 0;
@@ -130,8 +128,8 @@ class Cell {
 /// asked of a cell that later ones have filled.
 class Group {
  public:
-  Group(int level, bool has_materials, const CellShade& shade)
-      : cells_(std::size_t{1} << (3 * (level - kCellLevel)), Cell(has_materials, shade)) {
+  Group(int level, const CellShade& shade)
+      : cells_(std::size_t{1} << (3 * (level - kCellLevel)), Cell(shade)) {
     all_ = cells_.size() == 64 ? kFull : (std::uint64_t{1} << cells_.size()) - 1;
   }
 
@@ -225,12 +223,7 @@ class Voxeliser {
         progress_(progress),
         root_level_(std::max(level, kCellLevel)),
         group_level_(std::min(root_level_, kGroupLevel)),
-        group_(group_level_,
-               shade || std::any_of(triangles.begin(), triangles.end(),
-                                    [&](const CellTriangle& triangle) {
-                                      return triangle.material != triangles.front().material;
-                                    }),
-               shade) {}
+        group_(group_level_, shade) {}
 
   void run() {
     std::vector<std::uint32_t> all(triangles_.size());
@@ -282,10 +275,8 @@ class Voxeliser {
 
   void report(int level) {
     done_ += std::uint64_t{1} << (3 * (level - group_level_));
-    if (progress_) {
-      const std::uint64_t groups = std::uint64_t{1} << (3 * (root_level_ - group_level_));
-      progress_(static_cast<double>(done_) / static_cast<double>(groups));
-    }
+    const std::uint64_t groups = std::uint64_t{1} << (3 * (root_level_ - group_level_));
+    tell(progress_, static_cast<double>(done_) / static_cast<double>(groups));
   }
 
   std::span<const CellTriangle> triangles_;

@@ -15,28 +15,22 @@ std::int32_t rounded(double value) {
   return whole + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0);
 }
 
-}  // namespace
-
-void Bounds::add(const std::array<double, 3>& position) {
+bool holds(const Bounds& bounds, const std::array<double, 3>& position) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = empty ? position[axis] : std::min(low[axis], position[axis]);
-    high[axis] = empty ? position[axis] : std::max(high[axis], position[axis]);
-  }
-  empty = false;
-}
-
-bool Bounds::holds(const std::array<double, 3>& position) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!(position[axis] >= low[axis] && position[axis] <= high[axis])) {
+    if (!(position[axis] >= bounds.low[axis] && position[axis] <= bounds.high[axis])) {
       return false;
     }
   }
   return true;
 }
 
-double Bounds::longest() const {
+// The longest side; infinite where a double does not hold it.
+double longest(const Bounds& bounds) {
+  const auto& [low, high, is_empty] = bounds;
   return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
 }
+
+}  // namespace
 
 WorldFit::WorldFit(const Bounds& bounds, int level) : center_{}, center_units_{}, half_extent_(0) {
   const std::int32_t middle = std::int32_t{1} << (level + kUnitBits - 1);
@@ -131,8 +125,8 @@ void choose_world(const PointCloud& cloud, const FitWishes& wishes, PointSurvey*
       taken.low[axis] = numbers[first];
       taken.high[axis] = numbers[first + last];
     }
-    const double inner = taken.longest();
-    if (!(inner > 0 && inner < survey->bounds.longest() / 8)) {
+    const double inner = longest(taken);
+    if (!(inner > 0 && inner < longest(survey->bounds) / 8)) {
       return;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -144,7 +138,7 @@ void choose_world(const PointCloud& cloud, const FitWishes& wishes, PointSurvey*
   std::uint64_t inside = 0;
   cloud.for_each([&](const CloudPoint& point) {
     const std::array<double, 3> position{point.x, point.y, point.z};
-    if (taken.holds(position)) {
+    if (holds(taken, position)) {
       survey->world.add(position);
       ++inside;
     }
@@ -169,7 +163,7 @@ void fit_points(const PointCloud& cloud, const PointSurvey& survey, int level, c
   const PaletteMap* const used = cloud.has_color() ? colors : nullptr;
   cloud.for_each([&](const CloudPoint& point) {
     const std::array<double, 3> position{point.x, point.y, point.z};
-    if (survey.left_out != 0 && !survey.world.holds(position)) {
+    if (survey.left_out != 0 && !holds(survey.world, position)) {
       return;
     }
     const auto [x, y, z] = fit.units(position);

@@ -24,18 +24,7 @@ namespace thimble::tools {
 inline constexpr int kUnitBits = 8;
 inline constexpr std::int32_t kUnitsPerVoxel = std::int32_t{1} << kUnitBits;
 
-/// The smallest axis-parallel box of the points added.
-struct Bounds {
-  std::array<double, 3> low{};
-  std::array<double, 3> high{};
-  bool empty = true;
-
-  /// Grows the box; `position` is finite.
-  void add(const std::array<double, 3>& position);
-  bool holds(const std::array<double, 3>& position) const;
-  /// Of its longest side; infinite where a double does not hold it.
-  double longest() const;
-};
+using Bounds = Extent<double>;
 
 class WorldFit {
  public:

@@ -38,7 +38,7 @@ std::unique_ptr<tools::SceneSource> open_at(const std::string& scene_at_depth) {
 
 std::vector<Voxel> voxels_of(const tools::BuiltScene& built) {
   std::vector<Voxel> voxels;
-  tools::for_each_block(built.compact(), [&](const Vec3i& at, int level, std::uint8_t) {
+  tools::walk_blocks(built.compact(), [&](const Vec3i& at, int level, std::uint8_t) {
     const std::int32_t side = std::int32_t{1} << level;
     for (std::int32_t i = 0; i < side * side * side; ++i) {
       voxels.push_back(voxel_at(at.x + i % side, at.y + i / side % side, at.z + i / side / side));
