@@ -84,6 +84,7 @@ TEST_CASE("command: options that have no effect together -> status 2, whichever 
     check_refused(command + Words{"--projection", "perspective", "--span", "3"}, 2, {"--span"});
     check_refused(command + Words{"--fov", "30", "--projection", "orthographic"}, 2, {"--fov", "--span"});
   }
+  check_refused({"render", "spheres", "-o", "-", "--shade", "depth", "--bounces", "3"}, 2, {"--bounces"});
   for (const char* structure : {"pool", "Pool", "dense"}) {
     check_refused({"render", "spheres", "-o", "-", "--structure", structure, "--engine", "wide"}, 2,
                   {"--engine wide", "--structure compact"});

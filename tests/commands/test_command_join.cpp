@@ -339,6 +339,7 @@ TEST_CASE("render: camera paths that are none -> status 1, file and line named")
   const std::string good = "0,-90,30,32,32,32\n";
   check_bad("", {"empty"});
   check_bad("ex,ey,ez,tx,ty,tz\n", {"no camera"});
+  check_bad("tx,ty,tz,ex,ey,ez\n" + good, {"line 1", "another order"});
   check_bad(good + "1,2,3,4,5\n", {"line 2", "5 columns", "6"});
   check_bad(good + "0,-90,nan,32,32,32\n", {"line 2", "ez", "nan"});
   check_bad("ex,ey,ez,tx,ty,tz\n" + good + "0,-90,inf,32,32,32\n", {"line 3", "inf"});

@@ -122,9 +122,10 @@ const std::multimap<std::string, std::string>& values() {
 // What only a look at the scene, the rays or the budget tells: status 1.
 bool depends_on_input(const std::string& text) {
   for (const char* phrase :
-       {"for point files", "are for .npy and .npz", "are for .vox files", "parallel to the direction of view",
-        "no room for", "does not take this ray", "more than", "budget", "--memory", "there is no terminal",
-        "the terminal cannot show", "pixels differ", "does not take the rays"}) {
+       {"for point files", "is for meshes", "are for .npy and .npz", "are for .vox files",
+        "parallel to the direction of view", "no room for", "does not take this ray", "more than", "budget",
+        "--memory", "there is no terminal", "the terminal cannot show", "pixels differ",
+        "does not take the rays"}) {
     if (text.find(phrase) != std::string::npos) {
       return true;
     }
@@ -303,7 +304,7 @@ TEST_CASE("command: what a generator can never take -> wrong usage by every comm
                                     {"view", "--bench", "1"}};
   for (Words words : commands) {
     words.insert(words.begin() + 1, "spheres,depth=4");
-    for (const Words& option : {Words{"--as-voxels"}, Words{"--frame", "1"}}) {
+    for (const Words& option : {Words{"--as-voxels"}, Words{"--z-up"}, Words{"--frame", "1"}}) {
       check_refused(words + option, 2, {option[0]});
     }
   }

@@ -402,6 +402,9 @@ TEST_CASE("render: every structure and engine -> the same picture and, but for t
       }
     }
   }
+  const CommandResult gray =
+      check_done({"render", "castle", "--structure", "dense", "--size", "8x6", "-o", "-"});
+  CHECK(gray.err.find("a dense grid keeps no colors") != std::string::npos);
 }
 
 TEST_CASE("render: no room for the wide engine's lists -> rays draw the same picture, or one sentence") {

@@ -195,7 +195,8 @@ TEST_CASE("trace: a line that is no ray -> status 1, file and line named, nothin
     CHECK(run_command({"trace", "spheres", "--rays", rays}).out.empty());
   }
   // The first line is a header only when nothing in it is a number.
-  for (const char* bad : {"1,2,3,4,5,z", "nan,nan,nan,nan,nan,nan,nan", "0,0,0,1,0", "a,b,c,1,2,3"}) {
+  for (const char* bad : {"1,2,3,4,5,z", "nan,nan,nan,nan,nan,nan,nan", "0,0,0,1,0", "a,b,c,1,2,3",
+                          "dx,dy,dz,ox,oy,oz\n1,1,1,0,0,5", "\"ox\",oz,oy,dx,dy,dz\n1,1,1,0,0,5"}) {
     CAPTURE(bad);
     check_refused({"trace", "spheres", "--rays", folder.write("rays.csv", bad)}, 1, {"line 1: "});
   }

@@ -609,6 +609,7 @@ TEST_CASE("asc: an ESRI grid -> a landscape; holes where there is no data") {
   const auto whole = read_voxels(read_height_grid, head + "1 2 3\n4 5 6\n");
   const auto holed = read_voxels(read_height_grid, head + "1 2 3\n4 5 -9999");
   CHECK(holed.size() < whole.size());
+  CHECK(read_voxels(read_height_grid, "ncols 3\nnrows 2\nNODATA_value nan\n1 2 3\n4 5 nan") == holed);
   CHECK(contains(error_of(read_height_grid, head + "1 2 3 4 5"), "room for 5"));
   CHECK(contains(error_of(read_height_grid, head + "1 2 3 4 5 6 7"), "line 7: '7' comes after"));
   CHECK(contains(error_of(read_height_grid, head + "1 2 x 4 5 6"), "line 7: 'x'"));

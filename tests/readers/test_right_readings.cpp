@@ -203,7 +203,9 @@ TEST_CASE("off: colours of faces, and a count that stands right behind the keywo
   CHECK(bytes.face_colors == Colors{kRed, kRed, kBlue, Rgb{}});
   CHECK(read_mesh(read_off, "OFF" + square + "4 0 1 2 3\n3 0 1 2 0.0 0.0 1.0\n3 0 2 3 7\n").face_colors ==
         Colors{Rgb{}, Rgb{}, kBlue, Rgb{}});
-  CHECK(read_mesh(read_off, "OFF" + square + "4 0 1 2 3\n3 0 1 2 9\n3 0 2 3\n").face_colors.empty());
+  const Source listed = source_of(read_off, "OFF" + square + "4 0 1 2 3\n3 0 1 2 9\n3 0 2 3\n");
+  CHECK(std::get<TriangleMesh>(listed).face_colors.empty());
+  CHECK(notes_hold(listed, "places in a list that no file brings along"));
   CHECK(read_mesh(read_off, "OFF4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n").triangles.size() == 2);
   CHECK(find_reader("x.bin", "OFF4 1 0\n") != nullptr);
 }
@@ -301,6 +303,18 @@ TEST_CASE("obj: lines, points, curves, and Tr without d -> noted") {
   CHECK(notes("Tr 1\nd 1\n").empty());
   CHECK(notes("d 0.5\n") == Notes{"1 material is partly clear (d) and drawn solid"});
   CHECK(notes("Tr 0\n").empty());
+  // A library may be named where it lay on another machine.
+  CHECK(std::get<TriangleMesh>(
+            read_obj(SharedBytes::own("mtllib C:\\x\\a.mtl\nusemtl a\n" + face), {folder.path("b.obj")}, {}))
+            .face_colors == Colors{kRed});
+  CHECK(notes("map_Kd -s 1 1 1 -o 0 0 0 no.png\n").size() == 1);
+  CHECK(notes("map_Kd -s 2 2 no.png\n").size() == 2);
+  CHECK(
+      contains(notes("map_Kd -o 0 0.5 no.png\n").back(), "1 material has a picture that is moved or scaled"));
+  CHECK_THROWS_WITH_AS(notes("d 0\n"), "all of its triangles are wholly clear (d 0)", InputError);
+  // Without faces all vertices are drawn.
+  CHECK(notes_of(source_of(read_obj, "v 0 0 0\nv 1 1 1\np 1 2\n")).empty());
+  CHECK(notes_hold(source_of(read_obj, "v 0 0 0\nv 1 1 1\np 1 2\nl 1 2\n"), "1 in all) are not drawn"));
 }
 
 TEST_CASE("xyz: what a header names and nothing is taken from, and one without x, y and z -> noted") {
@@ -308,6 +322,10 @@ TEST_CASE("xyz: what a header names and nothing is taken from, and one without x
         Notes{"the column 'intensity' is not read"});
   CHECK(notes_hold(source_of(read_xyz, "x,y,z,r,g,b,a,nx\n1,2,3,4,5,6,7,8\n"),
                    "the column 'a' and 1 more are"));
+  for (const char* rows : {",x,y,z\n0,1,2,3\n", "\"\",\"x\",\"y\",\"z\"\n\"1\",1,2,3\n"}) {
+    CHECK(notes_of(source_of(read_xyz, rows)) == Notes{"the column without a name is not read"});
+  }
+  CHECK(notes_hold(source_of(read_xyz, "\xc3\x85,x,y,z\n9,1,2,3\n"), " is not read"));
   CHECK(notes_hold(source_of(read_xyz, "lon,lat,height\n1,2,3\n"), "line 1 names no columns x, y and z"));
   CHECK(notes_of(source_of(read_xyz, "X Y Z\n1 2 3\n")).empty());
   CHECK(colors_of(source_of(read_xyz, "//X Y Z Rf Gf Bf\n0 0 0 0.5 0 0\n1 1 1 1 0 0\n")) ==

@@ -24,18 +24,6 @@ void fail_in_path_if(bool is_wrong, const std::string& path, std::uint64_t line,
   }
 }
 
-std::vector<std::string_view> columns_in(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    cells.push_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) {
-      return cells;
-    }
-    line.remove_prefix(comma + 1);
-  }
-}
-
 bool is_names(const std::vector<std::string_view>& cells) {
   return std::all_of(cells.begin(), cells.end(), [](std::string_view cell) {
     double number = 0;
@@ -95,7 +83,7 @@ CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
       continue;
     }
     const std::uint64_t line = lines.line_number();
-    const std::vector<std::string_view> cells = columns_in(all);
+    const std::vector<std::string_view> cells = comma_columns(all);
     const bool is_first = columns == 0;
     if (is_first) {
       columns = cells.size();
@@ -106,6 +94,10 @@ CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
     fail_in_path_if(cells.size() != columns, path, line, cells.size(), " columns; the first line has ",
                     columns);
     if (is_first && is_names(cells)) {
+      std::vector<const char*> names(kNames.begin(), kNames.begin() + static_cast<std::ptrdiff_t>(columns));
+      names.back() = result.has_fov ? kNames.back() : names.back();
+      fail_in_path_if(misplaces(cells, names), path, line, "the columns are named in another order; ",
+                      kPathColumns);
       continue;
     }
     const PathCamera camera = camera_of(cells, path, line, view, result.has_fov);

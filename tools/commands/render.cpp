@@ -67,9 +67,10 @@ void check_usage(const RenderCommand& command) {
             "--cutoff and --max-depth want --structure compact");
   refuse_if(command.look.is_ink() && (command.output.rows || command.output.is_film()),
             "--shade ink looks at whole pictures, without --rows, --part and what makes a film");
-  refuse_if(
-      command.effects.named() && !command.look.shade_name.empty() && command.look.shade != ShadeMode::kColor,
-      "--shade ", command.look.shade_name, " shows no light, and so no --effects and no --normals");
+  refuse_if((command.effects.named() || command.effects.bounces) && !command.look.shade_name.empty() &&
+                command.look.shade != ShadeMode::kColor,
+            "--shade ", command.look.shade_name,
+            " shows no light, and so no --effects, --normals and --bounces");
 }
 
 // An explicit --shade is drawn as such, unless --effects stands beside it.
@@ -371,6 +372,10 @@ void draw(RenderCommand& command, const SceneSource& source, OutputSet& outputs)
   write_frame(
       command, kind, painting.image, [&] { return part_of(subject, source, light); }, frame, gpu.get(),
       subject.camera(), &stats, outputs);
+  if (command.scene.structure == StructureKind::kDense && command.look.shade == ShadeMode::kColor &&
+      !source.single_material()) {
+    print_notes({"a dense grid keeps no colors: the faces are drawn gray"}, command.scene.quiet);
+  }
   finish(command, stats, subject.framing.note, outputs);
 }
 

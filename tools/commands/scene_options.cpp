@@ -44,6 +44,7 @@ void SceneOptions::add_scene(CLI::App& app, bool required) {
            "error");
   add_flag(app, "--as-heights", &arguments.as_heights,
            ".npy and .npz: an array of H x W numbers is heights at any W");
+  app.get_option("--as-heights")->excludes(app.get_option("--as-points"));
   add_whole_option(
       app, "--colors", "FULL", 1, 65535, &arguments.full_color,
       "points, .obj, .ply and .off: what a full red, green or blue is in the file (default: 1 where none is "

@@ -50,21 +50,13 @@ std::optional<std::array<double, 6>> parse_line(std::string_view line) {
 }
 
 // Whether a line holds names only: a header. A line with a number among its columns is a ray gone wrong.
-bool is_header(std::string_view line) {
-  while (true) {
-    const std::size_t comma = line.find(',');
-    std::string_view column = line.substr(0, comma);
-    column.remove_prefix(std::min(column.find_first_not_of(" \t+"), column.size()));
+bool is_header(const std::vector<std::string_view>& columns) {
+  return std::all_of(columns.begin(), columns.end(), [](std::string_view column) {
+    column.remove_prefix(column.starts_with('+') ? 1 : 0);
     double number = 0;
-    if (std::from_chars(column.data(), column.data() + column.size(), number).ec !=
-        std::errc::invalid_argument) {
-      return false;
-    }
-    if (comma == std::string_view::npos) {
-      return true;
-    }
-    line.remove_prefix(comma + 1);
-  }
+    return std::from_chars(column.data(), column.data() + column.size(), number).ec ==
+           std::errc::invalid_argument;
+  });
 }
 
 // About so many bytes a chunk, some thousand rays.
@@ -146,9 +138,13 @@ class RayFile {
     bool header = false;
     for (std::string_view line; lines.next(line); begin_ = front + lines.offset(), ++first_line_) {
       if (!trimmed(line).empty()) {
-        if (header || parse_line(line) || !is_header(line)) {
+        const std::vector<std::string_view> columns = comma_columns(line);
+        if (header || parse_line(line) || !is_header(columns)) {
           break;
         }
+        constexpr std::array<const char*, 6> kNames{"ox", "oy", "oz", "dx", "dy", "dz"};
+        fail_at_line_if(misplaces(columns, kNames), first_line_,
+                        "the columns are named in another order than ox,oy,oz,dx,dy,dz");
         header = true;
       }
     }

@@ -165,7 +165,8 @@ Source read_height_grid(const SharedBytes& file, const ReadOptions&, const Progr
                       quoted(word), " is ", quoted(number), ", not a whole number from 2 on");
     }
     if (equals_ignoring_case(word, "nodata_value")) {
-      nothing = finite_number(number, words.line(), "NODATA_value");
+      fail_at_line_if(parse_number(number, nothing) == NumberKind::kGarbage, words.line(), "NODATA_value is ",
+                      quoted(number), ", which is not a number");
     }
   }
   const auto columns = static_cast<std::uint64_t>(counts[0]);

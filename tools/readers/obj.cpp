@@ -25,6 +25,7 @@ struct ObjMaterial {
   std::array<double, 3> emission{};
   std::string picture, opacity_picture, glow_picture;  ///< names from the file's folder, or empty
   bool clamps = false;
+  bool moves = false;             ///< a picture has -o, -s or -t
   bool has_transparency = false;  ///< `Tr`, which some programs write as they write `d`
 };
 
@@ -33,7 +34,7 @@ constexpr std::uint32_t kMostMaterials = 65536;
 constexpr std::size_t kMostLibraries = 64;
 
 /// The picture of a `map_` statement: what is left behind its options is a name, which may hold blanks.
-std::string_view picture_name(std::string_view line, bool* clamps) {
+std::string_view picture_name(std::string_view line, ObjMaterial* material) {
   for (;;) {
     std::string_view rest = line;
     const std::string_view option = take_word(rest);
@@ -48,7 +49,8 @@ std::string_view picture_name(std::string_view line, bool* clamps) {
       if (has_numbers && parse_number(word, number) != NumberKind::kFinite) {
         break;
       }
-      *clamps = *clamps || (option == "-clamp" && word == "on");
+      material->moves = material->moves || (has_numbers && number != (option == "-s" ? 1 : 0));
+      material->clamps = material->clamps || (option == "-clamp" && word == "on");
       rest = behind;
     }
     line = rest;
@@ -70,7 +72,7 @@ void read_library(std::string_view text, const std::string& folder,
       material = found == numbers.end() || found->second == 0 ? &unused : &materials[found->second];
       material->is_described = true;
     } else if (word == "map_Kd" || word == "map_d" || word == "map_Ke") {
-      const std::string_view name = picture_name(line, &material->clamps);
+      const std::string_view name = picture_name(line, material);
       const bool is_whole = name.empty() || name.starts_with('/') || name.starts_with('\\');
       (word == "map_d"    ? material->opacity_picture
        : word == "map_Ke" ? material->glow_picture
@@ -101,18 +103,22 @@ void read_library(std::string_view text, const std::string& folder,
   }
 }
 
-// What materials say of what is behind them, of which only "nothing is there" is drawn.
-void note_clearness(const std::vector<ObjMaterial>& used, std::vector<std::string>& notes) {
+// What materials say and is not drawn: of what is behind them only "nothing is there" is.
+void note_undrawn(const std::vector<ObjMaterial>& used, std::vector<std::string>& notes) {
   std::size_t unread = 0;
   std::size_t partly = 0;
+  std::size_t moved = 0;
   for (const ObjMaterial& material : used) {
     unread += material.has_transparency && !material.opacity ? 1U : 0U;
     partly += material.opacity && *material.opacity > 0 && *material.opacity < 1 ? 1U : 0U;
+    moved += material.moves ? 1U : 0U;
   }
   note_if(unread != 0, notes, counted(unread, "material has", "materials have"),
           " Tr and no d: Tr is not read, since programs contradict each other in it");
   note_if(partly != 0, notes, counted(partly, "material is", "materials are"),
           " partly clear (d) and drawn solid");
+  note_if(moved != 0, notes, counted(moved, "material has", "materials have"),
+          " a picture that is moved or scaled (-o, -s, -t), which is not drawn: it is where vt says");
 }
 
 /// Which face has which material, by the names that an `.obj` uses, and what files beside it say of these.
@@ -197,7 +203,7 @@ class ObjMaterials {
             counted(missing, "material has", "materials have"), " no description and no color");
     note_if(missing != 0 && libraries_.empty() && !has_others, mesh.notes,
             "its materials are not drawn: no file is named that describes them (mtllib)");
-    note_clearness(used, mesh.notes);
+    note_undrawn(used, mesh.notes);
     note_if(has_more_, mesh.notes, "materials behind the first ", kMostMaterials - 1, " are not drawn");
     if (has_picture) {
       mesh.colors = {};
@@ -225,6 +231,7 @@ class ObjMaterials {
       }
       ++kept;
     }
+    fail_if(kept == 0, "all of its triangles are wholly clear (d 0)");
     if (kept < mesh.triangles.size()) {
       mesh.notes.push_back(counted(mesh.triangles.size() - kept, "triangle is", "triangles are") +
                            " wholly clear (d 0) and left out");
@@ -245,10 +252,14 @@ class ObjMaterials {
     const auto read = [&](const std::string& name) {
       std::string slashed = name;
       std::replace(slashed.begin(), slashed.end(), '\\', '/');
+      const std::string folder = path.substr(0, path.rfind('/') + 1);
       SharedBytes file;
-      const std::string fault =
-          load_beside(slashed.starts_with('/') ? slashed : path.substr(0, path.rfind('/') + 1) + slashed,
-                      kFileLimitBytes, file);
+      std::string fault =
+          load_beside(slashed.starts_with('/') ? slashed : folder + slashed, kFileLimitBytes, file);
+      if (const std::size_t last = slashed.rfind('/') + 1; !fault.empty() && last != 0) {
+        slashed.erase(0, last);  // a place on another machine
+        fault = load_beside(folder + slashed, kFileLimitBytes, file).empty() ? "" : fault;
+      }
       if (!fault.empty()) {
         return "the materials of " + tools::quoted(name) + " beside it are not drawn: it " + fault;
       }
@@ -312,6 +323,7 @@ class ObjParser {
       scale_.add_note(mesh_.notes);
       mesh_.colors = scale_.colors(std::exchange(colors_, {}));
     }
+    undrawn_ -= face_count_ == 0 ? points_ : 0;  // then all vertices are drawn
     note_if(undrawn_ != 0, mesh_.notes, "lines, points, curves and surfaces (l, p, curv, surf; ", undrawn_,
             " in all) are not drawn");
     polygons_.cut_ears();
@@ -340,6 +352,7 @@ class ObjParser {
       mesh_.texcoords.push_back({static_cast<float>(place[0]), static_cast<float>(1 - place[1])});
     } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "surf") {
       ++undrawn_;
+      points_ += keyword == "p" ? 1U : 0U;
     }
     const bool is_vertex = keyword == "v";
     const bool is_face = keyword == "f";
@@ -454,6 +467,7 @@ class ObjParser {
   Polygons polygons_{mesh_};
   bool all_colored_ = true;
   std::size_t undrawn_ = 0;  ///< statements of lines, points and curves
+  std::size_t points_ = 0;   ///< those of points
   std::uint64_t face_count_ = 0;
   std::uint64_t highest_index_ = 0;
   std::uint64_t highest_line_ = 0;

@@ -184,12 +184,15 @@ class OffParser {
       end_item();
       meter_.at(words_.offset());
     }
+    if (has_listed_colors_) {
+      mesh_.notes.push_back(
+          "colors of faces are places in a list that no file brings along: they are not drawn");
+    }
     polygons_.cut_ears();
     mesh_.face_colors = face_scale_.colors(face_colors_);
   }
 
-  /// Three or four numbers behind the corners are the face's colour; one would be a place in a table that no file
-  /// brings along. Negative: there is none.
+  /// Three or four numbers behind the corners are the face's colour. Negative: there is none.
   std::array<float, 3> face_color() {
     std::array<double, 4> values{};
     std::size_t count = 0;
@@ -199,6 +202,7 @@ class OffParser {
       }
       ++count;
     }
+    has_listed_colors_ = has_listed_colors_ || count == 1;
     return count < 3 ? kNoColor : face_scale_.keep(values);
   }
 
@@ -209,6 +213,7 @@ class OffParser {
   std::uint64_t vertex_count_ = 0;
   std::uint64_t face_count_ = 0;
   bool is_by_line_ = true;
+  bool has_listed_colors_ = false;
   TriangleMesh mesh_;
   Polygons polygons_{mesh_};
   std::vector<std::array<float, 3>> face_colors_;

@@ -141,6 +141,33 @@ bool equals_ignoring_case(std::string_view word, std::string_view lower_case) {
   return true;
 }
 
+std::vector<std::string_view> comma_columns(std::string_view line) {
+  std::vector<std::string_view> columns;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    columns.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) {
+      return columns;
+    }
+    line.remove_prefix(comma + 1);
+  }
+}
+
+bool misplaces(const std::vector<std::string_view>& header, std::span<const char* const> names) {
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    std::string_view name = header[i];
+    if (name.size() >= 2 && name.front() == '"' && name.back() == '"') {
+      name = name.substr(1, name.size() - 2);
+    }
+    for (std::size_t place = 0; place < names.size(); ++place) {
+      if (place != i && equals_ignoring_case(name, names[place])) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 bool LineReader::next(std::string_view& line) {
   if (next_ >= text_.size()) {
     return false;

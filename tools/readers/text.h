@@ -77,6 +77,11 @@ std::string_view without_comment(std::string_view line);
 /// True when `word` equals `lower_case` but for the case of ASCII letters.
 bool equals_ignoring_case(std::string_view word, std::string_view lower_case);
 
+/// The columns of a line between commas, without the spaces around them.
+std::vector<std::string_view> comma_columns(std::string_view line);
+/// Whether a header, with quotes or without, has one of `names` in the place of another. Other words say nothing.
+bool misplaces(const std::vector<std::string_view>& header, std::span<const char* const> names);
+
 /// Cuts text into lines.
 class LineReader {
  public:

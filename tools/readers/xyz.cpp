@@ -445,15 +445,20 @@ void read_preamble(std::string_view text, Layout& layout) {
     }
     layout.announced = std::max<std::int64_t>(layout.announced, -1);
     // "nan" in the first column is a bad coordinate rather than a name.
-    if (parse_number(first, value) == NumberKind::kGarbage && !first.empty()) {
-      const char c = without_quotes(first).empty() ? first.front() : without_quotes(first).front();
+    if (parse_number(first, value) == NumberKind::kGarbage) {
+      const std::string_view name = without_quotes(first);
+      const char c = name.empty() ? '\0' : name.front();
       const bool is_name = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '/';
+      // That of the rows' names may be empty, and a name may begin with any letter, where x, y and z are named.
+      Layout named = layout;
+      const bool names_places = read_header(line, named);
       // Of a second one, reading it as a point says what is wrong.
-      if (is_name && !layout.has_header) {
+      if ((is_name || names_places) && !layout.has_header) {
+        layout = named;
         layout.has_header = true;
         layout.first_point_offset = begin + lines.offset();
         layout.first_point_line = lines.line_number() + 1;
-        if (read_header(line, layout)) {
+        if (names_places) {
           layout.model_line = lines.line_number();
           break;
         }
@@ -569,7 +574,7 @@ Source read_xyz(const SharedBytes& file, const ReadOptions& options, const Progr
   note_if(layout.title_line != 0, cloud->notes, "line ", layout.title_line,
           " names no columns x, y and z: the first three are taken for places");
   note_if(layout.title_line == 0 && layout.unread_columns != 0 && !layout.is_catalogue(), cloud->notes,
-          "the column ", quoted(layout.unread),
+          layout.unread.empty() ? "the column without a name" : "the column " + quoted(layout.unread),
           layout.unread_columns == 1 ? " is" : concat(" and ", layout.unread_columns - 1, " more are"),
           " not read");
   const std::size_t color = layout.columns[3] + 1;

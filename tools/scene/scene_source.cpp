@@ -263,13 +263,20 @@ std::unique_ptr<SceneSource> mesh_scene(TriangleMesh read, const SceneArguments&
       });
 }
 
+constexpr const char* kZUpIsForMeshes = "--z-up is for meshes";
+
 std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& arguments, SceneOpening* opening,
                                       const Progress& progress) {
   if (auto* cloud = std::get_if<std::unique_ptr<PointCloud>>(&source)) {
+    fail_if(arguments.z_up, kZUpIsForMeshes);
     return point_scene(std::move(*cloud), arguments);
   }
   fail_if(arguments.as_voxels, "--as-voxels is for point files");
   fail_if(arguments.fit_percent || arguments.clip, "--fit and --clip are for point files");
+  if (auto* mesh = std::get_if<TriangleMesh>(&source)) {
+    return mesh_scene(std::move(*mesh), arguments);
+  }
+  fail_if(arguments.z_up, kZUpIsForMeshes);
   if (const auto* text = std::get_if<std::shared_ptr<const SceneText>>(&source)) {
     return open_text_scene(**text, arguments, opening, progress);
   }
@@ -279,10 +286,7 @@ std::unique_ptr<SceneSource> scene_of(Source source, const SceneArguments& argum
   if (auto* model = std::get_if<std::unique_ptr<VoxelModel>>(&source)) {
     return model_scene(std::move(*model), arguments.depth);
   }
-  if (auto* baked = std::get_if<BakedFile>(&source)) {
-    return baked_scene(std::move(*baked), arguments.depth);
-  }
-  return mesh_scene(std::move(std::get<TriangleMesh>(source)), arguments);
+  return baked_scene(std::move(std::get<BakedFile>(source)), arguments.depth);
 }
 
 }  // namespace
@@ -410,6 +414,7 @@ std::unique_ptr<SceneSource> open_scene(const SceneArguments& arguments, SceneOp
     refuse(arguments.as_voxels, "--as-voxels is for point files");
     refuse(arguments.fit_percent || arguments.clip, "--fit and --clip are for point files");
     refuse(arguments.as_points || arguments.as_heights, "--as-points and --as-heights are for .npy and .npz");
+    refuse(arguments.z_up, kZUpIsForMeshes);
     refuse(arguments.full_color != 0, "--colors is for files");
     refuse(arguments.frame.has_value(), "--frame and --frames are for .vox files with frames");
     if (arguments.depth) {
