@@ -390,7 +390,7 @@ TEST_CASE(
     fs::remove(picture);
     check_done(words);
     const std::string whole = fs::exists(picture) ? read_text(picture) : "";
-    for (std::uint64_t most = 3; most < 14; most += many_or_few(1U, 2U)) {
+    for (std::uint64_t most = 3; most < 14; most += many_or_few(1U, 3U)) {
       CAPTURE(most);
       fs::remove(picture);
       CommandLimits limits;

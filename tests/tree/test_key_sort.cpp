@@ -9,6 +9,7 @@
 #include "scene/key_sort.h"
 #include "scene/point_tree.h"
 #include "scene/scene_source.h"
+#include "support/counts.h"
 #include "support/ray_cases.h"
 #include "support/scene_under_test.h"
 #include "thimble/tree/compact_tree.h"
@@ -201,7 +202,7 @@ TEST_CASE(
   CAPTURE(seed);
   std::mt19937_64 random(seed);
   const tools::HostMemory memory(std::size_t{4} << 30);
-  for (int world = 0; world < kWorlds; ++world) {
+  for (int world = 0; world < many_or_few(60, 5); ++world) {  // of up to 4,096 parts
     CAPTURE(world);
     const Voxels source = random_world(random, tools::kPartLevel + 1);
     const std::uint64_t lists = std::uint64_t{1} << pick(random, 10, 24);
