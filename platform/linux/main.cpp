@@ -1,12 +1,13 @@
 // thimble-fb: an application of Thimble on a Linux framebuffer, without a window system.
+#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <sys/resource.h>
+#include <string.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,11 @@ struct Options {
   uint32_t frames = 0;  // 0: until asked to end
 };
 
-int complain(const std::string& sentence) {
+constexpr int kUsageStatus = 2;
+
+int complain(const std::string& sentence, int status = 1) {
   fprintf(stderr, "thimble-fb: %s\n", sentence.c_str());
-  return 1;
+  return status;
 }
 
 std::string application_names() {
@@ -46,23 +49,39 @@ std::string application_names() {
 
 // Empty, or a sentence.
 std::string read_file(const std::string& path, std::vector<uint8_t>* bytes) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return path + " is no regular file";  // which may have no end
+  }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    return "cannot open " + path;
+    return "cannot open " + path + ": " + strerror(errno);
   }
-  bytes->assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-  return file.bad() ? "cannot read " + path : "";
+  bytes->resize(std::filesystem::file_size(path, error));
+  file.read(reinterpret_cast<char*>(bytes->data()), static_cast<std::streamsize>(bytes->size()));
+  return file ? "" : "cannot read " + path;
 }
 
 int run(const Options& options) {
   const apps::Application* application = apps::find_application(options.app.c_str());
   if (application == nullptr) {
-    return complain("there is no application " + options.app + "; there are " + application_names());
+    return complain("there is no application " + options.app + "; there are " + application_names(),
+                    kUsageStatus);
   }
   std::vector<uint8_t> scene;
   if (!options.scene.empty()) {
+    if (!application->wants_scene) {
+      return complain("SCENE: \"" + options.scene + "\" is not for the application " + options.app +
+                          ", which draws no scene",
+                      kUsageStatus);
+    }
     if (const std::string fault = read_file(options.scene, &scene); !fault.empty()) {
       return complain(fault);
+    }
+    std::error_code none;
+    if (std::filesystem::equivalent(options.scene, options.stand_in, none)) {
+      return complain(options.stand_in + " is the scene and would be overwritten");
     }
   }
   linux_port::Framebuffer framebuffer;
@@ -111,32 +130,41 @@ int run(const Options& options) {
     framebuffer.clear();
   }
   linux_port::restore_console();
+  if (why == nullptr && status != 0) {
+    // The application has said why, and does not know what its scene is called.
+    return complain(options.app + (options.scene.empty() ? "" : " with " + options.scene) +
+                        " ended with status " + std::to_string(status),
+                    status);
+  }
   return why != nullptr ? complain(why) : status;
 }
 
 void describe(CLI::App* program, const std::string& apps, Options* options) {
   program->description("Runs an application of Thimble on a Linux framebuffer: arrows move, q ends.");
   program->add_option("SCENE", options->scene, "a baked scene (thimble bake SCENE -o F.oct)");
-  program->add_option("--app", options->app, apps)->capture_default_str();
+  program->add_option("--app", options->app, apps)->type_name("NAME")->capture_default_str();
   program->add_option("--device", options->device, "the framebuffer")->capture_default_str();
   program->add_option("--input", options->input, "folder of the input devices")->capture_default_str();
-  CLI::Option* stand_in =
-      program->add_option("--stand-in", options->stand_in, "a file to draw into instead of a device");
+  // Numbers with commas between them end with the word: what follows may be the scene.
+  const auto numbers = [&](const char* name, std::vector<int>* to, int count, int most, const char* help) {
+    return program->add_option(name, *to, help)
+        ->delimiter(',')
+        ->expected(count)
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1, most));
+  };
+  CLI::Option* stand_in = program->add_option("--stand-in", options->stand_in,
+                                              "to draw into instead of a device; --layout says how");
   CLI::Option* layout =
-      program->add_option("--layout", options->layout, "of the stand-in: width,height,bits,stride");
-  layout->delimiter(',')->expected(4)->check(CLI::Range(1, 1 << 20));
-  stand_in->needs(layout);
-  layout->needs(stand_in);
-  program
-      ->add_option("--size", options->size,
-                   "pixels of the picture: width,height (the largest that is magnified 4 times)")
-      ->delimiter(',')
-      ->expected(2)
-      ->check(CLI::Range(1, 16384));
-  program->add_option("--memory", options->memory, "bytes for the application")
+      numbers("--layout", &options->layout, 4, 1 << 20, "of the stand-in, in pixels and bytes");
+  stand_in->needs(layout)->option_text("FILE");
+  layout->needs(stand_in)->option_text("WIDTH,HEIGHT,BITS,STRIDE");
+  numbers("--size", &options->size, 2, 16384, "pixels of the picture (the largest that is magnified 4 times)")
+      ->option_text("WIDTH,HEIGHT");
+  program->add_option("--memory", options->memory, "for the application, K and M too (default: 256K)")
       ->transform(CLI::AsSizeValue(false))
-      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32))
-      ->capture_default_str();
+      ->check(CLI::Range(uint64_t{1}, uint64_t{UINT32_MAX}))
+      ->option_text("BYTES");
   program->add_option("--frames", options->frames, "end after so many; 0: when asked to")
       ->capture_default_str();
 }
@@ -149,8 +177,12 @@ int main(int argc, char** argv) {
   describe(&program, application_names(), &options);
   try {
     program.parse(argc, argv);
+    return run(options);
+  } catch (const CLI::Success& help) {
+    return program.exit(help);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : 2;
+    return complain(std::string(error.what()) + "; thimble-fb --help lists what there is", kUsageStatus);
+  } catch (const std::bad_alloc&) {
+    return complain("not enough memory on this machine");
   }
-  return run(options);
 }

@@ -1,6 +1,7 @@
 // The Linux framebuffer's pixels, on files that stand in for a device.
 #include <doctest/doctest.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -175,7 +176,7 @@ TEST_CASE(
     tests::CommandLimits limits;
     limits.program = THIMBLE_FB_PATH;
     const std::string layout = "643,482," + std::to_string(kind.bits) + "," + std::to_string(stride);
-    tests::check_done({scene, "--stand-in", screen, "--layout", layout, "--size", "640,480", "--frames", "2"},
+    tests::check_done({"--frames", "2", "--stand-in", screen, "--layout", layout, "--size", "640,480", scene},
                       limits);
     const std::string bytes = tests::read_text(screen);
     REQUIRE(bytes.size() == stride * 482);
@@ -197,22 +198,50 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("thimble-fb: wrong use, unusable screens, a damaged scene -> status 2 or 1, and why") {
+TEST_CASE("thimble-fb: wrong use, unusable screens and scenes -> status 2 or 1, and one sentence why") {
   const tests::TemporaryFolder folder;
+  const std::string damaged = folder.write("damaged.oct", "not a scene");
+  const std::string link = folder.path("link.oct");
+  const std::string pipe = folder.path("pipe");
+  std::filesystem::create_symlink(damaged, link);
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  using tests::operator+;
+  const auto screen = [&](const char* layout, const tests::Words& more) {
+    return tests::Words{"--stand-in", folder.path("x"), "--frames", "1", "--layout", layout} + more;
+  };
+  struct Case {
+    tests::Words words;
+    int status;
+    std::string says;
+  };
+  const Case cases[] = {
+      {{"--stand-in", folder.path("x")}, 2, "--stand-in requires --layout"},
+      {screen("9,9,8,9", {}), 1, "x: "},
+      {screen("9,9,8", {}), 2, "--layout: At least 4"},
+      {{"--device", "/nonexistent"}, 1, "cannot open /nonexistent: No such file"},
+      {screen("9,9,32,36", {"--app", "nothing"}), 2, "there are demo, "},
+      {screen("9,9,32,36", {"--app", "selftest", damaged}), 2, "\" is not for the application selftest"},
+      {screen("9,9,32,36", {"--size", "10,9"}), 1, "10 x 9"},
+      {screen("9,9,32,36", {"--size", "9"}), 2, "--size: At least 2"},
+      {screen("9,9,32,36", {"--size", "9,9,9"}), 2, "--size: At Most 2"},
+      {screen("9,9,32,36", {"--memory", "4G"}), 2, "--memory: "},
+      {screen("99,99,32,396", {folder.path("none")}), 1, "none: No such file"},
+      {screen("99,99,32,396", {folder.path()}), 1, " is no regular file"},
+      {screen("99,99,32,396", {"/dev/zero"}), 1, "/dev/zero is no regular file"},
+      {screen("99,99,32,396", {pipe}), 1, "pipe is no regular file"},
+      {screen("99,99,32,396", {damaged}), 1, "damaged.oct ended with status 1"},
+      {{damaged, "--stand-in", link, "--layout", "9,9,32,36"}, 1, "link.oct is the scene and would be over"},
+  };
   tests::CommandLimits limits;
   limits.program = THIMBLE_FB_PATH;
-  CHECK(tests::run_command({"--stand-in", folder.path("x")}, limits).status == 2);
-  CHECK(tests::run_command({"--stand-in", folder.path("x"), "--layout", "9,9,8,9"}, limits).status == 1);
-  CHECK(tests::run_command({"--device", "/nonexistent"}, limits).status == 1);
-  CHECK(tests::run_command({"--app", "nothing", "--stand-in", folder.path("x"), "--layout", "9,9,32,36"},
-                           limits)
-            .status == 1);
-  const tests::CommandResult too_large =
-      tests::run_command({"--stand-in", folder.path("x"), "--layout", "9,9,32,36", "--size", "10,9"}, limits);
-  CHECK(too_large.status == 1);
-  CHECK(too_large.err.find("10 x 9") != std::string::npos);
-  const std::string damaged = folder.write("damaged.oct", "not a scene");
-  const tests::CommandResult refused = tests::run_command(
-      {damaged, "--stand-in", folder.path("x"), "--layout", "99,99,32,396", "--frames", "1"}, limits);
-  CHECK(refused.status == 1);
+  for (const Case& each : cases) {
+    const tests::CommandResult refused = tests::run_command(each.words, limits);
+    CAPTURE(tests::line_of_words(each.words));
+    CAPTURE(refused.describe());
+    CHECK(refused.status == each.status);
+    CHECK(refused.err.starts_with("thimble-fb: "));
+    CHECK(refused.err.find('\n') == refused.err.size() - 1);
+    CHECK(refused.err.find(each.says) != std::string::npos);
+  }
+  CHECK(tests::read_text(damaged) == "not a scene");
 }
