@@ -305,6 +305,10 @@ void Simulation::answer(bool go_on) {
 std::uint32_t Simulation::frames_asked() const {
   return state_->frames_asked;
 }
+
+bool Simulation::has_read_all() const {
+  return state_->input.is_empty();
+}
 const StrictDisplay& Simulation::display() const {
   return state_->display;
 }

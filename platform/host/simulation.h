@@ -99,6 +99,8 @@ class Simulation {
   // While it asks or has ended:
   /// What it gave to running(): frames drawn.
   std::uint32_t frames_asked() const;
+  /// Whether it has read all that was typed.
+  bool has_read_all() const;
   /// The pictures that it has flushed.
   const StrictDisplay& display() const;
   /// Looks at every byte that was never used: some tenths of a millisecond.

@@ -46,6 +46,8 @@ class ByteQueue {
     begin_.store(begin + 1, std::memory_order_release);
     return byte;
   }
+  /// For the one thread that writes, while the other one waits.
+  bool is_empty() const { return begin_.load() == end_.load(); }
 
  private:
   std::array<std::uint8_t, kBytes> bytes_{};

@@ -133,6 +133,17 @@ TEST_CASE("sim: an application that goes wrong -> status 97, what it did, and no
   }
 }
 
+TEST_CASE("sim: an application that waits for keys which cannot come -> it takes those that do, and ends") {
+  const TemporaryFolder folder;
+  // The last line's frame never comes: it draws none.
+  const std::string keys = folder.write("keys.txt", "0: down left\n0: type xyzb\n1: type s");
+  CHECK(sim({"--app", "faults", "--frames", "9"}).status == 0);
+  const CommandResult ended = sim({"--app", "faults", "--keys", keys});
+  CAPTURE(ended.describe());
+  CHECK(ended.status == 0);
+  CHECK(ended.out.find("down: left\n") != std::string::npos);
+}
+
 TEST_CASE("sim: wrong usage -> status 2 and a sentence that quotes what is wrong") {
   check_sim_refused({"--board", "toaster"}, 2, {"\"toaster\"", "lm3s6965evb"});
   check_sim_refused({"--app", "editor"}, 2, {"\"editor\"", "demo"});

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "host/y4m.h"
 #include "output/units.h"
@@ -134,7 +136,7 @@ class SimSession {
         pointed_.clear();
         take_input();
         const bool enough = options_.frames != 0 && simulation_.frames_asked() >= options_.frames;
-        simulation_.answer(!enough && !closing_at_);
+        simulation_.answer(!enough && !is_stuck() && !closing_at_);
       } else {
         take_input();
       }
@@ -260,6 +262,15 @@ class SimSession {
     typed_.erase(0, taken);
   }
 
+  // Whether the application has asked twice for one frame, knowing all that will ever be typed: nothing can come
+  // that it waits for. What computes between two questions is not stuck.
+  bool is_stuck() {
+    const bool knows_all = !watched() && !input_is_open_ && typed_.empty() && simulation_.has_read_all();
+    const auto before =
+        std::exchange(knowing_all_, knows_all ? std::optional(simulation_.frames_asked()) : std::nullopt);
+    return knows_all && before == knowing_all_;
+  }
+
   void pass_output() {
     const std::string text = simulation_.take_output();
     if (text.empty()) {
@@ -345,7 +356,8 @@ class SimSession {
   std::unique_ptr<host::Screen> screen_;
   bool uart_in_pane_ = false;
   bool input_is_open_ = true;
-  std::string typed_;           // not taken by the application yet
+  std::optional<std::uint32_t> knowing_all_;  // the frame asked for, while nothing is left to read
+  std::string typed_;                         // not taken by the application yet
   std::string pointed_;         // where the mouse was since the last frame, as the application takes it
   std::string output_;          // the end of what came over the UART
   std::uint32_t held_ = 0;      // by hand
