@@ -99,8 +99,9 @@ TEST_CASE(
       lines.push_back({{"boards", file, "--quiet", option}, ".x", inputs});
     }
     for (const char* study : {"memory", "accuracy", "effects"}) {
-      for (const char* option : {"--csv", "--json", "--plot"}) {
-        lines.push_back({{study, file, "--quiet", "--size", "16x12", option}, ".x", inputs});
+      for (const auto& [option, ending] :
+           {std::pair{"--csv", ".x"}, std::pair{"--json", ".x"}, std::pair{"--plot", ".svg"}}) {
+        lines.push_back({{study, file, "--quiet", "--size", "16x12", option}, ending, inputs});
       }
     }
   }

@@ -140,6 +140,15 @@ TEST_CASE("table: a world too small for 800 pixels of 1/256 voxel -> refused as 
   check_refused({"table", "--points", "1", "--depth", "4"}, 2, {"5 to 12"});
 }
 
+TEST_CASE("studies: --plot with another ending -> refused; what has no name of its own takes it") {
+  for (const Words& study : {Words{"table"}, Words{"memory", "demo"}, Words{"effects", "demo"}}) {
+    check_refused(study + Words{"--plot", "m.png"}, 2, {"--plot", "\"m.png\"", ".svg"});
+  }
+  const Words small{"memory", "points:9,depth=3", "--quiet", "--size", "8x6", "--plot"};
+  CHECK(check_done(small + Words{"-"}).out.starts_with("<svg"));
+  CHECK(check_done(small + Words{"/dev/stdout"}).out.starts_with("<svg"));
+}
+
 TEST_CASE("table: no points at all -> a table of misses, and a plot without lines") {
   const TemporaryFolder folder;
   check_done({"table", "--points", "0", "--depth", "5", "--json", folder.path("t.json"), "--plot",

@@ -218,6 +218,12 @@ bool names_y4m(const std::string& path) {
   return path.size() > 4 && path.ends_with(".y4m");
 }
 
+bool takes_svg(const std::string& path) {
+  const FilePlace place(path);
+  return ends_in("/" + path, ".svg") || path == "-" || place.is_descriptor ||
+         (place.error == 0 && !S_ISREG(place.info.st_mode));
+}
+
 bool is_given(const CLI::App& app, const std::string& name) {
   const CLI::Option* const option = app.get_option_no_throw(name);
   return option != nullptr && option->count() != 0;

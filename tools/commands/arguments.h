@@ -125,6 +125,8 @@ CLI::Option* add_output_option(CLI::App& app, const std::string& name, const std
 
 /// Whether a name is one of moving pictures.
 bool names_y4m(const std::string& path);
+/// Whether a plot may go there: to a file of its ending, to standard output, a descriptor, a device or a pipe.
+bool takes_svg(const std::string& path);
 
 /// Whether `app` has such an option and the user gave it.
 bool is_given(const CLI::App& app, const std::string& name);

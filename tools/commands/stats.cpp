@@ -86,7 +86,7 @@ void add_report(CLI::App& app, ReportPaths* paths, bool* quiet, const std::strin
   add_path_option(app, "--csv", "FILE.csv", &paths->csv, columns);
   add_path_option(app, "--json", "FILE.json", &paths->json,
                   "the same, an array of objects; null where the CSV is empty");
-  add_path_option(app, "--plot", "FILE.svg", &paths->plot, plot);
+  add_output_option(app, "--plot", "FILE.svg", &paths->plot, takes_svg, ".svg", plot);
   add_flag(app, "--quiet", quiet, "no progress bar and no notes");
 }
 

@@ -294,7 +294,8 @@ void add_table(CLI::App& app) {
       *sub, "--json", "FILE.json", &command->files.json,
       "an array, one object a row: points, projection, seconds, paper_seconds (null where the paper "
       "has none), hits, exact_mismatches, engine");
-  add_path_option(*sub, "--plot", "FILE.svg", &command->files.plot, "seconds against points");
+  add_output_option(*sub, "--plot", "FILE.svg", &command->files.plot, takes_svg, ".svg",
+                    "seconds against points");
   add_flag(*sub, "--quiet", &command->quiet, "no progress bar");
   command->engine.add_to(*sub, false);
 }
