@@ -141,7 +141,7 @@ TEST_CASE("render: --frames and sequences asked for wrongly -> a sentence, and n
   };
   check_bad(file, {"--frames", "0:3"}, 1, {"a.vox", "no frame 3", "the last is 2"});
   check_bad(file, {"--frames", "3:4"}, 1, {"a.vox", "no frame 3", "frames 0 to 2"});
-  check_bad(still, {"--frames", "0:0"}, 1, {"still.vox", "--frames"});
+  check_bad(still, {"--frames", "0:0"}, 1, {"still.vox", "it has one frame"});
   check_bad("spheres", {"--frames", "0:1"}, 2, {"--frames", "generator"});
   for (const char* const text : {"2:1", "1", ":1", "1:", "0:100000", "-1:2", "0:1:2"}) {
     check_bad(file, {"--frames", text}, 2, {"--frames", text, "A:B"});

@@ -831,6 +831,8 @@ TEST_CASE("gox: layers -> voxels, the later over the earlier; copies moved; hidd
   CHECK(read_voxels(read_gox, gox(blocks + first + gox_layer(gox_place(1, -100), hidden))) == one);
   CHECK(read_voxels(read_gox, gox(blocks + first + gox_layer(gox_place(1, 0), ""))).back() ==
         GridVoxel{0, 2, 3, {0, 255, 0}});
+  CHECK_THROWS_WITH_AS(read_voxels(read_gox, gox(blocks + gox_layer(gox_place(0, 0), hidden))),
+                       "no layer of the file is visible", InputError);
   const auto copy = [&](const std::string& mat, unsigned id, unsigned of) {
     return gox_layer("", mat + gox_entry("id", little(id, 4)) + gox_entry("base_id", little(of, 4)));
   };

@@ -120,13 +120,13 @@ TEST_CASE("colours: what full is follows the file's highest, noted where it is a
   CHECK(std::get<TriangleMesh>(read(read_obj, vertices("1"), 255)).colors.front() == Rgb{1, 0, 0});
 
   CHECK_THROWS_WITH_AS(read_any({"a.stl", {}, ArrayAs::kByShape, 255}, SharedBytes::own("solid\n")),
-                       doctest::Contains("--colors is for formats"), InputError);
+                       doctest::Contains("of another kind (STL mesh)"), InputError);
 }
 
 TEST_CASE("npy: N x 3 to N x 9 numbers of any type -> points, heights only by --as-heights") {
   const std::string indices = npy("<i8", "(3, 3)", numbers<std::int64_t>({1, 2, 3, 2, 2, 3, 5, 5, 5}));
   CHECK(points_of(source_of(read_npy, indices)) == 3);
-  CHECK(notes_hold(source_of(read_npy, indices), "--as-voxels makes them voxels"));
+  CHECK(notes_hold(source_of(read_npy, indices), "voxels by --as-voxels"));
   CHECK(notes_of(array_of(ArrayAs::kPoints, indices)).empty());
   for (int columns = 3; columns <= 9; ++columns) {
     CAPTURE(columns);

@@ -420,6 +420,8 @@ TEST_CASE("vox: hidden nodes and layers -> left out with all below them") {
       read(vox_file(kOneModel + transform_chunk(0, 1, {{}}, {{"_hidden", "1"}}) + shape_chunk(1, 0)));
   CHECK(voxels_of(*nothing).empty());
   CHECK(nothing->size() == Sides{0, 0, 0});
+  REQUIRE(nothing->notes.size() == 1);
+  CHECK(nothing->notes[0].find("models are hidden") != std::string::npos);
 }
 
 TEST_CASE("vox: animations -> their first frame") {

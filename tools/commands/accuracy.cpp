@@ -301,8 +301,8 @@ void run_scene(const AccuracyCommand& command) {
               files.wants_plot() ? accuracy_plot(study, command.study.axis, scene) : "");
   print_notes(study.notes, command.scene.quiet);
   files.print(concat(printable(scene), "\n", command.study.view.width_px, "x", command.study.view.height_px,
-                     ", median of ", command.study.rounds, " frames each, by turns\n",
-                     accuracy_tables(study, command.study.axis), answer));
+                     ", median of ", counted(static_cast<std::uint64_t>(command.study.rounds), "frame"),
+                     " each, by turns\n", accuracy_tables(study, command.study.axis), answer));
 }
 
 void run_hard(const AccuracyCommand& command) {

@@ -24,7 +24,7 @@ void run(const ExportCommand& command) {
   OutputSet outputs({command.output}, {command.scene.arguments.scene});
   const auto source = command.scene.open();
   const BuiltScene built = command.scene.build(*source);
-  fail_if(built.voxels() == 0, "nothing in ", printable(command.scene.arguments.scene), " is solid");
+  fail_if(built.voxels() == 0, "nothing is solid");
   with_progress("writing", command.scene.quiet, [&](const Progress& progress) {
     write_voxels(outputs[0], command.format, built.compact(), source->palette(), source->has_colors(),
                  progress);

@@ -303,9 +303,9 @@ std::vector<Framing> film_framings(const RenderCommand& command, const SceneSour
                                  : frame_path(output.camera_path, output.cameras, shape);
   }
   const std::int64_t last = output.played->first + output.played->count - 1;
-  fail_if(source.frames() == 1 || last >= std::int64_t{source.frames()}, "there is no frame ", last,
-          " for --frames; ",
-          source.frames() == 1 ? "it holds still" : "the last is " + std::to_string(source.frames() - 1));
+  fail_if(source.frames() == 1, "it has one frame, which is a picture; --frames plays several");
+  fail_if(last >= std::int64_t{source.frames()}, "there is no frame ", last, " for --frames; the last is ",
+          source.frames() - 1);
   // What is wrong with a later frame is said before the first is drawn.
   const RowRange drawn = output.frames.value_or(RowRange{0, output.played->count});
   for (std::int64_t i = std::max(drawn.first, 1); i < std::int64_t{drawn.first} + drawn.count; ++i) {

@@ -307,8 +307,13 @@ std::unique_ptr<WideRenderer> EngineOptions::wide_renderer(BuiltScene* built, st
   auto renderer = is_compact
                       ? WideRenderer::make(built->compact(), &built->arena(), width_px, height_px, threads)
                       : nullptr;
-  fail_if(renderer == nullptr && name == "wide", is_compact ? "no room for --engine wide within --memory"
-                                                            : "--engine wide draws --structure compact only");
+  if (renderer == nullptr && name == "wide") {
+    fail_if(!is_compact, "--engine wide draws --structure compact only");
+    const std::int32_t least_rows = std::min(height_px, WideRenderer::kLeastRows);
+    throw InputError("no room for --engine wide within --memory: it takes about ",
+                     grouped(WideRenderer::bytes(built->compact(), width_px, least_rows, 1)),
+                     " bytes beside the rest, and ", grouped(built->arena().free_bytes()), " are left");
+  }
   return renderer;
 }
 

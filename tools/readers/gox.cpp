@@ -212,6 +212,7 @@ class GoxGrid final : public VoxelGrid {
   }
 
   void measure() {
+    fail_if(layers_.empty(), "no layer of the file is visible");
     Extent<std::int64_t> box;
     stream([&](const Corner& at, Rgb) { box.add(at); });
     fail_if(box.empty, "the file holds no voxels that are drawn");

@@ -154,7 +154,7 @@ class ArrayPoints final : public PointCloud {
                                 first_color_ + 3, " for colors")
                        : "the first three are taken for places, none for colors");
     note_if(columns <= used && array_.header.type.kind != 'f' && options.as == ArrayAs::kByShape, notes,
-            "its rows of whole numbers are places; --as-voxels makes them voxels, --as-heights heights");
+            "its rows of whole numbers are places: voxels by --as-voxels, heights by --as-heights");
   }
   void for_each(const Visit& visit) const override {
     walk([&](CloudPoint& point) {

@@ -140,14 +140,16 @@ void check_beginning(std::string_view path, std::span<const std::uint8_t> first)
 Source read_any(const ReadOptions& options, const SharedBytes& file, const Progress& progress) {
   const ReaderRow& row = row_for(options.path, file.text());
   fail_if(options.frame && row.read != read_vox && row.read != read_zip,
-          "--frame and --frames are for .vox files with frames, and this is a ", row.name);
+          "--frame and --frames are for .vox files with frames, and this is of another kind (", row.name,
+          ")");
   fail_if(options.as != ArrayAs::kByShape && row.read != read_npy && row.read != read_zip,
-          "--as-points and --as-heights are for .npy and .npz, and this is a ", row.name);
+          "--as-points and --as-heights are for .npy and .npz, and this is of another kind (", row.name, ")");
   constexpr std::array kColorGuessers{read_las, read_npy, read_obj, read_off,
                                       read_pcd, read_ply, read_xyz, read_zip};
   fail_if(options.full_color != 0 &&
               std::find(kColorGuessers.begin(), kColorGuessers.end(), row.read) == kColorGuessers.end(),
-          "--colors is for formats that do not say what a full color is, and this is a ", row.name);
+          "--colors is for formats that do not say what a full color is, and this is of another kind (",
+          row.name, ")");
   Source source = row.read(file, options, progress);
   tell(progress, 1);
   return source;

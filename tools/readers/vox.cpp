@@ -397,6 +397,7 @@ class VoxFile final : public VoxelModel {
       }
     }
     scene_ = VoxScene{};
+    note_if(instances_.empty(), notes, "all its models are hidden, or its scene graph places none");
     std::erase_if(instances_, [&](const Instance& instance) { return models_[instance.model].empty; });
   }
 

@@ -165,8 +165,8 @@ class Scene:
         return self._built.voxel_count()
 
     def __repr__(self) -> str:
-        return (f"<thimble.Scene: {self._built.kind()}, depth {self.depth}, {len(self)} voxels in {self.tree_bytes} "
-                "bytes>")
+        voxels = f"{len(self)} voxel" + "s" * (len(self) != 1)
+        return f"<thimble.Scene: {self._built.kind()}, depth {self.depth}, {voxels} in {self.tree_bytes} bytes>"
 
     def _repr_png_(self) -> bytes:
         return self.png(480, 360)
