@@ -121,7 +121,7 @@ TEST_CASE("framing: too near to see all -> a note; a direction of nothing -> a s
   CHECK_FALSE(tools::frame_box(narrow, kLevel, kBox).note.empty());
   tools::ViewWishes nowhere;
   nowhere.eye = nowhere.target = tools::Real3{1, 2, 3};
-  CHECK_THROWS_AS((void)tools::frame_box(nowhere, kLevel, kBox), tools::InputError);
+  CHECK_THROWS_AS((void)tools::frame_box(nowhere, kLevel, kBox), tools::FramingError);
   CHECK_THROWS_AS((void)tools::finer({}, 64), tools::InputError);
 }
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -17,6 +18,7 @@
 #include "output/output_file.h"
 #include "output/units.h"
 #include "readers/input_error.h"
+#include "scene/framing.h"
 #include "scene/named_scenes.h"
 
 namespace thimble::tools {
@@ -60,6 +62,22 @@ void occupy_standard_descriptors() {
       return;
     }
   }
+}
+
+// The options that help where a view cannot be.
+const char* options_against(FramingFault fault) {
+  constexpr std::array kOptions{// in the order of `FramingFault`
+                                " (--eye)",
+                                " (--target)",
+                                " (--eye, --target)",
+                                " (--up)",
+                                " (--span)",
+                                "; leave out --direction-bits",
+                                "; a wider --fov or a smaller --size helps",
+                                " (--span)",
+                                "; a smaller --span or another --eye helps",
+                                "; another --size, or a camera of your own (--eye, --target, --span), helps"};
+  return kOptions[static_cast<std::size_t>(fault)];
 }
 
 }  // namespace
@@ -136,6 +154,8 @@ int run_command_line(int argc, char** argv) {
     status = kUsageStatus;
   } catch (const OutputError& error) {
     sentence = error.what();
+  } catch (const FramingError& error) {
+    sentence = subject() + error.what() + options_against(error.fault);
   } catch (const std::bad_alloc&) {
     sentence = subject() + "not enough memory on this machine";
   } catch (const std::exception& error) {

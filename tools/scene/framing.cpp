@@ -39,10 +39,19 @@ struct Reach {
   double high;
 };
 
-Vec3Q8 reachable_q8(const Real3& point, const Reach& reach, const char* what) {
-  fail_if(!reach.holds(point), what, " ", text_of(point), " is outside the accepted ", shortest(reach.low),
-          " to ", shortest(reach.high), " (-4 to 5 world sizes)");
-  return to_q8(point);
+template <class... Pieces>
+void fail_view_if(bool is_wrong, FramingFault fault, const Pieces&... pieces) {
+  if (is_wrong) {
+    throw FramingError(fault, pieces...);
+  }
+}
+
+Vec3Q8 reachable_q8(const Real3& eye, const Reach& reach, bool is_given) {
+  fail_view_if(!reach.holds(eye), is_given ? FramingFault::kEyeOutside : FramingFault::kTargetTooFar,
+               is_given ? "the eye is at " : "the eye for this target would be at ", text_of(eye),
+               ", outside the accepted ", shortest(reach.low), " to ", shortest(reach.high),
+               " (-4 to 5 world sizes)");
+  return to_q8(eye);
 }
 
 // The nearest point that can be written.
@@ -57,8 +66,8 @@ Vec3Q8 saturated_q8(const Real3& point) {
 }
 
 Q14 span_q14(double voxels) {
-  fail_if(!(voxels * Q14::kOne <= INT32_MAX), "a picture ", shortest(voxels),
-          " voxels wide is beyond the limit of 131,071 (--span)");
+  fail_view_if(!(voxels * Q14::kOne <= INT32_MAX), FramingFault::kSpan, "a picture ", shortest(voxels),
+               " voxels wide is beyond the limit of 131,071");
   return Q14::from_raw(static_cast<std::int32_t>(std::max(1L, std::lround(voxels * Q14::kOne))));
 }
 
@@ -69,6 +78,8 @@ double voxels_of(Q14 length) {
 Real3 middle_of(const VoxelBox& bounds) {
   return scaled(plus(real_of(bounds.low), real_of(bounds.high)), 0.5);
 }
+
+constexpr const char* kUpIsParallel = "what is up is parallel to the direction of view";
 
 // What is looked at, and which way.
 struct Sight {
@@ -82,16 +93,18 @@ Sight sight_of(const ViewWishes& wishes, const Reach& reach, const VoxelBox& bou
   Sight sight;
   sight.target = wishes.target.value_or(middle_of(bounds));
   if (wishes.eye) {
-    reachable_q8(*wishes.eye, reach, "--eye");
+    reachable_q8(*wishes.eye, reach, true);
   }
   const Real3 direction = wishes.eye ? minus(sight.target, *wishes.eye) : wishes.forward;
-  fail_if(largest(direction) == 0, "--eye and --target are the same point");
-  fail_if(wishes.up && largest(*wishes.up) == 0, "--up 0,0,0 has no direction");
+  fail_view_if(largest(direction) == 0, FramingFault::kNoDirection,
+               "the eye and the target are the same point");
+  fail_view_if(wishes.up && largest(*wishes.up) == 0, FramingFault::kUp,
+               "what is up, 0,0,0, has no direction");
   sight.forward = to_integers(direction, kMaxViewComponent);
   sight.up = wishes.up ? to_integers(*wishes.up, kMaxViewComponent) : default_up(sight.forward);
   const Real3 forward = to_reals(sight.forward);
   const Real3 up = to_reals(sight.up);
-  fail_if(largest(cross(forward, up)) == 0, "--up is parallel to the direction of view");
+  fail_view_if(largest(cross(forward, up)) == 0, FramingFault::kUp, kUpIsParallel);
   sight.axes.forward = unit(forward);
   sight.axes.right = unit(cross(sight.axes.forward, up));
   sight.axes.up = cross(sight.axes.right, sight.axes.forward);
@@ -163,9 +176,9 @@ bool shows_all(std::span<const Vec3i> points, const Real3& eye, const PictureAxe
   });
 }
 
-void check(Status status, const std::string& advice) {
-  fail_if(status == Status::kBadArgument, "--up is parallel to the direction of view");
-  fail_if(status != Status::kOk, "the camera: ", status_text(status), ": ", advice);
+void check(Status status, FramingFault fault, const std::string& why) {
+  fail_view_if(status == Status::kBadArgument, FramingFault::kUp, kUpIsParallel);
+  fail_view_if(status != Status::kOk, fault, "the camera: ", status_text(status), ": ", why);
 }
 
 Status set_camera(const ViewWishes& wishes, int level, Framing* framing) {
@@ -174,11 +187,10 @@ Status set_camera(const ViewWishes& wishes, int level, Framing* framing) {
 
 void set_perspective_camera(const ViewWishes& wishes, int level, Framing* framing) {
   const Status status = set_camera(wishes, level, framing);
-  check(status, status == Status::kTooFine && wishes.direction_bits != 0
-                    ? concat("directions of ", wishes.direction_bits,
-                             " bits are too coarse for this picture; leave out --direction-bits")
-                    : "directions of 20 bits cannot be kept within 1/8 pixel; a wider --fov or a smaller "
-                      "--size helps");
+  const bool is_coarse = status == Status::kTooFine && wishes.direction_bits != 0;
+  check(status, is_coarse ? FramingFault::kCoarseDirections : FramingFault::kFineDirections,
+        is_coarse ? concat("directions of ", wishes.direction_bits, " bits are too coarse for this picture")
+                  : "directions of 20 bits cannot be kept within 1/8 pixel");
 }
 
 // How far, in pixels, rays lie from where they were wished: the core's bound starts from the eye and the span
@@ -219,12 +231,11 @@ bool set_orthographic_camera(const ViewWishes& wishes, int level, const Sight& s
   if (status == Status::kOk && wishes.direction_bits == 0 && moved_px(wishes, *framing, sight) > 0.125) {
     status = Status::kTooFine;
   }
-  check(status,
-        status == Status::kTooFine
-            ? "the pixels are too fine for origins in 1/256 voxel; a wider picture helps, about --span " +
-                  shortest(std::ceil(2 * least * 100) / 100)
-            : "the picture's corners must lie within -4 to 5 world sizes; a smaller --span or another "
-              "--eye helps");
+  const bool is_fine = status == Status::kTooFine;
+  check(status, is_fine ? FramingFault::kFineOrigins : FramingFault::kCornersOutside,
+        is_fine ? "the pixels are too fine for origins in 1/256 voxel; a wider picture helps, of about " +
+                      shortest(std::ceil(2 * least * 100) / 100) + " voxels"
+                : "the picture's corners must lie within -4 to 5 world sizes");
   return partial;
 }
 
@@ -456,7 +467,7 @@ Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds) {
   SceneCamera& kept = framing.kept;
   kept.is_perspective = !wishes.orthographic;
   kept.direction_bits = static_cast<std::uint8_t>(wishes.direction_bits);
-  kept.eye = reachable_q8(eye, reach, wishes.eye ? "--eye" : "the eye for this --target,");
+  kept.eye = reachable_q8(eye, reach, wishes.eye.has_value());
   kept.target = saturated_q8(sight.target);
   kept.forward = sight.forward;
   kept.up = wishes.up ? sight.up : Vec3i{};
@@ -487,9 +498,9 @@ Framing frame_scene(const ViewWishes& wishes, const SceneSource& source, const S
   }
   const Status status =
       set_camera(framing.kept, wishes.width_px, wishes.height_px, shape.level, &framing.camera);
-  fail_if(status != Status::kOk, "the scene's own camera does not suit a picture of ", wishes.width_px, "x",
-          wishes.height_px, ": ", status_text(status),
-          "; another --size, or a camera of your own (--eye, --target, --span), helps");
+  fail_view_if(status != Status::kOk, FramingFault::kOwnCamera,
+               "the scene's own camera does not suit a picture of ", wishes.width_px, "x", wishes.height_px,
+               ": ", status_text(status));
   return framing;
 }
 
@@ -511,7 +522,7 @@ Framing frame_shape(const ViewWishes& given, const SceneShape& shape) {
   if (reach.holds(*placed_view.eye) && reach.holds(*placed_view.target)) {
     try {
       return frame_box(placed_view, shape.level, shape.bounds);
-    } catch (const InputError&) {
+    } catch (const FramingError&) {
       // Beyond what a camera can do; the next one makes do with less, or says why not.
     }
   }
@@ -543,7 +554,7 @@ Framing frame_round(const ViewWishes& wishes, const SceneSource& source, const S
   view.eye = kept_q8(eye_at(sight_of(view, reach, shape.bounds), distance, reach));
   try {
     return frame_box(view, shape.level, shape.bounds);
-  } catch (const InputError&) {
+  } catch (const FramingError&) {
     return frame_scene(wishes, source, shape);  // beyond what a camera can do
   }
 }
@@ -657,7 +668,7 @@ ViewAngles best_angles(const SceneShape& shape, NamedView side) {
     wishes.fov_degrees = kPictureFov;
     try {
       seen[i] = planes_seen(*shape.tree, frame_shape(wishes, shape).camera);
-    } catch (const InputError&) {
+    } catch (const FramingError&) {
       // A side from which this world cannot be seen whole.
     }
   });

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "readers/input_error.h"
 #include "readers/real3.h"
 #include "scene/scene_shape.h"
 #include "thimble/bake/baked_scene.h"
@@ -43,6 +44,28 @@ enum class NamedView : std::uint8_t {
 struct ViewAngles {
   double turn = 0;  ///< 0 in front (towards -y), 90 on the right (+x)
   double tilt = 0;  ///< above the horizon, -90 .. 90
+};
+
+/// Why a view cannot be.
+enum class FramingFault : std::uint8_t {
+  kEyeOutside,        ///< of where rays may start
+  kTargetTooFar,      ///< so that the eye for it would be outside
+  kNoDirection,       ///< the eye is the target
+  kUp,                ///< no direction, or the view's
+  kSpan,              ///< beyond the limit
+  kCoarseDirections,  ///< `direction_bits` are too few for the picture
+  kFineDirections,    ///< all that there may be are too few
+  kFineOrigins,       ///< pixels lie closer than origins of parallel rays can
+  kCornersOutside,    ///< rays of a parallel picture's corners would start outside
+  kOwnCamera,         ///< that of the scene cannot draw this size
+};
+
+/// A view that cannot be. `what()` says why, in a sentence without options: the command names those that help.
+class FramingError : public InputError {
+ public:
+  template <class... Pieces>
+  explicit FramingError(FramingFault why, const Pieces&... pieces) : InputError(pieces...), fault(why) {}
+  FramingFault fault;
 };
 
 /// Points and lengths in voxels. What is not given frames the scene.
@@ -95,12 +118,12 @@ struct Framing {
 };
 
 /// The camera for what lies in `bounds` (empty: the whole world) of a world of 2^level. A function of its
-/// arguments alone. Throws InputError where rays cannot start or go as wished; the sentence names the option.
+/// arguments alone. Throws FramingError where rays cannot start or go as wished.
 Framing frame_box(const ViewWishes& wishes, int level, const VoxelBox& bounds);
 
 /// As a person would frame it: from `wishes.side`, turned and tilted on by `wishes.onward`, what is occupied in
 /// the middle of the picture, filling kPictureFill of its tighter side. With an eye, a target or kPaper: as
-/// `frame_box`, in that direction. A function of its arguments alone. Throws InputError as above.
+/// `frame_box`, in that direction. A function of its arguments alone. Throws FramingError as above.
 Framing frame_shape(const ViewWishes& wishes, const SceneShape& shape);
 
 /// The camera that the scene brings along, unless `wishes.placed` or it has none; then the one above.
