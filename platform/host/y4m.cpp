@@ -20,9 +20,10 @@ char redness(int r, int g, int b) {
 
 }  // namespace
 
-std::string y4m_header(std::int32_t width_px, std::int32_t height_px, bool gray, int frames_a_second) {
+std::string y4m_header(std::int32_t width_px, std::int32_t height_px, bool gray, int frames, int seconds) {
   return "YUV4MPEG2 W" + std::to_string(width_px) + " H" + std::to_string(height_px) + " F" +
-         std::to_string(frames_a_second) + ":1 Ip A1:1 " + (gray ? "Cmono" : "C444") + "\n";
+         std::to_string(frames) + ":" + std::to_string(seconds) + " Ip A1:1 " + (gray ? "Cmono" : "C444") +
+         "\n";
 }
 
 std::string y4m_gray_frame(const std::vector<std::uint8_t>& levels) {

@@ -12,8 +12,8 @@
 
 namespace thimble::host {
 
-/// What stands at the front of a file of such pictures.
-std::string y4m_header(std::int32_t width_px, std::int32_t height_px, bool gray, int frames_a_second);
+/// What stands at the front of a file of such pictures: `frames` of them in so many seconds.
+std::string y4m_header(std::int32_t width_px, std::int32_t height_px, bool gray, int frames, int seconds = 1);
 /// A frame, for a header with `gray`: `levels` has a byte a pixel.
 std::string y4m_gray_frame(const std::vector<std::uint8_t>& levels);
 /// A frame, for a header without.

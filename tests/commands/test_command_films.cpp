@@ -12,6 +12,7 @@
 #include "readers/texture.h"
 #include "support/check_command.h"
 #include "support/file_bytes.h"
+#include "support/pictures.h"
 #include "viewer/finished_picture.h"
 #include "viewer/open_scene.h"
 
@@ -243,6 +244,40 @@ TEST_CASE(
                 {"--seconds", "--camera-path"});
   check_refused(render + Words{"--seconds", "3600", "-o", folder.path("a.gif")}, 1,
                 {"--seconds", "100,000 frames"});
+}
+
+TEST_CASE("render: a .gif of frames with colours of their own -> each in its own") {
+  const TemporaryFolder folder;
+  std::string chunks;
+  std::string palette;
+  for (int frame = 0; frame < 9; ++frame) {  // a cube of another hue each
+    std::vector<std::array<int, 4>> voxels;
+    for (int i = 0; i < 64; ++i) {
+      voxels.push_back({i & 3, i >> 2 & 3, i >> 4 & 3, frame + 1});
+    }
+    chunks += vox_model({4, 4, 4}, voxels);
+    for (const int channel : {28 * frame, 255 - 28 * frame, frame % 3 * 100, 255}) {
+      palette += static_cast<char>(channel);
+    }
+  }
+  chunks += vox_chunk("RGBA", palette + std::string(1024 - palette.size(), '\1'));
+  const std::string file = folder.write("hues.vox", vox_file(chunks));
+  check_done(Words{"render", file, "--frames", "0:8", "-o", folder.path("a.gif")} + kSmall);
+  check_done(Words{"render", file, "--frames", "0:8", "-o", folder.path("f%d.ppm")} + kSmall);
+  const ReadPicture gif = read_gif(read_text(folder.path("a.gif")));
+  REQUIRE(gif.frames.size() == 9);
+  for (std::size_t frame = 0; frame < 9; ++frame) {
+    const std::string ppm = read_text(folder.path("f" + std::to_string(frame) + ".ppm")).substr(13);
+    REQUIRE(gif.frames[frame].size() == ppm.size());
+    double squares = 0;
+    for (std::size_t i = 0; i < ppm.size(); ++i) {
+      const int shown = static_cast<std::uint8_t>(gif.frames[frame][i]);
+      const int wanted = static_cast<std::uint8_t>(ppm[i]);
+      squares += (shown - wanted) * (shown - wanted);
+    }
+    CAPTURE(frame);
+    CHECK(std::sqrt(squares / static_cast<double>(ppm.size())) < 10);
+  }
 }
 
 TEST_CASE("render: .jpg -> the picture but for what JPEG loses; nothing transparent") {

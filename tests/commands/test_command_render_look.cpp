@@ -273,7 +273,7 @@ TEST_CASE("render look: --turntable -> a GIF of so many frames that decode, each
   }
   // The same frames without a palette: near, and pixels of one colour, dithered, are one colour of the palette.
   check_done({"render", scene, "--size", "90x70", "--turntable", "7", "-o", folder.path("a.y4m"), "--quiet"});
-  CHECK(read_text(folder.path("a.y4m")).find("FRAME") != std::string::npos);
+  CHECK(read_text(folder.path("a.y4m")).find(" F7:6 ") != std::string::npos);
   check_done(
       {"render", scene, "--size", "90x70", "--turntable", "7", "-o", folder.path("%d.png"), "--quiet"});
   std::map<std::array<int, 3>, std::string> shown;

@@ -96,8 +96,8 @@ void add_pool(const Octree& pool, const SceneSource& source, CrcSum* sum) {
 void RenderOutput::add_films(CLI::App& app) {
   add_whole_option(
       app, "--turntable", "N", 2, 1000, &turntable,
-      "a film of N frames once around the scene, six seconds long; in an .html, which turns by itself, N "
-      "tenths of a second");
+      "a film of N frames once around the scene, six seconds long where that is 1 to 50 frames a "
+      "second; in an .html, which turns by itself, N tenths of a second");
   add_path_option(
       app, "--camera-path", "FILE.csv", &camera_path,
       std::string("a film of a frame a line, 25 a second; a header line is allowed; ") + kPathColumns);
@@ -178,7 +178,7 @@ void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
                         : "its fov is the angle of --projection perspective");
   }
   if (seconds) {
-    const int rate = FilmTimes(PartKind::kCameraPath, 1).rate;
+    const int rate = FilmTimes(PartKind::kCameraPath, 1).frames;
     cameras = smoothed(camera_path, cameras, static_cast<int>(std::lround(rate * *seconds)));
   }
   if (frames) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -103,28 +104,38 @@ void put_size(std::string* out, const Image& image) {
   append_little(out, static_cast<std::uint64_t>(image.height_px), 2);
 }
 
+void put_palette(std::string* out, const Palette& palette) {
+  for (const Material& entry : palette) {
+    for (const std::uint8_t channel : {entry.color.r, entry.color.g, entry.color.b}) {
+      append_little(out, channel, 1);
+    }
+  }
+}
+
 /// What stands in front of the frames. Sides of 1 .. 65,535 pixels.
 std::string gif_header(const Image& image, const Palette& palette) {
   std::string out = "GIF89a";
   put_size(&out, image);
   append_little(&out, 0xF7, 3);  // a palette of 2^8 colours, 8 bits a channel; background 0; square pixels
-  for (const Material& entry : palette) {
-    for (const std::uint8_t channel : {entry.color.r, entry.color.g, entry.color.b}) {
-      append_little(&out, channel, 1);
-    }
-  }
+  put_palette(&out, palette);
   out += "\x21\xFF\x0BNETSCAPE2.0\x03\x01";
   append_little(&out, 0, 3);  // for ever
   return out;
 }
 
 /// A frame: a palette index for each pixel, row by row from the top; shown for so many hundredths of a second.
-std::string gif_frame(const Image& image, const std::vector<std::uint8_t>& indices, int hundredths) {
+/// `own`: its palette, or null for that of all.
+std::string gif_frame(const Image& image, const std::vector<std::uint8_t>& indices, int hundredths,
+                      const Palette* own) {
   std::string out = "\x21\xF9\x04\x04";                            // what was drawn stays
   append_little(&out, static_cast<std::uint64_t>(hundredths), 4);  // no colour is transparent
   append_little(&out, 0x2C, 5);                                    // at the upper left
   put_size(&out, image);
-  append_little(&out, 0x800, 2);  // the palette of all; rows in order; 8 bits an index
+  append_little(&out, own != nullptr ? 0x87 : 0, 1);  // whose palette; rows in order
+  if (own != nullptr) {
+    put_palette(&out, *own);
+  }
+  append_little(&out, 8, 1);  // bits an index
   compress(indices, &out);
   return out;
 }
@@ -155,6 +166,18 @@ class GifColors {
       result.push_back(entries_[bin]);
     });
     return result;
+  }
+  /// Root of the mean square by which a channel of the picture differs from what is shown for it.
+  double error(const Image& image, const std::vector<std::uint8_t>& indices) const {
+    double squares = 0;
+    const std::uint8_t* index = indices.data();
+    for_pixels(image, [&](Rgb color) {
+      const Rgb& entry = palette_[*index++].color;
+      for (const int difference : {color.r - entry.r, color.g - entry.g, color.b - entry.b}) {
+        squares += difference * difference;
+      }
+    });
+    return std::sqrt(squares / (3.0 * static_cast<double>(indices.size())));
   }
   static void count(const Image& image, ColorHistogram* histogram) {
     for_pixels(image, [&](Rgb color) { histogram->add(color); });
@@ -228,12 +251,11 @@ bool is_film(std::string_view path) {
   return path.ends_with(".gif") || path.ends_with(".y4m");
 }
 
-FilmTimes::FilmTimes(PartKind kind, int frames) {
-  constexpr int kTurnSeconds = 6;
-  rate = kind == PartKind::kCameraPath  ? 25
-         : kind == PartKind::kAnimation ? 10
-                                        : std::clamp(frames / kTurnSeconds, 1, 60);
-  hundredths = kind == PartKind::kTurntable ? std::clamp(100 * kTurnSeconds / frames, 2, 100) : 100 / rate;
+FilmTimes::FilmTimes(PartKind kind, int count) : frames(kind == PartKind::kCameraPath ? 25 : 10), seconds(1) {
+  if (kind == PartKind::kTurntable) {
+    seconds = 6;
+    frames = std::clamp(count, seconds, 50 * seconds);
+  }
 }
 
 Film::Film(OutputFile* file, const std::string& path, PartKind kind, std::size_t frames, const Frame& frame)
@@ -243,7 +265,7 @@ Film::Film(OutputFile* file, const std::string& path, PartKind kind, std::size_t
   }
   Image first = frame(0);
   if (!path.ends_with(".gif")) {
-    file_->write(host::y4m_header(first.width_px, first.height_px, false, times_.rate));
+    file_->write(host::y4m_header(first.width_px, first.height_px, false, times_.frames, times_.seconds));
     return;
   }
   constexpr std::size_t kSamples = 4;
@@ -266,9 +288,21 @@ void Film::add(const Image& image) {
     picture.commit();
     return;
   }
-  file_->write(colors_ != nullptr
-                   ? gif_frame(image, colors_->indices(image), times_.hundredths)
-                   : host::y4m_color_frame({image.pixels.data(), image.width_px, image.height_px}));
+  if (colors_ == nullptr) {
+    file_->write(host::y4m_color_frame({image.pixels.data(), image.width_px, image.height_px}));
+    return;
+  }
+  const std::vector<std::uint8_t> indices = colors_->indices(image);
+  constexpr double kMostError = 8;  // a bin's width
+  if (colors_->error(image, indices) <= kMostError) {
+    file_->write(gif_frame(image, indices, times_.hundredths(), nullptr));
+    return;
+  }
+  // It has colours that the frames which the palette is of have not.
+  ColorHistogram histogram(GifColors::kBits);
+  GifColors::count(image, &histogram);
+  const GifColors own(histogram);
+  file_->write(gif_frame(image, own.indices(image), times_.hundredths(), &own.palette()));
 }
 
 void Film::end() {

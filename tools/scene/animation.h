@@ -24,12 +24,14 @@ std::vector<std::string> sequence_names(const std::string& path, std::size_t fra
 /// What these two take, for errors and help.
 inline constexpr const char* kFilmEndings = ".gif, .y4m or a picture a frame, such as frame_%03d.png";
 
-/// A turntable takes about six seconds; along a path pass 25 frames a second; an animation plays 10, as in the viewer,
-/// since no file says its speed.
+/// A turntable takes six seconds, but a frame at most one and at least 1/50; along a path pass 25 frames a second; an
+/// animation plays 10, as in the viewer, since no file says its speed.
 struct FilmTimes {
-  FilmTimes(PartKind kind, int frames);
-  int hundredths;  ///< of a second a frame, in a GIF
-  int rate;        ///< whole frames a second, in a .y4m
+  FilmTimes(PartKind kind, int count);
+  int frames;  ///< in so many seconds
+  int seconds;
+  /// Of a second a frame, in a GIF.
+  int hundredths() const { return 100 * seconds / frames; }
 };
 
 /// A film's bytes, frame by frame. They depend on the frames and on nothing else.
@@ -39,7 +41,8 @@ class Film {
   using Frame = std::function<Image(std::size_t number)>;
 
   /// Writes what stands in front of `frames` frames. The palette of a .gif comes from a few of them all over the
-  /// film, which are drawn here already. Of a sequence `file` is null: each picture is there as soon as it is added.
+  /// film, which are drawn here already; a frame of other colours gets one of its own. Of a sequence `file` is null:
+  /// each picture is there as soon as it is added.
   Film(OutputFile* file, const std::string& path, PartKind kind, std::size_t frames, const Frame& frame);
   ~Film();
   void add(const Image& image);
