@@ -41,6 +41,7 @@ TEST_CASE("new: each board with its own display -> a program by Thimble's port")
     INFO(made.describe());
     REQUIRE(made.status == 0);
     CHECK(files_of(folder.path("own")) == Words{"CMakeLists.txt", "README.md", "main.cpp", "scene.h"});
+    CHECK(read_text(folder.path("own/main.cpp")).find("display of the display") == std::string::npos);
     CHECK(read_text(folder.path("own/CMakeLists.txt")).find("set(THIMBLE_BOARD " + std::string(board.name)) !=
           std::string::npos);
   }

@@ -1,6 +1,7 @@
 // Readers of voxel grids: .binvox, .mts, Minecraft's four, .bt and .ot, .qb and .qbcl, .kvx and .kv6, .vxl, .gox,
 // NumPy arrays, grids of heights.
 #include <doctest/doctest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -123,9 +124,10 @@ std::string zip(const std::vector<std::pair<std::string, std::string>>& members,
   std::string directory;
   for (const auto& [name, data] : members) {
     const std::string packed = deflate ? deflated(data, -15) : data;
-    const std::string common = little(20, 2) + little(0, 2) + little(deflate ? 8 : 0, 2) + little(0, 8) +
-                               little(packed.size(), 4) + little(data.size(), 4) + little(name.size(), 2) +
-                               little(0, 2);
+    const std::string common =
+        little(20, 2) + little(0, 2) + little(deflate ? 8 : 0, 2) + little(0, 4) +
+        little(::crc32_z(0, reinterpret_cast<const Bytef*>(data.data()), data.size()), 4) +
+        little(packed.size(), 4) + little(data.size(), 4) + little(name.size(), 2) + little(0, 2);
     directory += "PK\x01\x02" + little(20, 2) + common + little(0, 10) + little(out.size(), 4) + name;
     out += "PK\x03\x04" + common + name + packed;
   }
@@ -304,8 +306,8 @@ TEST_CASE("mts: nodes -> coloured voxels; chance 0 and air -> none") {
     INFO(version);
     const auto voxels = read_voxels(read_mts, mts(version, {1, 0, 1, 1}, std::string("\x7f\x7f\x7f\x7f", 4)));
     REQUIRE(voxels.size() == 3);
-    CHECK(voxels[0] == GridVoxel{0, 1, 0, dirt});  // z 0 is the farthest
-    CHECK(voxels[1] == GridVoxel{0, 0, 0, dirt});
+    CHECK(voxels[0] == GridVoxel{0, 0, 0, dirt});  // z 0 is the nearest
+    CHECK(voxels[1] == GridVoxel{0, 1, 0, dirt});
   }
   CHECK(read_voxels(read_mts, mts(4, {1, 1, 1, 1}, std::string("\x7f\0\x80\xff", 4))).size() == 2);
   CHECK(
@@ -601,6 +603,14 @@ TEST_CASE("zip: one scene among other files -> the scene; none or several -> a s
   CHECK(
       contains(error_of(read_archive, zip({{"b.zip", zip({{"a.txt", cloud}}, false)}}, false)), "no scene"));
   CHECK(contains(error_of(read_archive, zip({{"a.xyz", "1 2\n"}}, false)), "line 1"));
+  // Another byte than the check sum is of; a program in front, and a comment that holds the mark of an end.
+  const std::string one = zip({{"a.xyz", cloud}}, false);
+  std::string changed = one;
+  changed[one.find(cloud)] = '7';
+  CHECK(contains(error_of(read_archive, changed), "'a.xyz' is damaged: the directory has another check sum"));
+  CHECK(error_of(read_archive, "#!/bin/sh\n" + one).empty());
+  const std::string comment = "about PK\x05\x06 and how it ends.";
+  CHECK(error_of(read_archive, one.substr(0, one.size() - 2) + little(comment.size(), 2) + comment).empty());
 }
 
 TEST_CASE("asc: an ESRI grid -> a landscape; holes where there is no data") {

@@ -147,7 +147,7 @@ std::map<std::string, std::string> project(const NewCommand& command, const Bake
   const std::string main = kit == "arduino" ? command.name() + ".ino" : command.in_c ? "main.c" : "main.cpp";
   const std::string folder = kit == "platformio" ? "src/" : "";
   Meanings words{
-      {"SCENE", std::filesystem::path(command.scene.arguments.scene).filename().string()},
+      {"SCENE", printable(std::filesystem::path(command.scene.arguments.scene).filename().string())},
       {"MAIN", folder + main},
       {"MAP", has_map ? "bricks, " : ""},
       {"WHERE", command.panel == nullptr ? concat("the display of ", board.title)

@@ -97,13 +97,14 @@ struct ZipMember {
   std::uint64_t size_bytes = 0;  ///< as the directory says; unpacking holds it to that
   SharedBytes packed;
   bool is_deflated = false;
+  std::uint32_t crc32 = 0;
 };
 
 /// The directory's members, in its order. They share the bytes of `file`.
 /// @throws InputError  no directory, members that leave the file, a way of packing that is not read
 std::vector<ZipMember> zip_members(const SharedBytes& file);
 
-/// A member's bytes. @throws InputError  damaged data, another size than the directory says
+/// A member's bytes. @throws InputError  damaged data, another size or check sum than the directory says
 SharedBytes zip_unpack(const ZipMember& member);
 /// The first `count` of them, or all of a shorter member.
 SharedBytes zip_beginning(const ZipMember& member, std::uint64_t count);

@@ -7,7 +7,8 @@
 // their palettes; the numbers lie in words of 64 bits and cross them. Of a structure: size, the listed blocks and the
 // palette, or the first of several. Blocks have the colours of block_colors.cpp and all are whole cubes; entities,
 // biomes and what chests hold are passed over. Of an `.mts`: the size, the names of the nodes, and which node is where;
-// nodes that it leaves to chance are there unless the chance is 0. In the files y is up, here z is: (x, y, z) -> (x, -z, y).
+// nodes that it leaves to chance are there unless the chance is 0. In the files y is up, here z is: (x, y, z) -> (x, -z, y); of an `.mts`, whose axes are
+// left-handed, (x, z, y).
 //
 // Sources of the formats: Markus Persson, "Named Binary Tag specification", 2011; Minecraft Wiki, "Schematic file format", "Structure file"; SpongePowered, "Sponge Schematic
 // Specification" 1 to 3; masa, Litematica, `LitematicaSchematic` and `LitematicaBitArray`;
@@ -219,7 +220,8 @@ class SchematicGrid final : public VoxelGrid {
             return static_cast<std::int32_t>(box.corner[axis] - low_[axis] +
                                              static_cast<std::int64_t>(local));
           };
-          visit(at(0, index % box.size[0]), size_[1] - 1 - at(2, index / box.size[0] % box.size[2]),
+          const std::int32_t depth = at(2, index / box.size[0] % box.size[2]);
+          visit(at(0, index % box.size[0]), code_ == BlockCode::kNodes ? depth : size_[1] - 1 - depth,
                 at(1, index / box.size[0] / box.size[2]), *color);
         }
       });

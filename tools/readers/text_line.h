@@ -169,8 +169,9 @@ class Clauses {
   void read(const std::vector<Clause>& known) {
     while (!line_->at_end()) {
       const Word word = line_->word();
-      const auto clause = std::find_if(known.begin(), known.end(),
-                                       [&](const Clause& each) { return each.word == word.text; });
+      const auto clause = std::find_if(known.begin(), known.end(), [&](const Clause& each) {
+        return !word.is_quoted && each.word == word.text;
+      });
       if (clause == known.end()) {
         std::string names(known.front().word);
         for (std::size_t i = 1; i < known.size(); ++i) {

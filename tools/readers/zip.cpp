@@ -3,6 +3,7 @@
 
 #include "readers/file_bytes.h"
 #include "readers/text.h"
+#include "thimble/base/memory.h"
 
 namespace thimble::tools {
 namespace {
@@ -13,11 +14,14 @@ constexpr std::uint32_t kLocalSignature = 0x04034b50;
 constexpr std::size_t kEndBytes = 22;
 constexpr std::size_t kLongestComment = 65535;
 
-/// Offset of the record that ends the directory: the last one that there is room for.
+/// Offset of the record that ends the directory: the last one that its comment has room behind.
 std::size_t find_end(std::span<const std::uint8_t> file) {
   const std::size_t last = file.size() < kEndBytes ? 0 : file.size() - kEndBytes;
   for (std::size_t back = 0; back <= std::min(last, kLongestComment) && file.size() >= kEndBytes; ++back) {
-    if (ByteReader(file.subspan(last - back)).u32() == kEndSignature) {
+    ByteReader end(file.subspan(last - back, kEndBytes));
+    const bool is_end = end.u32() == kEndSignature;
+    end.skip(kEndBytes - 6);
+    if (is_end && end.u16() <= back) {
       return last - back;
     }
   }
@@ -32,10 +36,15 @@ std::vector<ZipMember> zip_members(const SharedBytes& archive) {
   ByteReader end(file.subspan(end_offset), "the end of the archive", end_offset);
   end.skip(10);
   const unsigned count = end.u16();
-  end.skip(4);
+  const std::uint64_t directory_bytes = end.u32();
   const std::uint32_t directory_offset = end.u32();
+  fail_if(count == UINT16_MAX || directory_offset == UINT32_MAX,
+          "the archive's directory is a large one (Zip64), which is not read");
+  // A program that unpacks itself may stand before the archive.
+  const std::uint64_t archive_bytes = directory_offset + directory_bytes;
+  const std::uint64_t begin = end_offset - std::min<std::uint64_t>(archive_bytes, end_offset);
   ByteReader whole(file, "the archive");
-  whole.skip(directory_offset);
+  whole.skip(begin + directory_offset);
   std::vector<ZipMember> members;
   for (unsigned i = 0; i < count; ++i) {
     const std::string place = concat("entry ", i + 1, " of the archive's directory");
@@ -44,9 +53,10 @@ std::vector<ZipMember> zip_members(const SharedBytes& archive) {
     whole.skip(4);
     const unsigned flags = whole.u16();
     const unsigned method = whole.u16();
-    whole.skip(8);
-    const std::uint32_t packed_bytes = whole.u32();
+    whole.skip(4);
     ZipMember member;
+    member.crc32 = whole.u32();
+    const std::uint32_t packed_bytes = whole.u32();
     member.size_bytes = whole.u32();
     const unsigned name_bytes = whole.u16();
     const std::uint64_t extra_bytes = std::uint64_t{whole.u16()} + whole.u16();
@@ -54,13 +64,16 @@ std::vector<ZipMember> zip_members(const SharedBytes& archive) {
     const std::uint32_t local_offset = whole.u32();
     member.name = whole.text(name_bytes);
     whole.skip(extra_bytes);
-    fail_if((flags & 1U) != 0 || (method != 0 && method != 8) || member.size_bytes == UINT32_MAX ||
+    const bool is_packed_otherwise = method != 0 && method != 8;
+    fail_if((flags & 1U) != 0 || is_packed_otherwise || member.size_bytes == UINT32_MAX ||
                 packed_bytes == UINT32_MAX || local_offset == UINT32_MAX,
-            "the member ", quoted(member.name), " is encrypted, larger than 4 GiB or packed in a way (",
-            method, ") that is not read");
+            "the member ", quoted(member.name),
+            (flags & 1U) != 0     ? " is encrypted"
+            : is_packed_otherwise ? concat(" is packed in a way (", method, ") that is not read")
+                                  : " is larger than 4 GiB");
     member.is_deflated = method == 8;
     ByteReader local(file, "the member " + quoted(member.name));
-    local.skip(local_offset);
+    local.skip(begin + local_offset);
     local.fail_if(local.u32() != kLocalSignature, "none is at byte offset ", local_offset);
     local.skip(22);
     const std::uint64_t before = std::uint64_t{local.u16()} + local.u16();
@@ -80,6 +93,8 @@ SharedBytes zip_unpack(const ZipMember& member) {
   }
   fail_if(file.bytes.size() != member.size_bytes, place, " has ", file.bytes.size(), " bytes, not the ",
           member.size_bytes, " of the directory");
+  fail_if(crc32({file.bytes.data(), file.bytes.size()}) != member.crc32, place,
+          " is damaged: the directory has another check sum");
   return file;
 }
 
