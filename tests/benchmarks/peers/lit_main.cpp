@@ -56,7 +56,7 @@ class LitTrial {
     check(render_lit_band(effects_, built_.compact(), camera_, shading_, scene_, band(pixels)));
   }
   void draw_streams(std::vector<std::uint8_t>* pixels) {
-    check(streams_->render(effects_, camera_, shading_, scene_, band(pixels), nullptr));
+    check(streams_->render({effects_, camera_, shading_, scene_}, band(pixels), nullptr));
   }
 
  private:
