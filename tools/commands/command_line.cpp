@@ -64,10 +64,9 @@ void occupy_standard_descriptors() {
   }
 }
 
-// The options that help where a view cannot be.
+// The options that help where a view cannot be, in the order of `FramingFault`.
 const char* options_against(FramingFault fault) {
-  constexpr std::array kOptions{// in the order of `FramingFault`
-                                " (--eye)",
+  constexpr std::array kOptions{" (--eye)",
                                 " (--target)",
                                 " (--eye, --target)",
                                 " (--up)",

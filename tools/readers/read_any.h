@@ -30,9 +30,9 @@ struct ReaderRow {
 /// The table's rows, in the order in which they are tried.
 std::span<const ReaderRow> reader_rows();
 
-/// The first row that recognises `text`, the first bytes of the file; otherwise the one whose ending `path` has, in any case and before a
-/// final `.gz`, `.zst` or `.xz`; null when there is none. So what a file holds counts for more than its name, and a `.ply`
-/// that no reader recognises is a broken `.ply`.
+/// The first row that recognises `text`, the first bytes of the file; otherwise the one whose ending `path` has, in any
+/// case and before a final `.gz`, `.zst` or `.xz`; null when there is none. So what a file holds counts for more than its
+/// name, and a `.ply` that no reader recognises is a broken `.ply`.
 const ReaderRow* find_reader(std::string_view path, std::string_view text);
 
 /// Refuses a file by its first bytes where these suffice for it.

@@ -7,8 +7,8 @@
 // their palettes; the numbers lie in words of 64 bits and cross them. Of a structure: size, the listed blocks and the
 // palette, or the first of several. Blocks have the colours of block_colors.cpp and all are whole cubes; entities,
 // biomes and what chests hold are passed over. Of an `.mts`: the size, the names of the nodes, and which node is where;
-// nodes that it leaves to chance are there unless the chance is 0. In the files y is up, here z is: (x, y, z) -> (x, -z, y); of an `.mts`, whose axes are
-// left-handed, (x, z, y).
+// nodes that it leaves to chance are there unless the chance is 0. In the files y is up, here z is: (x, y, z) -> (x, -z, y);
+// of an `.mts`, whose axes are left-handed, (x, z, y).
 //
 // Sources of the formats: Markus Persson, "Named Binary Tag specification", 2011; Minecraft Wiki, "Schematic file format", "Structure file"; SpongePowered, "Sponge Schematic
 // Specification" 1 to 3; masa, Litematica, `LitematicaSchematic` and `LitematicaBitArray`;
