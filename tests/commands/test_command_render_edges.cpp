@@ -18,12 +18,12 @@ namespace {
 
 using namespace thimble::tests;
 
-struct Picture {
+struct Shot {
   std::vector<std::uint8_t> rgb;
   Json stats;
 };
 
-Picture render(const Words& words, const std::string& size) {
+Shot render(const Words& words, const std::string& size) {
   const TemporaryFolder folder;
   check_done(Words{"render"} + words +
              Words{"--size", size, "--quiet", "-o", folder.path("a.ppm"), "--stats", folder.path("a.json")});
@@ -38,7 +38,7 @@ const char* const kSize = "90x60";
 const char* const kFineSize = "360x240";
 
 // The rule once more, from the picture of one sample and the one four times as large.
-std::vector<std::uint8_t> with_samples_at_edges(const Picture& one, const Picture& fine, int* more) {
+std::vector<std::uint8_t> with_samples_at_edges(const Shot& one, const Shot& fine, int* more) {
   using thimble::Bytes;
   using thimble::ConstBytes;
   constexpr std::size_t kLine = 3 * kWidth;
@@ -73,7 +73,7 @@ std::vector<std::uint8_t> with_samples_at_edges(const Picture& one, const Pictur
   return picture;
 }
 
-double rms(const Picture& one, const Picture& other) {
+double rms(const Shot& one, const Shot& other) {
   double sum = 0;
   for (std::size_t i = 0; i < one.rgb.size(); ++i) {
     const double difference = int{one.rgb[i]} - int{other.rgb[i]};
@@ -95,9 +95,9 @@ TEST_CASE("render --samples auto: plain and lit -> one sample, and the fine pict
   };
   for (const Words& words : cases) {
     CAPTURE(words);
-    const Picture one = render(words, kSize);
-    const Picture fine = render(words, kFineSize);
-    const Picture drawn = render(words + Words{"--samples", "auto"}, kSize);
+    const Shot one = render(words, kSize);
+    const Shot fine = render(words, kFineSize);
+    const Shot drawn = render(words + Words{"--samples", "auto"}, kSize);
     int more = 0;
     CHECK(drawn.rgb == with_samples_at_edges(one, fine, &more));
     CHECK(drawn.rgb != one.rgb);
@@ -125,10 +125,10 @@ TEST_CASE("render --samples auto: threads, budgets and structures -> the same pi
   for (const auto& [each_words, ways] : cases) {
     const auto& words = each_words;
     CAPTURE(words);
-    const Picture first = render(words + Words{"--samples", "auto"}, kSize);
+    const Shot first = render(words + Words{"--samples", "auto"}, kSize);
     for (const Words& way : ways) {
       CAPTURE(way);
-      const Picture other = render(words + Words{"--samples", "auto"} + way, kSize);
+      const Shot other = render(words + Words{"--samples", "auto"} + way, kSize);
       CHECK(other.rgb == first.rgb);
       if (way[0] == "--memory") {
         CHECK(other.stats["high_water_bytes"] <= other.stats["budget_bytes"]);
@@ -145,10 +145,10 @@ TEST_CASE(
                                 : std::vector<Words>{{"castle"}, {"room"}}) {
     CAPTURE(scene);
     constexpr const char* kLarge = "260x200";
-    const Picture whole = render(scene + Words{"--samples", "auto"}, kLarge);
+    const Shot whole = render(scene + Words{"--samples", "auto"}, kLarge);
     CHECK(render(scene + Words{"--samples", "auto", "--memory", "600K"}, kLarge).rgb == whole.rgb);
     // What is far from edges: the first and last column's upper half.
-    const Picture single = render(scene + Words{"--samples", "1"}, kLarge);
+    const Shot single = render(scene + Words{"--samples", "1"}, kLarge);
     REQUIRE(single.rgb.size() == whole.rgb.size());
     const std::size_t line = whole.rgb.size() / 200;
     int differ = 0;
@@ -167,9 +167,9 @@ TEST_CASE("render --samples auto: models -> nearer to 64 samples than one by hal
   for (const Words& words : {Words{"castle", "--shade", "color"}, Words{"ship", "--shade", "color"},
                              Words{"castle", "--effects", "direct-light,shadows"}, Words{"castle"}}) {
     CAPTURE(words);
-    const Picture best = render(words + Words{"--samples", "64"}, size);
-    const Picture one = render(words + Words{"--samples", "1"}, size);
-    const Picture edges = render(words + Words{"--samples", "auto"}, size);
+    const Shot best = render(words + Words{"--samples", "64"}, size);
+    const Shot one = render(words + Words{"--samples", "1"}, size);
+    const Shot edges = render(words + Words{"--samples", "auto"}, size);
     CHECK(rms(edges, best) < 0.6 * rms(one, best));
     CHECK(edges.stats["rays"].get<double>() < 3 * one.stats["rays"].get<double>());
   }

@@ -18,12 +18,12 @@ using namespace thimble::drivers;
 using tests::PageModel;
 
 // Any picture, in pages and as what is to be seen.
-struct Picture {
+struct PagePicture {
   int width;
   int height;
   std::vector<std::uint8_t> pages;
 
-  Picture(int w, int h, unsigned seed)
+  PagePicture(int w, int h, unsigned seed)
       : width(w), height(h), pages(band_bytes(PixelFormat::kMono1Pages, w, h)) {
     std::mt19937 random(seed);
     for (std::uint8_t& byte : pages) {
@@ -48,12 +48,12 @@ struct Picture {
   }
 };
 
-struct Module {
+struct PageModule {
   PageModel::Kind kind;
   PageGeometry geometry;
   int first_column;
 };
-const Module kModules[] = {
+const PageModule kPageModules[] = {
     {PageModel::Kind::kSsd1306, {128, 64}, 0},     {PageModel::Kind::kSsd1306, {128, 32}, 0},
     {PageModel::Kind::kSsd1306, {72, 40, 28}, 28}, {PageModel::Kind::kSsd1306, {64, 48, 32}, 32},
     {PageModel::Kind::kSsd1306, {96, 16, 0}, 0},   {PageModel::Kind::kSh1106, {128, 64}, 2},
@@ -61,14 +61,14 @@ const Module kModules[] = {
 };
 
 TEST_CASE("page panels: set-up, bands in any order, both rotations -> what is seen is the picture") {
-  for (const Module& module : kModules) {
+  for (const PageModule& module : kPageModules) {
     for (const Rotation rotation : {Rotation::kNone, Rotation::k180}) {
       CAPTURE(static_cast<int>(module.kind));
       CAPTURE(module.geometry.width_px);
       const int width = module.geometry.width_px;
       const int height = module.geometry.height_px;
       PageModel model(module.kind, width, height, module.first_column);
-      Picture picture(width, height, 7);
+      PagePicture picture(width, height, 7);
       tests::with_panel<Ssd1306, Sh1106, St7567>(module.kind, [&](auto& panel) {
         REQUIRE(panel.begin(model.spi(), module.geometry, rotation));
         CHECK(model.is_on());
@@ -77,7 +77,7 @@ TEST_CASE("page panels: set-up, bands in any order, both rotations -> what is se
           REQUIRE(panel.show(picture.band(row, 8)));
         }
         CHECK(model.picture() == picture.seen(rotation == Rotation::k180));
-        Picture other(width, height, 8);
+        PagePicture other(width, height, 8);
         REQUIRE(panel.show(other.band(0, height)));
         CHECK(model.picture() == other.seen(rotation == Rotation::k180));
         // A part, with a stride of its own.
@@ -115,7 +115,7 @@ TEST_CASE(
       },
       [](void* self, std::uint32_t ms) { static_cast<PageModel*>(self)->wait(ms); });
   Ssd1306 panel;
-  Picture picture(128, 64, 3);
+  PagePicture picture(128, 64, 3);
   REQUIRE(panel.begin(wire.bus(), {128, 64}));
   REQUIRE(panel.show(picture.band(0, 64)));
   CHECK(model.picture() == picture.seen());
@@ -143,7 +143,7 @@ TEST_CASE("page panels: what they do not have -> false, and nothing sent") {
   CHECK(model.bytes_sent() == 0);
   REQUIRE(panel.begin(model.spi(), {128, 64}));
   const std::uint64_t sent = model.bytes_sent();
-  Picture picture(128, 64, 3);
+  PagePicture picture(128, 64, 3);
   Band band = picture.band(0, 8);
   band.rows = 4;
   CHECK_FALSE(panel.show(band));

@@ -19,10 +19,6 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-std::int64_t default_rays() {
-  return thimble::tests::many_or_few(1000000, 60000);
-}
-
 constexpr int kAir = -1;
 
 // A cube of voxels with a material or air each, and its compact tree.
@@ -349,7 +345,7 @@ class Judge {
 TEST_CASE(
     "secondary rays: random rays in worlds of materials -> starts, exits and hits as the exact reference has "
     "them") {
-  const std::int64_t rays = number_from_environment("THIMBLE_RAYS", default_rays());
+  const std::int64_t rays = number_from_environment("THIMBLE_RAYS", many_or_few(1000000, 60000));
   const std::int64_t seed = number_from_environment("THIMBLE_SEED", 20261121);
   Tally tally;
   std::int64_t worlds = 0;

@@ -15,10 +15,6 @@ namespace {
 using namespace thimble;
 using namespace thimble::tests;
 
-std::int64_t default_rays() {
-  return many_or_few(10000000, 200000);
-}
-
 // Solid aligned blocks of several sizes among single voxels: trees with leaves on many levels.
 std::vector<reference::Voxel> block_world(int level, std::mt19937_64& random) {
   std::vector<reference::Voxel> voxels;
@@ -131,7 +127,7 @@ void run_world(std::uint64_t seed, std::int64_t rays, RunTotals& totals) {
 }  // namespace
 
 TEST_CASE("trace: random rays in random worlds -> every structure and width gives the reference's answer") {
-  const std::int64_t rays = number_from_environment("THIMBLE_RAYS", default_rays());
+  const std::int64_t rays = number_from_environment("THIMBLE_RAYS", many_or_few(10000000, 200000));
   const std::int64_t seed = number_from_environment("THIMBLE_SEED", 20240611);
   // Many worlds at the least, and few enough that most of the time goes into rays.
   const std::int64_t rays_per_world = std::clamp(rays / 500, std::int64_t{250}, std::int64_t{10000});
