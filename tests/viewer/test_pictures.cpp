@@ -278,23 +278,23 @@ TEST_CASE(
     "finished picture: samples at edges -> row by row, the bytes of render with the words of the look") {
   struct Wish {
     std::string scene;
-    bool has_effects;
+    std::string effects;
     std::optional<ShadeMode> shade;
     bool has_edges;
   };
   for (const Wish& wish :
-       {Wish{"castle", false, {}, true}, Wish{"glass", false, {}, true},
-        Wish{"spheres,depth=5", true, {}, true}, Wish{"spheres,depth=5", false, ShadeMode::kNormal, true},
-        Wish{"points:2000,depth=6", false, {}, false}}) {
+       {Wish{"castle", "", {}, true}, Wish{"castle", "none", {}, true}, Wish{"glass", "", {}, true},
+        Wish{"spheres,depth=5", "direct-light,shadows,ambient-occlusion", {}, true},
+        Wish{"spheres,depth=5", "", ShadeMode::kNormal, true}, Wish{"points:2000,depth=6", "", {}, false}}) {
     CAPTURE(wish.scene);
-    CAPTURE(wish.has_effects);
+    CAPTURE(wish.effects);
     viewer::LookWishes wishes;
     wishes.across = kEdgeGrid;
     wishes.at_edges = true;
     wishes.shade = wish.shade;
     wishes.shade_word = "normal";
-    if (wish.has_effects) {
-      wishes.effects.choice = parse_effects("direct-light,shadows,ambient-occlusion").value();
+    if (!wish.effects.empty()) {
+      wishes.effects.choice = parse_effects(wish.effects).value();
     }
     const auto look = std::make_shared<const FinishedLook>(scene_of(wish.scene), wishes);
     std::vector<std::string> words{"render", wish.scene, "--size", "97x61", "--quiet", "-o"};

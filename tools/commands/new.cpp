@@ -149,6 +149,7 @@ std::map<std::string, std::string> project(const NewCommand& command, const Bake
   Meanings words{
       {"SCENE", printable(std::filesystem::path(command.scene.arguments.scene).filename().string())},
       {"MAIN", folder + main},
+      {"FOLDER", folder},
       {"MAP", has_map ? "bricks, " : ""},
       {"WHERE", command.panel == nullptr ? concat("the display of ", board.title)
                                          : concat("an ", command.panel->name, " at a ", board.name)},

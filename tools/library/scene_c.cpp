@@ -1,6 +1,7 @@
 // The face for C of a scene from a file.
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include "readers/oct.h"
 #include "readers/source.h"
@@ -16,6 +17,9 @@ extern "C" {
 THIMBLE_FILES_API ThimbleFile* thimble_file_open(const char* path, int depth, char* error,
                                                  size_t error_bytes) {
   try {
+    if (path == nullptr) {
+      throw std::invalid_argument("no path was given");
+    }
     return new ThimbleFile(path, depth == 0 ? thimble::files::Options{}
                                             : thimble::files::Options{"--depth", std::to_string(depth)});
   } catch (const std::exception& caught) {

@@ -61,7 +61,9 @@ void read_type(std::string_view value, NpyHeader& header) {
   const bool has_order = !text.empty() && std::string_view("<>|=").find(text[0]) != std::string_view::npos;
   const std::string_view type = text.substr(has_order ? 1 : 0);
   fail_if(std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end(), "the type of the array's numbers, ",
-          quoted(value.substr(0, value.find(','))),
+          !text.empty()            ? quoted(text)
+          : value.starts_with('[') ? "records"
+                                   : quoted(value.substr(0, value.find(','))),
           ", is none of booleans, integers, and floats of 2, 4 or 8 bytes");
   header.type.kind = type[0] == '?' ? 'b' : type[0];
   header.type.size_bytes = type.size() < 2 ? 1 : static_cast<std::size_t>(type[1] - '0');

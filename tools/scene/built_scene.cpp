@@ -408,9 +408,10 @@ std::string shortage_text(const SceneSource& source, const BuildOptions& options
   return (options.coarsen && !dense ? "too little even for a coarse tree: in full it needs " : "needs ") +
          grouped(needed) + " bytes" + part + ", the budget is " + grouped(*options.memory_bytes) + " (" +
          options.budget_name + "); give it more" +
-         (dense             ? " or another --structure"
-          : options.coarsen ? ""
-                            : ", a smaller --depth or --coarsen");
+         (dense                  ? " or another --structure"
+          : options.coarsen      ? ""
+          : source.is_scalable() ? ", a smaller --depth or --coarsen"
+                                 : " or --coarsen");
 }
 
 }  // namespace

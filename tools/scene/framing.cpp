@@ -566,7 +566,7 @@ std::vector<Framing> frame_turns(const ViewWishes& given, const SceneShape& shap
   const VoxelBox box = shape.bounds.empty() ? VoxelBox{{0, 0, 0}, {1, 1, 1}} : shape.bounds;
   const Lens lens(wishes);
   std::vector<ViewWishes> views;
-  double distance = 0;
+  double distance = shape.bounds.empty() ? 1 : 0;
   double half_width = 0;
   for (int i = 0; i < count; ++i) {
     ViewWishes view = wishes;

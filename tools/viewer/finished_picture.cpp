@@ -52,7 +52,7 @@ void FinishedLook::choose(const LookWishes& wishes) {
   }
   // A --shade that is given shows no light.
   effects_ = choice.is_given ? chosen_effects(lighting_, used_, choice) : Effect::kNone;
-  mode_ = wishes.shade.value_or(ShadeMode::kDepth);
+  mode_ = wishes.shade.value_or(scene_->source->single_material() ? ShadeMode::kDepth : ShadeMode::kColor);
   if (wishes.effects.bounces) {
     words_.insert(words_.end(), {"--bounces", std::to_string(*wishes.effects.bounces)});
   }

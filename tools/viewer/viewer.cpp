@@ -339,14 +339,20 @@ class Viewer {
     }
   }
 
+  // Of a picture that measures its exposure, as `thimble render` does: the one that is shown may have that of a frame before.
+  void begin_refinement() {
+    refinement_ =
+        std::make_unique<Refinement>(std::make_shared<FinishedPicture>(look_, wishes_), options_.threads);
+    refining_since_ = now();
+  }
+
   void refine() {
     if (picture_ == nullptr || is_refined_) {
       return;
     }
     if (refinement_ == nullptr) {
       if (!plays_ && now() >= changed_at_ + kRestSeconds) {
-        refinement_ = std::make_unique<Refinement>(picture_, options_.threads);
-        refining_since_ = now();
+        begin_refinement();
       }
       return;
     }
@@ -456,8 +462,7 @@ class Viewer {
       return;
     }
     if (refinement_ == nullptr) {
-      refinement_ = std::make_unique<Refinement>(picture_, options_.threads);
-      refining_since_ = now();
+      begin_refinement();
     }
     saves_this_ = true;
     tell("the picture is saved as soon as it is finished");

@@ -14,7 +14,8 @@ tuple. A file or an option that cannot be used is `thimble.Error`, a ValueError 
 another type or shape than a function takes is a TypeError or a ValueError that names what it takes.
 
 Whatever takes long (opening, tracing, drawing, baking, measuring, stepping) runs without Python's lock. A scene does not
-change, so several threads may use one; of the other classes one thread may use an object at a time.
+change, so several threads may use one; of the other classes one thread may use an object at a time. Ctrl-C is answered when
+such a call ends.
 """
 
 import io as _io
@@ -58,7 +59,7 @@ def _words(options: Dict[str, Any]) -> List[bytes]:
             words.append(option)
             continue
         if isinstance(value, (tuple, list, _np.ndarray)):
-            value = ",".join(str(item) for item in _np.asarray(value).tolist())
+            value = ",".join(str(item) for item in _np.asarray(value).reshape(-1).tolist())
         # In one word the value is not taken for the scene where the option takes none.
         words += [f"{option}={value}"] if str(value) else [option, ""]
     return [_os.fsencode(word) for word in words]
@@ -242,7 +243,8 @@ class Scene:
 def open(scene: Union[str, "_os.PathLike[str]", bytes], *, name: str = "", **options: Any) -> Scene:
     """Opens a scene: a file, a generator ("points:100000", "spheres"), or one that comes along ("castle").
 
-    scene: a path; or the file's bytes, whose `name` then says by its ending what they are where they do not begin so.
+    scene: a path; or the file's bytes, not packed, whose `name` then says by its ending what they are where they do not
+    begin so.
     options: those of `thimble info`: depth, as_voxels, z_up, frame, fit, clip=(x, y, z, x, y, z), ...
     """
     if isinstance(scene, (bytes, bytearray, memoryview)):
@@ -283,6 +285,11 @@ def from_points(array: Any, **options: Any) -> Scene:
     points = _numbers("array", array, what)
     if points.ndim != 2 or points.shape[1] not in (3, 6):
         raise ValueError(f"array must be {what}; its shape is {points.shape}")
+    colors = points[:, 3:]
+    is_color = ((colors >= 0) & (colors <= 255)).all(axis=1)
+    if not is_color.all():
+        row = int(is_color.argmin())
+        raise ValueError(f"colours must be 0 to 1 or 0 to 255; row {row} has {colors[row].tolist()}")
     return _of_array(points, {**options, "as_points": True})
 
 
