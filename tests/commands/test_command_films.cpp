@@ -13,7 +13,6 @@
 #include "support/check_command.h"
 #include "support/file_bytes.h"
 #include "support/pictures.h"
-#include "viewer/finished_picture.h"
 #include "viewer/open_scene.h"
 
 namespace {
@@ -89,7 +88,9 @@ TEST_CASE("view: frames of an animation -> framed alike, also by a key") {
   CHECK(after->shape.tree == first->shape.tree);
   for (const NamedView side : {NamedView::kBest, NamedView::kFront}) {
     const auto eye_of = [&](const viewer::OpenScene& scene) {
-      return framed_from(scene, ViewWishes{}, side).kept.eye;
+      ViewWishes view;
+      view.side = side;
+      return frame_shape(view, scene.shape).kept.eye;
     };
     CHECK(eye_of(*alone) == eye_of(*first));
     CHECK(eye_of(*after) == eye_of(*first));

@@ -18,7 +18,6 @@
 #include "thimble/picture/render.h"
 #include "viewer/fast_frames.h"
 #include "viewer/finished_picture.h"
-#include "viewer/picking.h"
 
 namespace {
 

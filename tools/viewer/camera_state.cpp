@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/finished_picture.h"
-
 namespace thimble::tools::viewer {
 namespace {
 
@@ -30,8 +28,20 @@ constexpr double kHighWorlds = 4.99;
 double rounded(double value, double steps) {
   return std::round(value * steps) / steps;
 }
+Real3 rounded(const Real3& v, double steps) {
+  return {rounded(v[0], steps), rounded(v[1], steps), rounded(v[2], steps)};
+}
 
 }  // namespace
+
+ViewWishes unplaced(ViewWishes view) {
+  view.placed = false;
+  view.eye.reset();
+  view.target.reset();
+  view.up.reset();
+  view.span.reset();
+  return view;
+}
 
 ViewWishes CameraState::wishes(std::int32_t width_px, std::int32_t height_px) const {
   ViewWishes wishes = orbit_ ? lens_ : first_;
@@ -97,12 +107,15 @@ void CameraState::choose(Action view, const Framing& now, const OpenScene& scene
   if (view == Action::kFirstView) {
     return;
   }
-  ViewWishes wishes = first_;
+  ViewWishes wishes = unplaced(first_);
+  wishes.placed = true;
+  wishes.side = side_of(view);
+  wishes.onward = {};
   wishes.orthographic = !now.kept.is_perspective;
   wishes.fov_degrees = static_cast<double>(now.kept.fov_degrees.raw) / Q16::kOne;
   wishes.width_px = now.camera.width_px();
   wishes.height_px = now.camera.height_px();
-  hold(framed_from(scene, wishes, side_of(view)), scene);
+  hold(frame_shape(wishes, scene.shape), scene);
 }
 
 void CameraState::change_scene(const OpenScene& scene) {
@@ -151,21 +164,15 @@ Real3 Orbit::up() const {
 }
 
 Real3 Orbit::eye() const {
-  Real3 eye = minus(target_, scaled(forward(), distance_));
-  for (double& coordinate : eye) {
-    coordinate = rounded(coordinate, 1e3);
-  }
-  return eye;
+  return rounded(minus(target_, scaled(forward(), distance_)), 1e3);
 }
 
 // As far from the eye as it takes to keep a direction in so many digits.
 Real3 Orbit::target() const {
   constexpr double kFarEnough = 4;
-  Real3 target = distance_ > kFarEnough ? target_ : plus(eye(), scaled(forward(), std::max(distance_, 1.0)));
-  const double steps = distance_ > kFarEnough ? 1e3 : 1e4;
-  for (double& coordinate : target) {
-    coordinate = rounded(coordinate, steps);
-  }
+  Real3 target = distance_ > kFarEnough
+                     ? rounded(target_, 1e3)
+                     : rounded(plus(eye(), scaled(forward(), std::max(distance_, 1.0))), 1e4);
   if (is_vertical()) {
     const Real3 from = eye();
     target[0] = from[0];

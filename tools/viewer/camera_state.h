@@ -53,6 +53,9 @@ class Orbit {
   double side_ = 1;
 };
 
+/// The view without any place of the camera: for another scene, or from another side.
+ViewWishes unplaced(ViewWishes view);
+
 class CameraState {
  public:
   explicit CameraState(const ViewWishes& first) : first_(first) {}

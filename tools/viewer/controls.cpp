@@ -13,6 +13,40 @@ constexpr host::Key kS = host::key_of('s');
 // A frame that took long does not throw the camera across the scene.
 constexpr double kMostFlightSeconds = 0.1;
 
+using host::Key;
+using host::key_of;
+
+constexpr std::array kFlights{
+    Flight{key_of('w'), 0, 0, 1}, Flight{key_of('a'), -1, 0, 0}, Flight{key_of('s'), 0, 0, -1},
+    Flight{key_of('d'), 1, 0, 0}, Flight{Key::kUp, 0, 0, 1},     Flight{Key::kLeft, -1, 0, 0},
+    Flight{Key::kDown, 0, 0, -1}, Flight{Key::kRight, 1, 0, 0},
+};
+constexpr std::array kLifts{Flight{Key::kPageUp, 0, 1, 0}, Flight{Key::kPageDown, 0, -1, 0}};
+constexpr std::array kViews{Typed{'1', Action::kFront}, Typed{'2', Action::kBack}, Typed{'3', Action::kLeft},
+                            Typed{'4', Action::kRight}, Typed{'5', Action::kTop},  Typed{'6', Action::kIso}};
+constexpr std::array kFirst{Typed{'0', Action::kFirstView}};
+constexpr std::array kSave{Typed{'s', Action::kSave}};
+constexpr std::array kPick{Typed{'p', Action::kPick}};
+constexpr std::array kPlay{Typed{' ', Action::kPlay}};
+constexpr std::array kHelp{Typed{'?', Action::kHelp}};
+constexpr std::array kEnd{Typed{'q', Action::kEnd}, Typed{'\x1b', Action::kEnd}};
+
+const std::array kRows{
+    KeyRow{"drag", "turns around the model", {}, {}},
+    KeyRow{"right or shift drag", "moves", {}, {}},
+    KeyRow{"wheel", "nearer, farther", {}, {}},
+    KeyRow{"double click", "looks at what is there", {}, {}},
+    KeyRow{"W A S D, arrows", "fly while held", {}, kFlights},
+    KeyRow{"Page Up, Page Down", "fly up, down", {}, kLifts},
+    KeyRow{"1 2 3 4 5 6", "front, back, left, right, top, iso", kViews, {}},
+    KeyRow{"0", "the view at first", kFirst, {}},
+    KeyRow{"s (tapped)", "saves the picture, prints its render command", kSave, {}},
+    KeyRow{"p", "names what is under the pointer", kPick, {}},
+    KeyRow{"space", "plays frames or water, or stops", kPlay, {}},
+    KeyRow{"?", "shows these keys, or hides them", kHelp, {}},
+    KeyRow{"Esc, q", "end", kEnd, {}},
+};
+
 }  // namespace
 
 bool Motion::any() const {
@@ -137,44 +171,6 @@ Motion Controls::take_motion(double seconds) {
   motion_ = {};
   return motion;
 }
-
-namespace {
-
-using host::Key;
-using host::key_of;
-
-constexpr std::array kFlights{
-    Flight{key_of('w'), 0, 0, 1}, Flight{key_of('a'), -1, 0, 0}, Flight{key_of('s'), 0, 0, -1},
-    Flight{key_of('d'), 1, 0, 0}, Flight{Key::kUp, 0, 0, 1},     Flight{Key::kLeft, -1, 0, 0},
-    Flight{Key::kDown, 0, 0, -1}, Flight{Key::kRight, 1, 0, 0},
-};
-constexpr std::array kLifts{Flight{Key::kPageUp, 0, 1, 0}, Flight{Key::kPageDown, 0, -1, 0}};
-constexpr std::array kViews{Typed{'1', Action::kFront}, Typed{'2', Action::kBack}, Typed{'3', Action::kLeft},
-                            Typed{'4', Action::kRight}, Typed{'5', Action::kTop},  Typed{'6', Action::kIso}};
-constexpr std::array kFirst{Typed{'0', Action::kFirstView}};
-constexpr std::array kSave{Typed{'s', Action::kSave}};
-constexpr std::array kPick{Typed{'p', Action::kPick}};
-constexpr std::array kPlay{Typed{' ', Action::kPlay}};
-constexpr std::array kHelp{Typed{'?', Action::kHelp}};
-constexpr std::array kEnd{Typed{'q', Action::kEnd}, Typed{'\x1b', Action::kEnd}};
-
-const std::array kRows{
-    KeyRow{"drag", "turns around the model", {}, {}},
-    KeyRow{"right or shift drag", "moves", {}, {}},
-    KeyRow{"wheel", "nearer, farther", {}, {}},
-    KeyRow{"double click", "looks at what is there", {}, {}},
-    KeyRow{"W A S D, arrows", "fly while held", {}, kFlights},
-    KeyRow{"Page Up, Page Down", "fly up, down", {}, kLifts},
-    KeyRow{"1 2 3 4 5 6", "front, back, left, right, top, iso", kViews, {}},
-    KeyRow{"0", "the view at first", kFirst, {}},
-    KeyRow{"s (tapped)", "saves the picture, prints its render command", kSave, {}},
-    KeyRow{"p", "names what is under the pointer", kPick, {}},
-    KeyRow{"space", "plays frames or water, or stops", kPlay, {}},
-    KeyRow{"?", "shows these keys, or hides them", kHelp, {}},
-    KeyRow{"Esc, q", "end", kEnd, {}},
-};
-
-}  // namespace
 
 std::span<const KeyRow> key_rows() {
   return kRows;

@@ -56,7 +56,6 @@ struct KeyRow {
 };
 std::span<const KeyRow> key_rows();
 
-/// What a typed character asks for.
 Action action_of(char32_t character);
 /// What a key flies, or null.
 const Flight* flight_of(host::Key key);
@@ -100,7 +99,6 @@ class Controls {
 
   std::int32_t pointer_x_px() const { return x_px_; }
   std::int32_t pointer_y_px() const { return y_px_; }
-  /// Whether the pointer was ever seen.
   bool has_pointer() const { return has_pointer_; }
 
  private:

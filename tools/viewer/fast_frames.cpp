@@ -53,7 +53,7 @@ void FastFrames::draw(const FinishedPicture& picture, std::vector<std::uint8_t>*
     draw_rays(picture, step);
   }
   engine_ = is_wide ? "wide" : "rays";
-  enlarge(small_, step, picture.width_px(), picture.height_px(), rgb);
+  enlarge(small_, step, picture.width_px(), picture.height_px(), &threads_, rgb);
   last_step_ = step;
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   pace_.take(seconds_);
@@ -71,28 +71,12 @@ bool FastFrames::draw_lit(const FinishedPicture& picture, std::vector<std::uint8
   seconds_ = clock() - start;
   lit_pace_.take(seconds_, most_seconds);
   if (in_time) {
-    const std::string gpu = picture.gpu();
+    const std::string gpu = picture.look().gpu();
     engine_ = gpu.empty() ? "lit" : gpu;
-    enlarge(small_, step, picture.width_px(), picture.height_px(), rgb);
+    enlarge(small_, step, picture.width_px(), picture.height_px(), &threads_, rgb);
     last_step_ = step;
   }
   return in_time;
-}
-
-// A picture of that size from every `step`-th pixel of it.
-void FastFrames::enlarge(const std::vector<std::uint8_t>& small, int step, std::int32_t width_px,
-                         std::int32_t height_px, std::vector<std::uint8_t>* rgb) {
-  const std::int32_t rows = thinned_px(height_px, step);
-  rgb->resize(3 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
-  const std::int32_t part = (rows + threads_.count() - 1) / threads_.count();
-  threads_.each(threads_.count(), [&](int i) {
-    const std::int32_t first = std::min(rows, part * i);
-    const std::int32_t end = std::min(rows, first + part);
-    if (first < end) {
-      std::vector<std::uint16_t> work(magnify_work(width_px));
-      magnify_rows(small.data(), step, width_px, height_px, first, end, work.data(), rgb->data());
-    }
-  });
 }
 
 bool FastFrames::draw_wide(const FinishedPicture& picture, int step) {
@@ -135,7 +119,7 @@ void FastFrames::put_behind(const FinishedPicture& picture, int step) {
   threads_.each(rows, [&](int y) {
     picture.draw_behind_row(kBehindStep * step, y, behind_small_.data() + row * static_cast<std::size_t>(y));
   });
-  enlarge(behind_small_, kBehindStep, width, height, &behind_);
+  enlarge(behind_small_, kBehindStep, width, height, &threads_, &behind_);
   for (std::size_t i = 0; i < small_.size(); i += 3) {
     if (Rgb8{small_[i], small_[i + 1], small_[i + 2]} == kNothing) {
       std::copy_n(behind_.data() + i, 3, small_.data() + i);

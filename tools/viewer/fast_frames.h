@@ -98,8 +98,6 @@ class FastFrames {
   bool draw_wide(const FinishedPicture& picture, int step);
   void draw_rays(const FinishedPicture& picture, int step);
   void put_behind(const FinishedPicture& picture, int step);
-  void enlarge(const std::vector<std::uint8_t>& small, int step, std::int32_t width_px,
-               std::int32_t height_px, std::vector<std::uint8_t>* rgb);
 
   std::shared_ptr<const OpenScene> scene_;
   wide::Threads threads_;

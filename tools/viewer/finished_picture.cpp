@@ -13,6 +13,103 @@
 #include "thimble/tree/octree.h"
 
 namespace thimble::tools::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kPublishTime{60};  // between two states of a pass that are shown
+constexpr std::int32_t kRowsAThread = 2;
+// Many rows are drawn together, as long as a key need not wait for them.
+constexpr std::chrono::milliseconds kChunkTime{40};
+constexpr std::int32_t kMostRowsAThread = 8;
+constexpr std::int32_t kEdgeRowsAThread = 8;  // many samples are drawn together
+
+Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
+  return {Bytes(rgb, row_bytes(PixelFormat::kRgb888, camera.width_px())), PixelFormat::kRgb888, 0, row, 1};
+}
+
+// A picture by `paint`, of which `rgb` gets rows as they come where there `are_rows`. False where `goes_on` ended it.
+template <class Paint>
+bool paint_into(std::int32_t width_px, std::int32_t height_px, bool are_rows, std::vector<std::uint8_t>* rgb,
+                const FinishedPicture::GoesOn& goes_on, const Paint& paint) {
+  struct Ended {};
+  const std::size_t line = 3 * static_cast<std::size_t>(width_px);
+  rgb->resize(line * static_cast<std::size_t>(height_px));
+  Painting painting;
+  std::size_t shown = 0;
+  const auto show = [&](double done) {
+    const auto rows = are_rows ? static_cast<std::int32_t>(std::lround(done * height_px)) : 0;
+    const std::size_t end = line * static_cast<std::size_t>(rows);
+    std::copy(painting.image.pixels.data() + shown, painting.image.pixels.data() + end, rgb->data() + shown);
+    shown = end;
+    if (!goes_on(rows)) {
+      throw Ended();
+    }
+  };
+  try {
+    check_lit_limits(paint(show, &painting));
+  } catch (const Ended&) {
+    return false;
+  }
+  rgb->swap(painting.image.pixels);
+  return goes_on(height_px);
+}
+
+// Rows of a pass into `image`, which holds all of it: every `step`-th pixel with its first sample, or with step 0 all
+// samples of all pixels. `fine` has `across` x `across` pixels for each of the picture's. What is in `kept` is of the
+// same picture; a pass with a step leaves its own samples there.
+Status draw_pass(const LookRows& look, const Camera& fine, int across, int step, std::int32_t first,
+                 std::int32_t rows, KeptSamples* kept, Image* image) {
+  constexpr std::size_t kChannels = 4;
+  constexpr std::int32_t kColumns = 8;  // so that what lies side by side is drawn together
+  // Of the pass's picture; (px, py) in the finished one. `is_known`: its first sample was drawn before.
+  struct Pixel {
+    std::int32_t x, y, px, py;
+    bool is_known;
+  };
+  std::vector<Pixel> pixels;
+  std::vector<SamplePlace> places;
+  const std::int32_t every = std::max(step, 1);
+  const std::int32_t count = step == 0 ? across * across : 1;  // of the samples that a pixel gets
+  for (std::int32_t left = 0; left < image->width_px; left += kColumns) {
+    for (std::int32_t y = first; y < first + rows; ++y) {
+      for (std::int32_t x = left; x < std::min(left + kColumns, image->width_px); ++x) {
+        const std::int32_t px = x * every;
+        const std::int32_t py = y * every;
+        const bool is_known = kept->step != 0 && px % kept->step == 0 && py % kept->step == 0;
+        pixels.push_back({x, y, px, py, is_known});
+        for (std::int32_t i = is_known ? 1 : 0; i < count; ++i) {
+          places.push_back({px * across + i % across, py * across + i / across, px, py});
+        }
+      }
+    }
+  }
+  std::vector<std::uint8_t> colors(3 * places.size());
+  std::vector<std::uint8_t> samples(kChannels * places.size());
+  const Status status =
+      look.draw_places(fine, {places.data(), places.size()}, Bytes(colors.data(), colors.size()),
+                       Bytes(samples.data(), samples.size()), nullptr);
+  const std::uint8_t* next = samples.data();
+  const auto width = static_cast<std::size_t>(fine.width_px() / across);
+  for (const Pixel& pixel : pixels) {
+    std::array<std::uint8_t, kChannels>& own =
+        kept->drawn[static_cast<std::size_t>(pixel.py) * width + static_cast<std::size_t>(pixel.px)];
+    if (!pixel.is_known) {
+      std::copy_n(next, kChannels, own.begin());
+      next += kChannels;
+    }
+    std::array<std::uint32_t, kChannels> sums{own[0], own[1], own[2], own[3]};
+    for (std::int32_t i = 1; i < count; ++i, next += kChannels) {
+      for (std::size_t channel = 0; channel < kChannels; ++channel) {
+        sums[channel] += next[channel];
+      }
+    }
+    LookRows::finish_sums(pixel.x, pixel.y, sums.data(), static_cast<std::uint32_t>(count), image);
+  }
+  return status;
+}
+
+}  // namespace
 
 FinishedLook::FinishedLook(std::shared_ptr<const OpenScene> scene, const LookWishes& wishes)
     : scene_(std::move(scene)),
@@ -138,7 +235,7 @@ LitStreams* FinishedLook::streams_for(const Look& look, const Camera& camera, co
 }
 
 FinishedPicture::FinishedPicture(std::shared_ptr<const FinishedLook> look, const ViewWishes& wishes)
-    : look_(std::move(look)) {
+    : look_(std::move(look)), wishes_(wishes) {
   const OpenScene& scene = *look_->scene_;
   framing_ = frame_scene(wishes, *scene.source, scene.shape);
   shading_ = scene_shading(look_->mode_, {scene.built->palette().data(), scene.built->palette().size()},
@@ -180,58 +277,20 @@ void FinishedPicture::take_own_look() {
   quick_shading_.palette = Span<const Rgb8>(quick_palette_.data(), quick_palette_.size());
 }
 
-Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, NamedView side) {
-  ViewWishes whole = wishes;
-  whole.placed = true;
-  whole.eye.reset();
-  whole.target.reset();
-  whole.up.reset();
-  whole.span.reset();
-  whole.side = side;
-  whole.onward = {};
-  return frame_shape(whole, scene.shape);
-}
-
-namespace {
-
-constexpr std::int32_t kRowsAThread = 2;
-// Many rows are drawn together, as long as a key need not wait for them.
-constexpr std::chrono::milliseconds kChunkTime{40};
-constexpr std::int32_t kMostRowsAThread = 8;
-constexpr std::int32_t kEdgeRowsAThread = 8;  // many samples are drawn together
-
-Band row_of(const Camera& camera, std::int32_t row, std::uint8_t* rgb) {
-  return {Bytes(rgb, row_bytes(PixelFormat::kRgb888, camera.width_px())), PixelFormat::kRgb888, 0, row, 1};
-}
-
-// A picture by `paint`, of which `rgb` gets rows as they come where there `are_rows`. False where `goes_on` ended it.
-template <class Paint>
-bool paint_into(std::int32_t width_px, std::int32_t height_px, bool are_rows, std::vector<std::uint8_t>* rgb,
-                const FinishedPicture::GoesOn& goes_on, const Paint& paint) {
-  struct Ended {};
-  const std::size_t line = 3 * static_cast<std::size_t>(width_px);
-  rgb->resize(line * static_cast<std::size_t>(height_px));
-  Painting painting;
-  std::size_t shown = 0;
-  const auto show = [&](double done) {
-    const auto rows = are_rows ? static_cast<std::int32_t>(std::lround(done * height_px)) : 0;
-    const std::size_t end = line * static_cast<std::size_t>(rows);
-    std::copy(painting.image.pixels.data() + shown, painting.image.pixels.data() + end, rgb->data() + shown);
-    shown = end;
-    if (!goes_on(rows)) {
-      throw Ended();
+void enlarge(const std::vector<std::uint8_t>& small, int step, std::int32_t width_px, std::int32_t height_px,
+             wide::Threads* threads, std::vector<std::uint8_t>* rgb) {
+  const std::int32_t rows = thinned_px(height_px, step);
+  rgb->resize(3 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
+  const std::int32_t part = (rows + threads->count() - 1) / threads->count();
+  threads->each(threads->count(), [&](int i) {
+    const std::int32_t first = std::min(rows, part * i);
+    const std::int32_t end = std::min(rows, first + part);
+    if (first < end) {
+      std::vector<std::uint16_t> work(magnify_work(width_px));
+      magnify_rows(small.data(), step, width_px, height_px, first, end, work.data(), rgb->data());
     }
-  };
-  try {
-    check_lit_limits(paint(show, &painting));
-  } catch (const Ended&) {
-    return false;
-  }
-  rgb->swap(painting.image.pixels);
-  return goes_on(height_px);
+  });
 }
-
-}  // namespace
 
 bool FinishedPicture::draw(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
                            const GoesOn& goes_on, KeptSamples* kept) const {
@@ -286,64 +345,6 @@ void FinishedPicture::keep_exposure() {
     std::call_once(exposed_, [&] { exposure_ = measured; });
   }
 }
-
-namespace {
-
-// Rows of a pass into `image`, which holds all of it: every `step`-th pixel with its first sample, or with step 0 all
-// samples of all pixels. `fine` has `across` x `across` pixels for each of the picture's. What is in `kept` is of the
-// same picture; a pass with a step leaves its own samples there.
-Status draw_pass(const LookRows& look, const Camera& fine, int across, int step, std::int32_t first,
-                 std::int32_t rows, KeptSamples* kept, Image* image) {
-  constexpr std::size_t kChannels = 4;
-  constexpr std::int32_t kColumns = 8;  // so that what lies side by side is drawn together
-  // Of the pass's picture; (px, py) in the finished one. `is_known`: its first sample was drawn before.
-  struct Pixel {
-    std::int32_t x, y, px, py;
-    bool is_known;
-  };
-  std::vector<Pixel> pixels;
-  std::vector<SamplePlace> places;
-  const std::int32_t every = std::max(step, 1);
-  const std::int32_t count = step == 0 ? across * across : 1;  // of the samples that a pixel gets
-  for (std::int32_t left = 0; left < image->width_px; left += kColumns) {
-    for (std::int32_t y = first; y < first + rows; ++y) {
-      for (std::int32_t x = left; x < std::min(left + kColumns, image->width_px); ++x) {
-        const std::int32_t px = x * every;
-        const std::int32_t py = y * every;
-        const bool is_known = kept->step != 0 && px % kept->step == 0 && py % kept->step == 0;
-        pixels.push_back({x, y, px, py, is_known});
-        for (std::int32_t i = is_known ? 1 : 0; i < count; ++i) {
-          places.push_back({px * across + i % across, py * across + i / across, px, py});
-        }
-      }
-    }
-  }
-  std::vector<std::uint8_t> colors(3 * places.size());
-  std::vector<std::uint8_t> samples(kChannels * places.size());
-  const Status status =
-      look.draw_places(fine, {places.data(), places.size()}, Bytes(colors.data(), colors.size()),
-                       Bytes(samples.data(), samples.size()), nullptr);
-  const std::uint8_t* next = samples.data();
-  const auto width = static_cast<std::size_t>(fine.width_px() / across);
-  for (const Pixel& pixel : pixels) {
-    std::array<std::uint8_t, kChannels>& own =
-        kept->drawn[static_cast<std::size_t>(pixel.py) * width + static_cast<std::size_t>(pixel.px)];
-    if (!pixel.is_known) {
-      std::copy_n(next, kChannels, own.begin());
-      next += kChannels;
-    }
-    std::array<std::uint32_t, kChannels> sums{own[0], own[1], own[2], own[3]};
-    for (std::int32_t i = 1; i < count; ++i, next += kChannels) {
-      for (std::size_t channel = 0; channel < kChannels; ++channel) {
-        sums[channel] += next[channel];
-      }
-    }
-    LookRows::finish_sums(pixel.x, pixel.y, sums.data(), static_cast<std::uint32_t>(count), image);
-  }
-  return status;
-}
-
-}  // namespace
 
 bool FinishedPicture::draw_own(int step, wide::Threads* threads, std::vector<std::uint8_t>* rgb,
                                const GoesOn& goes_on, KeptSamples* kept) const {
@@ -464,13 +465,6 @@ void FinishedPicture::draw_behind_row(int step, std::int32_t row, std::uint8_t* 
   }
 }
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kPublishTime{60};  // between two states of a pass that are shown
-
-}  // namespace
-
 Refinement::Refinement(std::shared_ptr<const FinishedPicture> picture, int threads)
     : picture_(std::move(picture)), threads_(threads), thread_([this] { run(); }) {}
 
@@ -505,11 +499,8 @@ bool Refinement::draw_coarse(int every) {
           every, &threads_, &small, [&](std::int32_t /*rows*/) { return !cancelled_.load(); }, &kept_)) {
     return false;
   }
-  const std::int32_t width = picture_->width_px();
-  const std::int32_t height = picture_->height_px();
-  std::vector<std::uint8_t> full(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  std::vector<std::uint16_t> work(magnify_work(width));
-  magnify_rows(small.data(), every, width, height, 0, thinned_px(height, every), work.data(), full.data());
+  std::vector<std::uint8_t> full;
+  enlarge(small, every, picture_->width_px(), picture_->height_px(), &threads_, &full);
   const std::scoped_lock lock(mutex_);
   rgb_.swap(full);
   now_ = {now_.version + 1, false, every, 100};

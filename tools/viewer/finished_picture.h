@@ -100,8 +100,9 @@ class FinishedLook {
   mutable std::atomic<bool> has_gpu_{false};  // for those that do not hold the mutex; then it stays
 };
 
-/// Frames the scene from the side from which `forward` leads to its middle.
-Framing framed_from(const OpenScene& scene, const ViewWishes& wishes, NamedView side);
+/// Makes a picture of that size from every `step`-th pixel of it.
+void enlarge(const std::vector<std::uint8_t>& small, int step, std::int32_t width_px, std::int32_t height_px,
+             wide::Threads* threads, std::vector<std::uint8_t>* rgb);
 
 /// One view. What draws is reentrant.
 class FinishedPicture {
@@ -109,6 +110,8 @@ class FinishedPicture {
   /// Throws InputError for a camera that cannot be.
   FinishedPicture(std::shared_ptr<const FinishedLook> look, const ViewWishes& wishes);
 
+  const FinishedLook& look() const { return *look_; }
+  const ViewWishes& wishes() const { return wishes_; }
   const Framing& framing() const { return framing_; }
   const Camera& camera() const { return framing_.camera; }
   std::int32_t width_px() const { return camera().width_px(); }
@@ -135,8 +138,6 @@ class FinishedPicture {
   void show_water(const WaterSurface& water) { moving_water_ = water; }
   /// The water of the picture, or null.
   const WaterSurface* water() const;
-  /// As FinishedLook::gpu.
-  std::string gpu() const { return look_->gpu(); }
   /// Whether there is light on surfaces.
   bool is_lit() const { return own_ ? own_->kind == LookKind::kLit : look_->effects_ != Effect::kNone; }
   /// From now on this picture has the exposure of the last that was measured, as the frames of a film have.
@@ -158,6 +159,7 @@ class FinishedPicture {
   EffectSet effects() const { return own_ ? own_->effects : look_->effects_; }
 
   std::shared_ptr<const FinishedLook> look_;
+  ViewWishes wishes_;
   Framing framing_;
   mutable Camera fine_;  // so many times the pixels as there are samples across one
   Shading shading_;

@@ -1,14 +1,16 @@
-/// A scene as the viewer has it, and the thread that reads one while the screen stays alive.
+/// A scene as the viewer has it, what is under the pointer, and the thread that reads one while the screen stays alive.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "readers/real3.h"
 #include "scene/built_scene.h"
 #include "scene/scene_arguments.h"
 #include "scene/scene_shape.h"
@@ -26,6 +28,20 @@ struct OpenScene {
   const CompactTree& tree() const { return built->compact(); }
   double side() const { return static_cast<double>(1U << static_cast<unsigned>(level())); }
 };
+
+/// What is under the pointer.
+struct Picked {
+  Hit hit;
+  Real3 point;  ///< where the ray meets it, in voxels
+};
+
+/// What the ray of a pixel hits; nothing for none, and for pixels beyond the picture.
+std::optional<Picked> pick(const OpenScene& scene, const Camera& camera, std::int32_t x_px,
+                           std::int32_t y_px);
+
+/// "voxel 12,3,40: its top face (+z), material 7, #a0522d glass".
+std::string picked_text(const OpenScene& scene, const Camera& camera, const Picked& picked, std::int32_t x_px,
+                        std::int32_t y_px);
 
 /// Work on a thread of its own.
 class BackgroundTask {

@@ -68,12 +68,12 @@ std::string quoted_for_shell(std::string_view word) {
 std::string render_command(const SceneArguments& scene, const ViewWishes& view,
                            const std::vector<std::string>& look, const std::string& output) {
   std::vector<std::string> words{"thimble", "render", scene.scene};
-  const auto add = [&](const std::string& name, const std::string& value) {
-    words.insert(words.end(), {name, value});
+  const auto add = [&](const std::string& name, const std::string& value, bool is_given = true) {
+    if (is_given) {
+      words.insert(words.end(), {name, value});
+    }
   };
-  if (scene.depth) {
-    add("--depth", std::to_string(*scene.depth));
-  }
+  add("--depth", std::to_string(scene.depth.value_or(0)), scene.depth.has_value());
   for (const auto& [is_set, name] : {std::pair{scene.as_voxels, "--as-voxels"},
                                      {scene.as_points, "--as-points"},
                                      {scene.as_heights, "--as-heights"},
@@ -82,34 +82,20 @@ std::string render_command(const SceneArguments& scene, const ViewWishes& view,
       words.emplace_back(name);
     }
   }
-  if (scene.full_color != 0) {
-    add("--colors", std::to_string(scene.full_color));
-  }
-  if (scene.fit_percent) {
-    add("--fit", shortest(*scene.fit_percent));
-  }
+  add("--colors", std::to_string(scene.full_color), scene.full_color != 0);
+  add("--fit", shortest(scene.fit_percent.value_or(0)), scene.fit_percent.has_value());
   if (const auto& box = scene.clip) {
     add("--clip",
         text_of({(*box)[0], (*box)[1], (*box)[2]}) + "," + text_of({(*box)[3], (*box)[4], (*box)[5]}));
   }
-  if (scene.frame) {
-    add("--frame", std::to_string(*scene.frame));
-  }
+  add("--frame", std::to_string(scene.frame.value_or(0)), scene.frame.has_value());
   add("--size", std::to_string(view.width_px) + "x" + std::to_string(view.height_px));
-  if (view.orthographic) {
-    add("--projection", "orthographic");
-  }
+  add("--projection", "orthographic", view.orthographic);
   if (!view.eye) {
     static constexpr std::array kSides{"paper", "best", "iso", "front", "back", "left", "right", "top"};
-    if (view.side != NamedView::kBest) {
-      add("--view", kSides[static_cast<std::size_t>(view.side)]);
-    }
-    if (view.onward.turn != 0) {
-      add("--turn", shortest(view.onward.turn));
-    }
-    if (view.onward.tilt != 0) {
-      add("--tilt", shortest(view.onward.tilt));
-    }
+    add("--view", kSides[static_cast<std::size_t>(view.side)], view.side != NamedView::kBest);
+    add("--turn", shortest(view.onward.turn), view.onward.turn != 0);
+    add("--tilt", shortest(view.onward.tilt), view.onward.tilt != 0);
   }
   for (const auto& [name, point] :
        {std::pair{"--eye", view.eye}, {"--target", view.target}, {"--up", view.up}}) {
@@ -117,15 +103,9 @@ std::string render_command(const SceneArguments& scene, const ViewWishes& view,
       add(name, text_of(*point));
     }
   }
-  if (view.placed && !view.orthographic) {
-    add("--fov", shortest(view.fov_degrees));
-  }
-  if (view.span) {
-    add("--span", shortest(*view.span));
-  }
-  if (view.direction_bits != 0) {
-    add("--direction-bits", std::to_string(view.direction_bits));
-  }
+  add("--fov", shortest(view.fov_degrees), view.placed && !view.orthographic);
+  add("--span", shortest(view.span.value_or(0)), view.span.has_value());
+  add("--direction-bits", std::to_string(view.direction_bits), view.direction_bits != 0);
   words.insert(words.end(), look.begin(), look.end());
   add("-o", output);
   std::string line;

@@ -18,7 +18,6 @@
 #include "viewer/camera_state.h"
 #include "viewer/fast_frames.h"
 #include "viewer/open_scene.h"
-#include "viewer/picking.h"
 #include "viewer/saving.h"
 
 namespace thimble::tools::viewer {
@@ -49,19 +48,7 @@ void sleep_ms(int time) {
 struct Saving {
   std::unique_ptr<Refinement> refinement;
   SceneArguments scene;
-  ViewWishes wishes;
-  std::shared_ptr<const FinishedLook> look;
 };
-
-// The view for another scene: no place of the one before.
-ViewWishes from_its_side(ViewWishes view) {
-  view.placed = false;
-  view.eye.reset();
-  view.target.reset();
-  view.up.reset();
-  view.span.reset();
-  return view;
-}
 
 class Viewer {
  public:
@@ -149,7 +136,7 @@ class Viewer {
       const std::string name = printable(wanted_.scene);
       try {
         std::shared_ptr<const OpenScene> scene = reading_->take();
-        const ViewWishes view = is_other ? from_its_side(options_.view) : options_.view;
+        const ViewWishes view = is_other ? unplaced(options_.view) : options_.view;
         adopt(std::move(scene), view);
         options_.view = view;
         options_.scene = wanted_;
@@ -180,14 +167,6 @@ class Viewer {
     if (screen_ != nullptr && reading_ == nullptr && watch_.has_changed(now())) {
       read(options_.scene);
     }
-  }
-
-  // A file that was dropped here: seen from its best side, its frames from the first.
-  void open_other(const std::string& path) {
-    SceneArguments scene;
-    scene.scene = path;
-    read(scene);
-    tell("reading " + printable(path));
   }
 
   // Whatever was being read is no longer wanted.
@@ -269,7 +248,10 @@ class Viewer {
       }
       timeout = 0;
       if (event->kind == host::EventKind::kDrop) {
-        open_other(event->path);
+        SceneArguments dropped;  // seen from its best side, its frames from the first
+        dropped.scene = event->path;
+        read(dropped);
+        tell("reading " + printable(dropped.scene));
         continue;
       }
       if (event->kind == host::EventKind::kResize) {
@@ -371,7 +353,7 @@ class Viewer {
       is_refined_ = true;
       needs_showing_ = true;
       if (saves_this_) {
-        write(*refinement_, options_.scene, wishes_, *look_, rgb_);
+        write(refinement_->picture(), options_.scene, rgb_);
         saves_this_ = false;
       }
     } else if (const std::string fault = refinement_->fault(); !fault.empty()) {
@@ -409,7 +391,6 @@ class Viewer {
       frames_->draw(*picture, &rgb_);
     }
     picture_ = std::move(picture);
-    wishes_ = wishes;
     changed_at_ = now();
     show();
     const double took = now() - began;  // with the screen's part
@@ -454,7 +435,7 @@ class Viewer {
 
   void save() {
     if (is_refined_ && refinement_ != nullptr && refinement_->is_finished()) {
-      write(*refinement_, options_.scene, wishes_, *look_, rgb_);
+      write(refinement_->picture(), options_.scene, rgb_);
       return;
     }
     if (is_refined_) {
@@ -468,12 +449,11 @@ class Viewer {
     tell("the picture is saved as soon as it is finished");
   }
 
-  void write(const Refinement& finished, const SceneArguments& scene, const ViewWishes& wishes,
-             const FinishedLook& look, const std::vector<std::uint8_t>& rgb) {
-    const FinishedPicture& picture = finished.picture();
+  void write(const FinishedPicture& picture, const SceneArguments& scene,
+             const std::vector<std::uint8_t>& rgb) {
     try {
       const std::string file = save_picture(scene.scene, picture.width_px(), picture.height_px(), rgb);
-      const std::string command = render_command(scene, wishes, look.words(), file);
+      const std::string command = render_command(scene, picture.wishes(), picture.look().words(), file);
       print(command);
       tell("saved " + file + "; the same picture by\n" + command);
     } catch (const OutputError& error) {
@@ -482,19 +462,15 @@ class Viewer {
   }
 
   void finish_savings() {
-    for (std::size_t i = 0; i < savings_.size();) {
-      Saving& saving = savings_[i];
-      if (!saving.refinement->has_ended()) {
-        ++i;
-        continue;
-      }
+    std::erase_if(savings_, [this](const Saving& saving) {
+      Refinement& refinement = *saving.refinement;
       std::vector<std::uint8_t> rgb;
-      saving.refinement->take(&rgb);
-      if (saving.refinement->is_finished() && !rgb.empty()) {
-        write(*saving.refinement, saving.scene, saving.wishes, *saving.look, rgb);
+      const bool has_ended = refinement.has_ended();
+      if (has_ended && refinement.take(&rgb) && refinement.is_finished()) {
+        write(refinement.picture(), saving.scene, rgb);
       }
-      savings_.erase(savings_.begin() + static_cast<std::ptrdiff_t>(i));
-    }
+      return has_ended;
+    });
   }
 
   // Threads notice soon that their work is no longer wanted; nobody waits for that.
@@ -513,7 +489,7 @@ class Viewer {
       return;
     }
     if (saves_this_) {
-      savings_.push_back({std::move(refinement_), options_.scene, wishes_, look_});
+      savings_.push_back({std::move(refinement_), options_.scene});
       saves_this_ = false;
       return;
     }
@@ -545,10 +521,11 @@ class Viewer {
     is_terminal_ = false;
     stop_refining();
     for (Saving& saving : savings_) {
-      leave(&saving.refinement);
+      const FinishedPicture& picture = saving.refinement->picture();
       std::fprintf(stderr, "thimble: the picture was not finished and is not saved; this makes it:\n");
-      print(render_command(saving.scene, saving.wishes, saving.look->words(),
+      print(render_command(saving.scene, picture.wishes(), picture.look().words(),
                            free_picture_name(saving.scene.scene)));
+      leave(&saving.refinement);
     }
     std::fflush(stdout);
     leave(&reading_);
@@ -581,9 +558,8 @@ class Viewer {
       return text + " | finished, samples where edges are";
     }
     if (is_refined_) {
-      const int samples = picture_->across() * picture_->across();
-      return text + " | finished, " + std::to_string(samples) + " sample" + (samples == 1 ? "" : "s") +
-             " a pixel";
+      const auto across = static_cast<std::uint64_t>(picture_->across());
+      return text + " | finished, " + counted(across * across, "sample") + " a pixel";
     }
     if (refinement_ != nullptr && refinement_->step() <= 1 && refinement_->percent() > 0) {
       return text + (refinement_->step() == 0 ? " | last pass " : " | first pass ") +
@@ -623,7 +599,6 @@ class Viewer {
   std::shared_ptr<const FinishedLook> look_;
   std::unique_ptr<FastFrames> frames_;
   std::shared_ptr<const FinishedPicture> picture_;
-  ViewWishes wishes_;
   std::unique_ptr<Refinement> refinement_;
   std::vector<std::unique_ptr<BackgroundTask>> leaving_;  // cancelled, their threads still at it
   std::vector<Saving> savings_;
