@@ -8,7 +8,6 @@
 
 #include "gpu/renderer.h"
 #include "scene/backdrop.h"
-#include "scene/tone_table.h"
 #include "support/glsl.h"
 #include "support/gpu_kernels.h"
 #include "support/hard_frames.h"

@@ -17,7 +17,7 @@
 #include "readers/formats.h"
 #include "readers/read_any.h"
 #include "readers/texture.h"
-#include "scene/mesh_shade.h"
+#include "scene/voxelise.h"
 #include "support/file_bytes.h"
 #include "support/pictures.h"
 #include "support/reader_inputs.h"

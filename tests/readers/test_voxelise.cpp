@@ -8,7 +8,6 @@
 #include <set>
 #include <vector>
 
-#include "scene/mesh_shade.h"
 #include "scene/random.h"
 #include "scene/voxelise.h"
 #include "scene/world_fit.h"

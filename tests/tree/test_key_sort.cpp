@@ -6,7 +6,6 @@
 
 #include "scene/built_scene.h"
 #include "scene/host_memory.h"
-#include "scene/key_sort.h"
 #include "scene/point_tree.h"
 #include "scene/scene_source.h"
 #include "support/counts.h"

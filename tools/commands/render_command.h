@@ -20,7 +20,7 @@
 #include "scene/default_look.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"
-#include "scene/sampling.h"
+#include "scene/painter.h"
 #include "thimble/picture/shading.h"
 
 namespace CLI {

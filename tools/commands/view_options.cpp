@@ -8,7 +8,7 @@
 #include "commands/arguments.h"
 #include "output/units.h"
 #include "scene/framing.h"
-#include "scene/sampling.h"
+#include "scene/painter.h"
 #include "thimble/picture/shading.h"
 
 namespace thimble::tools {

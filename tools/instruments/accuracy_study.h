@@ -13,7 +13,7 @@
 #include "scene/built_scene.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"
-#include "scene/sampling.h"
+#include "scene/painter.h"
 #include "scene/scene_source.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"

@@ -140,6 +140,35 @@ std::string gif_frame(const Image& image, const std::vector<std::uint8_t>& indic
   return out;
 }
 
+// Where the number of a sequence's pictures stands in their names, and its least digits.
+struct NumberPlace {
+  std::size_t begin;
+  std::size_t length;
+  std::size_t digits;
+};
+
+std::optional<NumberPlace> number_place(std::string_view path) {
+  const std::size_t begin = path.find('%');
+  std::size_t end = begin + 1;
+  std::size_t digits = 0;
+  if (begin == std::string_view::npos || path.find('%', end) != std::string_view::npos) {
+    return std::nullopt;
+  }
+  if (end + 1 < path.size() && path[end] == '0' && path[end + 1] >= '1' && path[end + 1] <= '9') {
+    digits = static_cast<std::size_t>(path[end + 1] - '0');
+    end += 2;
+  }
+  return end < path.size() && path[end] == 'd' ? std::optional(NumberPlace{begin, end + 1 - begin, digits})
+                                               : std::nullopt;
+}
+
+std::string numbered(std::string path, std::size_t number) {
+  const NumberPlace place = number_place(path).value();
+  std::string text = std::to_string(number);
+  text.insert(0, place.digits - std::min(place.digits, text.size()), '0');
+  return path.replace(place.begin, place.length, text);
+}
+
 }  // namespace
 
 // What a GIF shows of pictures: one palette, and the entry of each pixel. An ordered dither of a bin's width
@@ -201,39 +230,6 @@ class GifColors {
   Palette palette_{};
   std::array<std::uint8_t, 1 << 3 * kBits> entries_{};  // of every bin
 };
-
-namespace {
-
-// Where the number of a sequence's pictures stands in their names, and its least digits.
-struct NumberPlace {
-  std::size_t begin;
-  std::size_t length;
-  std::size_t digits;
-};
-
-std::optional<NumberPlace> number_place(std::string_view path) {
-  const std::size_t begin = path.find('%');
-  std::size_t end = begin + 1;
-  std::size_t digits = 0;
-  if (begin == std::string_view::npos || path.find('%', end) != std::string_view::npos) {
-    return std::nullopt;
-  }
-  if (end + 1 < path.size() && path[end] == '0' && path[end + 1] >= '1' && path[end + 1] <= '9') {
-    digits = static_cast<std::size_t>(path[end + 1] - '0');
-    end += 2;
-  }
-  return end < path.size() && path[end] == 'd' ? std::optional(NumberPlace{begin, end + 1 - begin, digits})
-                                               : std::nullopt;
-}
-
-std::string numbered(std::string path, std::size_t number) {
-  const NumberPlace place = number_place(path).value();
-  std::string text = std::to_string(number);
-  text.insert(0, place.digits - std::min(place.digits, text.size()), '0');
-  return path.replace(place.begin, place.length, text);
-}
-
-}  // namespace
 
 bool is_sequence(const std::string& path) {
   return image_kind(path) && number_place(path);

@@ -6,12 +6,12 @@
 
 #include "output/units.h"
 #include "readers/oct.h"
+#include "scene/backdrop.h"
 #include "scene/board_fit.h"
 #include "scene/built_scene.h"
 #include "scene/default_look.h"
 #include "scene/generators.h"
 #include "scene/named_scenes.h"
-#include "scene/tone_table.h"
 #include "thimble/light/render.h"
 #include "thimble/trace/ray.h"
 #include "thimble/tree/octree.h"
@@ -26,11 +26,8 @@ std::vector<Rgb8> used_palette(const SceneSource& source, const CompactTree& tre
   while (last > 0 && !used.is[static_cast<std::size_t>(last)]) {
     --last;
   }
-  std::vector<Rgb8> palette;
-  for (int index = 0; index <= last && !tree.empty(); ++index) {
-    const Rgb color = source.palette()[static_cast<std::size_t>(index)].color;
-    palette.push_back({color.r, color.g, color.b});
-  }
+  std::vector<Rgb8> palette = colors_of(source.palette());
+  palette.resize(tree.empty() ? 0 : static_cast<std::size_t>(last) + 1);
   return palette;
 }
 
@@ -281,6 +278,59 @@ std::vector<std::uint8_t> coarsened_tree(const CompactTree& exact, std::uint64_t
   return pool.tree();
 }
 
+constexpr std::int32_t kMostLookedAt = 96;
+// Of a display of few greys: what its brightest twentieth becomes, and the most exposure; what glares is dimmed by so
+// much, and looked at again.
+constexpr std::uint32_t kBrightGray = 244;
+constexpr std::uint32_t kMostQ8 = 1024;
+constexpr std::uint32_t kGlaring = 250;
+constexpr std::uint32_t kDimmedQ8 = 144;
+constexpr int kMostTurns = 4;
+
+// Greys of what the camera sees that is solid, and of the sky behind it.
+GrayCounts seen_grays(const CompactTree& tree, const Camera& camera, const Shading& shading,
+                      const LitScene& scene, EffectSet effects) {
+  GrayCounts counts;
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(camera.width_px()) * 3);
+  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
+    const Band band{{row.data(), row.size()}, PixelFormat::kRgb888, 0, y, 1};
+    if (render_lit_band(effects, tree, camera, shading, scene, band) != Status::kOk) {
+      return {};
+    }
+    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
+      Hit hit;
+      if ((effects & Effect::kSky) != 0 ||
+          (closest_hit(tree, camera.ray(x, y), &hit) == Status::kOk && hit.kind == HitKind::kHit)) {
+        const std::uint8_t* const pixel = row.data() + 3 * static_cast<std::size_t>(x);
+        ++counts.of[gray_of({pixel[0], pixel[1], pixel[2]})];
+      }
+    }
+  }
+  return counts;
+}
+
+std::string limit_text(const FlashLimit& limit, EffectSet effects, std::uint64_t bytes) {
+  const platform::BoardFacts* const board = limit.board;
+  if (board != nullptr && bytes == limit.board_bytes(effects)) {
+    if (limit.room) {
+      return std::string(board->name) + " has " + grouped(bytes) +
+             " bytes of flash for a scene behind the image";
+    }
+    return std::string(board->name) + " has " + grouped(bytes) + " bytes of flash for a scene (" +
+           grouped(board->flash_bytes) + " less " + grouped(code_flash_bytes(*board, effects)) +
+           " for the demonstration)";
+  }
+  return "the limit is " + grouped(bytes) + " bytes (--memory)";
+}
+
+// Whether the scene with its light keeps the limit, uncoarsened, and the board can draw it.
+bool has_room_for_light(const FlashLimit& limit, const Baked& baked) {
+  const platform::BoardFacts* const board = limit.board;
+  return baked.fits && baked.bytes.size() <= limit.bytes(baked.effects).value_or(UINT64_MAX) &&
+         baked.scene.tree().solid_added() == 0 &&
+         (board == nullptr || drawing_ram_bytes(*board, baked.effects) <= board->ram_bytes);
+}
+
 }  // namespace
 
 Baked bake_scene(const SceneSource& source, const BakingOptions& options, const Progress& progress) {
@@ -324,46 +374,8 @@ Baked bake_scene(const SceneSource& source, const BakingOptions& options, const 
 }
 
 std::string scene_name(const std::string& scene) {
-  if (parse_generator(scene)) {
-    return scene;
-  }
-  return utf8_text(file_name(scene));
+  return parse_generator(scene) ? scene : utf8_text(file_name(scene));
 }
-
-namespace {
-
-constexpr std::int32_t kMostLookedAt = 96;
-// Of a display of few greys: what its brightest twentieth becomes, and the most exposure; what glares is dimmed by so
-// much, and looked at again.
-constexpr std::uint32_t kBrightGray = 244;
-constexpr std::uint32_t kMostQ8 = 1024;
-constexpr std::uint32_t kGlaring = 250;
-constexpr std::uint32_t kDimmedQ8 = 144;
-constexpr int kMostTurns = 4;
-
-// Greys of what the camera sees that is solid, and of the sky behind it.
-GrayCounts seen_grays(const CompactTree& tree, const Camera& camera, const Shading& shading,
-                      const LitScene& scene, EffectSet effects) {
-  GrayCounts counts;
-  std::vector<std::uint8_t> row(static_cast<std::size_t>(camera.width_px()) * 3);
-  for (std::int32_t y = 0; y < camera.height_px(); ++y) {
-    const Band band{{row.data(), row.size()}, PixelFormat::kRgb888, 0, y, 1};
-    if (render_lit_band(effects, tree, camera, shading, scene, band) != Status::kOk) {
-      return {};
-    }
-    for (std::int32_t x = 0; x < camera.width_px(); ++x) {
-      Hit hit;
-      if ((effects & Effect::kSky) != 0 ||
-          (closest_hit(tree, camera.ray(x, y), &hit) == Status::kOk && hit.kind == HitKind::kHit)) {
-        const std::uint8_t* const pixel = row.data() + 3 * static_cast<std::size_t>(x);
-        ++counts.of[gray_of({pixel[0], pixel[1], pixel[2]})];
-      }
-    }
-  }
-  return counts;
-}
-
-}  // namespace
 
 bool has_few_grays(PixelFormat format) {
   return is_gray(format) && format != PixelFormat::kGray8;
@@ -400,32 +412,6 @@ void suit_display(const DisplayFacts& display, const CompactTree& tree, const Sc
     }
   }
 }
-
-namespace {
-
-std::string limit_text(const FlashLimit& limit, EffectSet effects, std::uint64_t bytes) {
-  const platform::BoardFacts* const board = limit.board;
-  if (board != nullptr && bytes == limit.board_bytes(effects)) {
-    if (limit.room) {
-      return std::string(board->name) + " has " + grouped(bytes) +
-             " bytes of flash for a scene behind the image";
-    }
-    return std::string(board->name) + " has " + grouped(bytes) + " bytes of flash for a scene (" +
-           grouped(board->flash_bytes) + " less " + grouped(code_flash_bytes(*board, effects)) +
-           " for the demonstration)";
-  }
-  return "the limit is " + grouped(bytes) + " bytes (--memory)";
-}
-
-// Whether the scene with its light keeps the limit, uncoarsened, and the board can draw it.
-bool has_room_for_light(const FlashLimit& limit, const Baked& baked) {
-  const platform::BoardFacts* const board = limit.board;
-  return baked.fits && baked.bytes.size() <= limit.bytes(baked.effects).value_or(UINT64_MAX) &&
-         baked.scene.tree().solid_added() == 0 &&
-         (board == nullptr || drawing_ram_bytes(*board, baked.effects) <= board->ram_bytes);
-}
-
-}  // namespace
 
 std::uint64_t FlashLimit::board_bytes(EffectSet effects) const {
   return room ? room(effects) : scene_flash_bytes(*board, effects);

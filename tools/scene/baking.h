@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "boards/board_table.h"
 #include "scene/host_memory.h"

@@ -9,7 +9,6 @@
 #include "output/units.h"
 #include "readers/file_bytes.h"
 #include "readers/oct.h"
-#include "scene/key_sort.h"
 #include "scene/point_tree.h"
 #include "scene/scene_source.h"
 
@@ -417,10 +416,7 @@ std::string shortage_text(const SceneSource& source, const BuildOptions& options
 }  // namespace
 
 BuiltScene::BuiltScene(const SceneSource& source, const BuildOptions& options, const Progress& progress)
-    : options_(options) {
-  for (const Material& material : source.palette()) {
-    palette_.push_back({material.color.r, material.color.g, material.color.b});
-  }
+    : options_(options), palette_(colors_of(source.palette())) {
   const auto start = std::chrono::steady_clock::now();
   try {
     memory_ = options.memory_bytes ? HostMemory(static_cast<std::size_t>(*options.memory_bytes))

@@ -60,7 +60,7 @@ struct BuildOptions {
 };
 
 /// Built once, then only read. Layout of the arena, front to back: render state and band, the structure, and what
-/// others take there (wide_renderer.h, sampling.h).
+/// others take there (wide_renderer.h, painter.h).
 class BuiltScene {
  public:
   /// Streams `source` into memory of its own. Throws InputError when it does not fit the budget (the sentence

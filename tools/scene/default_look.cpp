@@ -27,7 +27,6 @@ const char* const kDefaultLookText =
 
 namespace {
 
-constexpr std::uint16_t kSunlight[3] = {196, 188, 172};
 constexpr std::uint16_t kAmbient[3] = {92, 98, 112};
 constexpr std::uint8_t kOcclusionRays = 16;
 // What mirrors and glass show around the scene.
@@ -162,18 +161,13 @@ SceneFacts facts_without_shape(const SceneSource& source, const LitDescription& 
     facts.is_mesh = note->is_mesh;
     facts.lighting = without_rule(*note, lighting);
   }
-  for (const Material& material : source.palette()) {
-    facts.palette.push_back({material.color.r, material.color.g, material.color.b});
-  }
+  facts.palette = colors_of(source.palette());
   return facts;
 }
 
 // The rule's light, where the scene states none.
 void add_sun(const SceneFacts& facts, const Framing& framing, LitDescription* lighting) {
-  Light sun;
-  sun.place = sun_over_shoulder(framing.kept, facts.bounds);
-  std::copy(std::begin(kSunlight), std::end(kSunlight), std::begin(sun.color_q8));
-  lighting->lights = {sun};
+  lighting->lights.assign(1, {false, sun_over_shoulder(framing.kept, facts.bounds), {196, 188, 172}});
   std::copy(std::begin(kAmbient), std::end(kAmbient), std::begin(lighting->rest.ambient_q8));
   lighting->rest.has_shadows = (facts.lighting.off & Effect::kShadows) == 0;
 }
@@ -194,6 +188,10 @@ std::string look_text(const SceneFacts& facts, const Look& look, bool own_light)
   text += own_light ? ", its own light" : ", a sun over the viewer's shoulder";
   text += ", effects " + effects_text(look.effects);
   return text + (look.ground.is_there ? ", a ground" : ", no ground");
+}
+
+double mean(const PackedU16 (&channels)[3]) {
+  return (channels[0] + channels[1] + channels[2]) / 3.0;
 }
 
 }  // namespace
@@ -337,14 +335,6 @@ bool add_baked_sky(const SceneFacts& facts, LitDescription* lighting) {
   lighting->rest.sky = {kSoftTop, kSoftTop, kSoftMiddle};
   return true;
 }
-
-namespace {
-
-double mean(const PackedU16 (&channels)[3]) {
-  return (channels[0] + channels[1] + channels[2]) / 3.0;
-}
-
-}  // namespace
 
 void quick_light(const LitScene& scene, std::uint16_t (&face_light)[6]) {
   constexpr double kLamps = 100;

@@ -22,7 +22,6 @@
 #include "scene/framing.h"
 #include "scene/lit_description.h"
 #include "scene/scene_shape.h"
-#include "scene/tone_table.h"
 
 namespace thimble::tools {
 

@@ -147,14 +147,14 @@ Tone ground_tone(std::int32_t height, std::int32_t z) {
 
 enum class Shape : std::uint8_t {
   kBox,
-  kDrum,    ///< an upright cylinder that fills the box
-  kCone,    ///< upright, its tip in the middle of the box's top
-  kBall,    ///< an ellipsoid that fills the box
-  kGableX,  ///< a roof whose ridge runs along x
+  kDrum,  ///< an upright cylinder that fills the box
+  kCone,  ///< upright, its tip in the middle of the box's top
+  kBall,  ///< an ellipsoid that fills the box
+  kGableX,  ///< a roof whose ridge runs along x; these and the following by pairs, the second of which runs along y
   kGableY,
-  kTunnelX,  ///< runs along x, with a round top
+  kTunnelX,  ///< has a round top
   kTunnelY,
-  kMerlonsX,  ///< a box with a gap at every other unit along x
+  kMerlonsX,  ///< a box with a gap at every other unit
   kMerlonsY,
 };
 
@@ -177,33 +177,33 @@ bool inside_shape(const Part& part, const Corner& at) {
         (2 * at[axis] - part.low[axis] - part.high[axis]) * 1024 / (part.high[axis] - part.low[axis]);
   }
   const std::int32_t down = (1024 - across[2]) / 2;
-  const auto tunnel = [&](std::size_t axis) {
-    const std::int32_t width = part.high[axis] - part.low[axis];
-    const std::int32_t above = std::max(2 * (at[2] - part.high[2]) + width, 0);
-    const std::int32_t beside = 2 * at[axis] - part.low[axis] - part.high[axis];
-    return std::int64_t{above} * above + std::int64_t{beside} * beside <= std::int64_t{width} * width;
-  };
+  const std::int32_t from_middle = across[0] * across[0] + across[1] * across[1];
+  // Of the shapes that run along an axis.
+  const std::size_t along =
+      (static_cast<std::size_t>(part.shape) - static_cast<std::size_t>(Shape::kGableX)) % 2;
+  const std::size_t side = 1 - along;
   switch (part.shape) {
     case Shape::kBox:
       return true;
     case Shape::kDrum:
-      return across[0] * across[0] + across[1] * across[1] <= 1024 * 1024;
+      return from_middle <= 1024 * 1024;
     case Shape::kCone:
-      return across[0] * across[0] + across[1] * across[1] <= down * down;
+      return from_middle <= down * down;
     case Shape::kBall:
-      return across[0] * across[0] + across[1] * across[1] + across[2] * across[2] <= 1024 * 1024;
+      return from_middle + across[2] * across[2] <= 1024 * 1024;
     case Shape::kGableX:
-      return across[1] <= down && -across[1] <= down;
     case Shape::kGableY:
-      return across[0] <= down && -across[0] <= down;
+      return across[side] <= down && -across[side] <= down;
     case Shape::kTunnelX:
-      return tunnel(1);
-    case Shape::kTunnelY:
-      return tunnel(0);
+    case Shape::kTunnelY: {
+      const std::int64_t width = part.high[side] - part.low[side];
+      const std::int64_t above = std::max<std::int64_t>(2 * (at[2] - part.high[2]) + width, 0);
+      const std::int64_t beside = 2 * at[side] - part.low[side] - part.high[side];
+      return above * above + beside * beside <= width * width;
+    }
     case Shape::kMerlonsX:
-      return (at[0] - part.low[0]) / kUnit % 2 == 0;
     case Shape::kMerlonsY:
-      return (at[1] - part.low[1]) / kUnit % 2 == 0;
+      return (at[along] - part.low[along]) / kUnit % 2 == 0;
   }
   return false;
 }
@@ -221,8 +221,6 @@ class DemoWorld {
     plant_trees();
   }
 
-  std::int32_t ground_at(std::int32_t x, std::int32_t y) const { return ground_height(seed_, x, y); }
-
   /// The parts whose boxes stand on a point of the plan, as indices in their order.
   struct Column {
     std::array<std::uint8_t, 255> parts;
@@ -232,7 +230,7 @@ class DemoWorld {
   };
   Column column(std::int32_t x, std::int32_t y) const {
     Column result;
-    result.ground = ground_at(x, y);
+    result.ground = ground_height(seed_, x, y);
     result.top = std::max(result.ground, kLakeTop);
     for (std::size_t i = 0; i < count_; ++i) {
       const Part& part = parts_[i];
@@ -273,7 +271,7 @@ class DemoWorld {
   }
   /// The whole units that the ground reaches at the middle of a unit square.
   std::int32_t floor_at(std::int32_t x, std::int32_t y) const {
-    return (ground_at(x * kUnit + kUnit / 2, y * kUnit + kUnit / 2) + kUnit / 2) / kUnit;
+    return (ground_height(seed_, x * kUnit + kUnit / 2, y * kUnit + kUnit / 2) + kUnit / 2) / kUnit;
   }
 
   /// Battlements along the edges of the rectangle, one unit high on top of `z`.
@@ -441,10 +439,10 @@ class DemoWorld {
 
 }  // namespace
 
-void generate_demo_world(std::uint64_t seed, int depth, const VoxelSink& sink) {
-  const DemoWorld world(seed);
-  const std::int32_t side = std::int32_t{1} << depth;
-  const auto center = [depth](std::int32_t index) { return (2 * index + 1) << (kDemoBits - 1 - depth); };
+void generate_demo_world(const GeneratorSpec& spec, const VoxelSink& sink) {
+  const DemoWorld world(spec.seed);
+  const std::int32_t side = std::int32_t{1} << spec.depth;
+  const auto center = [&spec](std::int32_t index) { return (2 * index + 1) << (kDemoBits - 1 - spec.depth); };
   for (std::int32_t y = 0; y < side; ++y) {
     for (std::int32_t x = 0; x < side; ++x) {
       const DemoWorld::Column column = world.column(center(x), center(y));

@@ -48,7 +48,14 @@ Status EdgeRows::draw(std::int32_t first_row, std::int32_t rows, Bytes work) {
     return draw_together(first_row, rows, centres);
   }
   return each_until_error(rows, threads_, [&](std::int32_t row, std::size_t worker) {
-    return draw_row(first_row + row, centres, samples.subspan(width * worker, width), worker);
+    const std::int32_t y = first_row + row;
+    const Bytes wanted = samples.subspan(width * worker, width);
+    Status drawn = find_wanted(y, centres, wanted);
+    for (std::int32_t x = 0; x < camera_.width_px() && drawn == Status::kOk; x += kEdgeSegmentPx) {
+      drawn = draw_segment(y, x, std::min(kEdgeSegmentPx, camera_.width_px() - x), centre_row(y, centres),
+                           wanted, worker);
+    }
+    return drawn;
   });
 }
 
@@ -169,15 +176,6 @@ Status EdgeRows::find_wanted(std::int32_t y, ConstBytes centres, Bytes samples) 
       edge_strengths(centre_row(y - 1, centres), centre_row(y, centres), centre_row(y + 1, centres),
                      static_cast<int>(channels_), width, samples);
   return status != Status::kOk ? status : place_edge_samples(samples, width, samples);
-}
-
-Status EdgeRows::draw_row(std::int32_t y, ConstBytes centres, Bytes samples, std::size_t worker) const {
-  const std::int32_t width = camera_.width_px();
-  Status status = find_wanted(y, centres, samples);
-  for (std::int32_t x = 0; x < width && status == Status::kOk; x += kEdgeSegmentPx) {
-    status = draw_segment(y, x, std::min(kEdgeSegmentPx, width - x), centre_row(y, centres), samples, worker);
-  }
-  return status;
 }
 
 Status EdgeRows::draw_segment(std::int32_t y, std::int32_t first, std::int32_t count, ConstBytes row,

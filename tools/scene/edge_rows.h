@@ -76,7 +76,6 @@ class EdgeRows {
                   const std::uint8_t* drawn) const;
   ConstBytes centre_row(std::int32_t y, ConstBytes centres) const;
   Status find_wanted(std::int32_t y, ConstBytes centres, Bytes samples) const;
-  Status draw_row(std::int32_t y, ConstBytes centres, Bytes samples, std::size_t worker) const;
   Status draw_segment(std::int32_t y, std::int32_t first, std::int32_t count, ConstBytes row,
                       ConstBytes samples, std::size_t worker) const;
 

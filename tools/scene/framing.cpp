@@ -440,6 +440,35 @@ class RoundExtent {
   std::map<std::int32_t, double> farthest_;
 };
 
+// Those from the front, then as many from behind.
+constexpr std::array<ViewAngles, 8> kCandidates{
+    {{-35, 25}, {35, 25}, {-35, 40}, {35, 40}, {-145, 25}, {145, 25}, {-145, 40}, {145, 40}}};
+constexpr std::array<ViewAngles, 4> kCorners{
+    {{-45, kIsometric}, {45, kIsometric}, {-135, kIsometric}, {135, kIsometric}}};
+constexpr std::int32_t kWidth = 96;
+constexpr std::int32_t kHeight = 72;
+
+// How many planes of faces, each in its material, a camera sees.
+std::size_t planes_seen(const CompactTree& tree, const Camera& camera) {
+  std::vector<std::uint32_t> planes;
+  for (std::int32_t y = 0; y < kHeight; ++y) {
+    for (std::int32_t x = 0; x < kWidth; ++x) {
+      const Ray ray = camera.ray(x, y);
+      Hit hit;
+      if (closest_hit(tree, ray, &hit) != Status::kOk || hit.kind != HitKind::kHit) {
+        continue;
+      }
+      const Face face = face_of(hit, ray.direction);
+      // 12 bits of coordinate, 8 of material, 3 of face.
+      planes.push_back(static_cast<std::uint32_t>(hit.voxel[face.axis]) << 11 |
+                       static_cast<std::uint32_t>(hit.material) << 3 |
+                       static_cast<std::uint32_t>(2 * face.axis + (face.negative ? 0 : 1)));
+    }
+  }
+  std::sort(planes.begin(), planes.end());
+  return static_cast<std::size_t>(std::unique(planes.begin(), planes.end()) - planes.begin());
+}
+
 }  // namespace
 
 std::string text_of(const Real3& v) {
@@ -618,39 +647,6 @@ ViewWishes finer(const ViewWishes& wishes, int across) {
   fine.height_px *= across;
   return fine;
 }
-
-namespace {
-
-// Those from the front, then as many from behind.
-constexpr std::array<ViewAngles, 8> kCandidates{
-    {{-35, 25}, {35, 25}, {-35, 40}, {35, 40}, {-145, 25}, {145, 25}, {-145, 40}, {145, 40}}};
-constexpr std::array<ViewAngles, 4> kCorners{
-    {{-45, kIsometric}, {45, kIsometric}, {-135, kIsometric}, {135, kIsometric}}};
-constexpr std::int32_t kWidth = 96;
-constexpr std::int32_t kHeight = 72;
-
-// How many planes of faces, each in its material, a camera sees.
-std::size_t planes_seen(const CompactTree& tree, const Camera& camera) {
-  std::vector<std::uint32_t> planes;
-  for (std::int32_t y = 0; y < kHeight; ++y) {
-    for (std::int32_t x = 0; x < kWidth; ++x) {
-      const Ray ray = camera.ray(x, y);
-      Hit hit;
-      if (closest_hit(tree, ray, &hit) != Status::kOk || hit.kind != HitKind::kHit) {
-        continue;
-      }
-      const Face face = face_of(hit, ray.direction);
-      // 12 bits of coordinate, 8 of material, 3 of face.
-      planes.push_back(static_cast<std::uint32_t>(hit.voxel[face.axis]) << 11 |
-                       static_cast<std::uint32_t>(hit.material) << 3 |
-                       static_cast<std::uint32_t>(2 * face.axis + (face.negative ? 0 : 1)));
-    }
-  }
-  std::sort(planes.begin(), planes.end());
-  return static_cast<std::size_t>(std::unique(planes.begin(), planes.end()) - planes.begin());
-}
-
-}  // namespace
 
 ViewAngles best_angles(const SceneShape& shape, NamedView side) {
   const std::span<const ViewAngles> all =

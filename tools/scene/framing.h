@@ -143,8 +143,6 @@ Shading scene_shading(ShadeMode mode, Span<const Rgb8> palette, const Camera& ca
 /// The same view in a picture `across` times as wide and high. Throws InputError beyond the largest size.
 ViewWishes finer(const ViewWishes& wishes, int across);
 
-// From which side a scene shows most.
-
 /// Of a fixed set of three-quarter views from above (from the front and the back, the left and the right, at
 /// two heights) the one that shows the most distinct faces and colours: each is drawn at 96 x 72 pixels, and
 /// what is counted is the different planes of faces (axis, side and coordinate, with the material) among the

@@ -450,11 +450,8 @@ std::vector<std::string> generator_examples() {
 }
 
 void generate(const GeneratorSpec& spec, const VoxelSink& sink) {
-  constexpr auto kDemo = [](const GeneratorSpec& demo, const VoxelSink& to) {
-    generate_demo_world(demo.seed, demo.depth, to);
-  };
   constexpr std::array<void (*)(const GeneratorSpec&, const VoxelSink&), 5> kByKind{
-      generate_points, generate_cluster, generate_spheres, generate_water, kDemo};
+      generate_points, generate_cluster, generate_spheres, generate_water, generate_demo_world};
   kByKind[static_cast<std::size_t>(spec.kind)](spec, sink);
 }
 
@@ -499,22 +496,17 @@ Palette generator_palette(GeneratorKind kind) {
     }
   }
   if (kind == GeneratorKind::kWater) {
-    palette[kLagoonWater] = colored({70, 160, 172});
-    palette[kLagoonWater].kind = SurfaceKind::kGlass;
-    palette[kLagoonWater].alpha = 128;
-    palette[kLagoonWater].ior = 1.33;
-    palette[kLagoonWater].transparency = 1;
+    palette[kLagoonWater] = {
+        .color = {70, 160, 172}, .alpha = 128, .kind = SurfaceKind::kGlass, .ior = 1.33, .transparency = 1};
     palette[kLagoonSand] = colored({226, 200, 144});
     palette[kLagoonRock] = colored({124, 116, 110});
-    palette[kLagoonGlass] = colored({206, 238, 226});
-    palette[kLagoonGlass].kind = SurfaceKind::kGlass;
-    palette[kLagoonGlass].alpha = 64;
-    palette[kLagoonGlass].ior = 1.5;
-    palette[kLagoonGlass].transparency = 1;
-    palette[kLagoonGlass].attenuation = 0.1;
-    palette[kLagoonMetal] = colored({226, 178, 82});
-    palette[kLagoonMetal].kind = SurfaceKind::kMetal;
-    palette[kLagoonMetal].metalness = 0.85;
+    palette[kLagoonGlass] = {.color = {206, 238, 226},
+                             .alpha = 64,
+                             .kind = SurfaceKind::kGlass,
+                             .ior = 1.5,
+                             .attenuation = 0.1,
+                             .transparency = 1};
+    palette[kLagoonMetal] = {.color = {226, 178, 82}, .kind = SurfaceKind::kMetal, .metalness = 0.85};
   }
   return palette;
 }

@@ -4,8 +4,7 @@
 ///   cluster:N   N voxels of a mixture of Plummer spheres, as star clusters have them
 ///   spheres     solid balls of several sizes and colours: the paper's Figure 2
 ///   water       a basin with an island and floating bodies of glass and metal, in the sun; the water itself
-///   is
-///               no voxels but a still surface (water_surface.h), which only effects show
+///               is no voxels but a still surface (water_surface.h), which only effects show
 ///   demo        a castle in a valley (demo_world.cpp): what the firmware shows
 ///
 /// each followed by `,seed=S` and `,depth=L` in any order, as in `points:1000000,seed=7,depth=10`. N may be
@@ -76,7 +75,7 @@ std::uint64_t integer_sqrt(std::uint64_t value);
 
 /// Streams the world of 2^depth voxels a side, each solid voxel once, column by column. The seed moves hills,
 /// shores, trees and rocks; what is built by hand stays where it is. No heap. Time grows with 8^depth.
-void generate_demo_world(std::uint64_t seed, int depth, const VoxelSink& sink);
+void generate_demo_world(const GeneratorSpec& spec, const VoxelSink& sink);
 
 /// Colours of the materials; index 0 is the default material.
 Palette demo_world_palette();

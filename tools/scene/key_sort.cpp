@@ -1,8 +1,7 @@
-#include "scene/key_sort.h"
-
 #include <algorithm>
 #include <array>
 
+#include "scene/point_tree.h"
 #include "scene/workers.h"
 #include "thimble/tree/compact_tree.h"
 

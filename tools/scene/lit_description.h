@@ -1,14 +1,5 @@
 /// What light does in a scene, as a source has it: surfaces of all palette entries, lights, sky, water. The
 /// one home of the conversions into the core's `LitScene`.
-///
-/// From a scene to what is drawn:
-///
-///     const LitDescription lit = source.lighting();
-///     const EffectSet effects = chosen_effects(lit, used_materials(built.compact()), choice);
-///     lit.find_glow(built.compact());
-///     const LitScene scene = lit.drawn(effects);   // views into `lit`
-///
-/// and where it is looked at from is `source.camera()`.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +12,6 @@
 
 #include "readers/oct.h"
 #include "readers/source.h"
-#include "scene/tone_table.h"
 #include "thimble/base/memory.h"
 #include "thimble/light/render.h"
 #include "thimble/light/scene.h"
@@ -88,6 +78,9 @@ struct LitDescription {
 Surface surface_of(const Material& material);
 /// What the colour of a surface and its kind are to those who know palettes only.
 Material material_of(const Surface& surface);
+
+/// The colours alone.
+std::vector<Rgb8> colors_of(const Palette& palette);
 
 /// Surfaces of a whole palette and nothing else: no light, no sky.
 LitDescription describe_palette(const Palette& palette);

@@ -1,6 +1,7 @@
 #include "scene/look_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <vector>
 
@@ -18,6 +19,138 @@ Shading shading_of(const LookCanvas& canvas, const Camera& camera) {
     light = static_cast<std::uint16_t>(2U * light / 3);
   }
   return shading;
+}
+
+// Draws the picture, `at_once` rows at a time: draw(first, how many), counted from its first row. `counts` is what the
+// threads then counted.
+template <class Draw>
+Status paint_rows(std::int32_t at_once, const std::vector<LitCounts>& counts, const Progress& progress,
+                  Painting* painting, const Draw& draw) {
+  const std::int32_t height_px = painting->image.height_px;
+  Status status = Status::kOk;
+  for (std::int32_t y = 0; y < height_px && status == Status::kOk; y += at_once) {
+    status = draw(y, std::min(at_once, height_px - y));
+    tell(progress, static_cast<double>(y) / height_px);
+  }
+  for (const LitCounts& part : counts) {
+    lit::add_counts(part, &painting->counts.lit);
+  }
+  painting->counts.all = totals_of(painting->counts.lit);
+  return status;
+}
+
+// With samples where edges are: the rows that `canvas.work` has room for at a time.
+Status paint_at_edges(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
+                      Painting* painting) {
+  Image& image = painting->image;
+  const LookRows look(canvas, canvas.framing->camera, exposure);
+  std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
+  std::vector<std::uint8_t> colors;  // of the samples that are drawn together
+  const DrawPlaces draw_places = [&](const Camera& camera, Span<const SamplePlace> places, Bytes samples) {
+    colors.resize(3 * places.size);
+    return look.draw_places(camera, places, Bytes(colors.data(), colors.size()), samples, &counts[0]);
+  };
+  EdgeRows rows(canvas.framing->camera, canvas.fine, 4, canvas.threads,
+                {[&](const SampleRun& run, Bytes samples, std::size_t worker) {
+                   return look.draw_run(run, samples, &counts[worker]);
+                 },
+                 [&](std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count) {
+                   LookRows::finish_sums(px, py, sums, count, &image);
+                 },
+                 canvas.streams != nullptr ? draw_places : DrawPlaces()});
+  const std::int32_t at_once = std::min(
+      EdgeRows::rows_within(canvas.work.size, 4, image.width_px, canvas.threads, 0), image.height_px);
+  return paint_rows(at_once, counts, progress, painting, [&](std::int32_t y, std::int32_t count) {
+    return rows.draw(image.first_row + y, count, canvas.work);
+  });
+}
+
+// Pixel by pixel, with all samples of each.
+Status paint_whole(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
+                   Painting* painting) {
+  Image& image = painting->image;
+  const LookRows rows(canvas, canvas.fine, exposure);
+  const std::size_t row_bytes = look_work_bytes(image.width_px, canvas.look->across);
+  const auto at_once = static_cast<std::int32_t>(
+      std::min<std::size_t>(canvas.work.size / row_bytes, static_cast<std::size_t>(image.height_px)));
+  std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
+  return paint_rows(at_once, counts, progress, painting, [&](std::int32_t y, std::int32_t count) {
+    return rows.draw(image.first_row + y, count, canvas.work, &image, counts.data());
+  });
+}
+
+// Rays that are traced together: a few for each lane of the widest vectors, little on the stack.
+constexpr std::size_t kAtOnce = 256;
+
+// Shares of what stands near the model: without what it closes off above. At most kAtOnce places.
+Status darken_corners(const Look& look, const LitStreams& streams, Span<const Vec3Q8> places,
+                      std::uint8_t* const* shares) {
+  std::array<Ray, kAtOnce> rays;
+  std::array<RayPoint, kAtOnce> entries;
+  std::array<std::size_t, kAtOnce> place_of;  // by ray
+  std::array<std::int64_t, kAtOnce> closed{};
+  std::size_t count = 0;
+  const auto trace = [&] {
+    const Status status = streams.first_entry_before({rays.data(), count}, {look.ground.reach, kAroundLength},
+                                                     {entries.data(), count});
+    for (std::size_t ray = 0; ray < count; ++ray) {
+      closed[place_of[ray]] +=
+          entries[ray].t_denominator == 0 ? 0 : closed_at(entries[ray], look.ground.reach);
+    }
+    count = 0;
+    return status;
+  };
+  Status status = Status::kOk;
+  for (std::size_t place = 0; place < places.size && status == Status::kOk; ++place) {
+    for (const Vec3i& direction : kAround) {
+      place_of[count] = place;
+      rays[count++] = {places.data[place], direction};
+    }
+    if (count + kAroundCount > kAtOnce) {
+      status = trace();
+    }
+  }
+  if (status == Status::kOk) {
+    status = trace();
+  }
+  for (std::size_t place = 0; place < places.size; ++place) {
+    *shares[place] = in_corner(*shares[place], closed[place]);
+  }
+  return status;
+}
+
+// Of at most kAtOnce rays. On an error the shares are not to be used.
+Status find_in_vectors(const CompactTree& tree, const Look& look, const LitStreams& streams,
+                       Span<const Ray> rays, std::uint8_t* shares) {
+  std::array<std::uint8_t, kAtOnce> hits;
+  Status status = streams.any_hit(rays, {hits.data(), rays.size});
+  std::array<Vec3Q8, kAtOnce> places;
+  std::array<std::uint8_t*, kAtOnce> lights;
+  std::size_t count = 0;  // that meet the ground
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    shares[i] = hits[i] != 0 ? kNothingBehind : kFullShare;
+    if (hits[i] == 0 && meets_ground(tree, look.ground, rays.data[i], &places[count])) {
+      lights[count++] = shares + i;
+    }
+  }
+  if (status == Status::kOk && look.ground.toward_sun.z > 0) {
+    std::array<Ray, kAtOnce> toward_sun;
+    for (std::size_t i = 0; i < count; ++i) {
+      toward_sun[i] = {places[i], look.ground.toward_sun};
+    }
+    status = streams.any_hit({toward_sun.data(), count}, {hits.data(), count});
+    for (std::size_t i = 0; i < count; ++i) {
+      *lights[i] = hits[i] != 0 ? in_shadow(*lights[i]) : *lights[i];
+    }
+  }
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_near_model(tree, look.ground, places[i])) {
+      places[near] = places[i];
+      lights[near++] = lights[i];
+    }
+  }
+  return status != Status::kOk ? status : darken_corners(look, streams, {places.data(), near}, lights.data());
 }
 
 }  // namespace
@@ -123,9 +256,7 @@ Status LookRows::draw_run(const SampleRun& run, Bytes samples, LitCounts* counts
   const Status status = trace(run.camera, run.row, 1, colors, shares, counts);
   const Rgb8 behind = backdrop_color(canvas_.look->background, run.py, canvas_.framing->camera.height_px());
   for (std::size_t x = 0; x < count && status == Status::kOk; ++x) {
-    const std::uint8_t* color = colors.data + 3 * x;
-    const Sample sample = sample_of({color[0], color[1], color[2]}, shares[x], behind);
-    std::copy(sample.begin(), sample.end(), samples.data + 4 * x);
+    put_sample(colors.data + 3 * x, shares[x], behind, samples.data + 4 * x);
   }
   return status;
 }
@@ -176,13 +307,10 @@ Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> place
   return each([&](std::size_t task, std::size_t first, std::size_t end) {
     const std::uint8_t* color = colors.data + 3 * before[task];
     for (std::size_t i = first; i < end; ++i) {
-      const bool has_color = is_traced(i);
       const Rgb8 behind =
           backdrop_color(canvas_.look->background, places.data[i].py, canvas_.framing->camera.height_px());
-      const Sample sample =
-          sample_of(has_color ? Rgb8{color[0], color[1], color[2]} : Rgb8{}, shares[i], behind);
-      std::copy(sample.begin(), sample.end(), samples.data + 4 * i);
-      color += has_color ? 3 : 0;
+      put_sample(color, shares[i], behind, samples.data + 4 * i);
+      color += is_traced(i) ? 3 : 0;
     }
     return Status::kOk;
   });
@@ -218,13 +346,16 @@ void LookRows::finish_sums(std::int32_t x, std::int32_t y, const std::uint32_t* 
   }
 }
 
-// A sample with its tone, or with what is behind it, and how much of it covers that.
-LookRows::Sample LookRows::sample_of(Rgb8 color, std::uint8_t share, Rgb8 behind) const {
-  if (share == kNothingBehind) {
-    return {tone_[color.r], tone_[color.g], tone_[color.b], 255};
-  }
-  const Rgb8 back = shaded(behind, share);
-  return {back.r, back.g, back.b, static_cast<std::uint8_t>((kFullShare - share) * 255U / kFullShare)};
+// A sample with its tone, or with what is behind it, and how much of it covers that. Where light is seen behind it the
+// colour is not looked at.
+void LookRows::put_sample(const std::uint8_t* color, std::uint8_t share, Rgb8 behind,
+                          std::uint8_t* to) const {
+  const bool is_hit = share == kNothingBehind;
+  const Rgb8 shown = is_hit ? tone_({color[0], color[1], color[2]}) : shaded(behind, share);
+  to[0] = shown.r;
+  to[1] = shown.g;
+  to[2] = shown.b;
+  to[3] = static_cast<std::uint8_t>(is_hit ? 255U : (kFullShare - share) * 255U / kFullShare);
 }
 
 // The mean of a pixel's samples.
@@ -236,8 +367,8 @@ void LookRows::finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares
     for (int i = 0; i < across; ++i) {
       const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(camera_.width_px()) +
                       static_cast<std::size_t>(x * across + i);
-      const std::uint8_t* color = colors.data + 3 * at;
-      const Sample sample = sample_of({color[0], color[1], color[2]}, shares[at], behind);
+      std::array<std::uint8_t, 4> sample;
+      put_sample(colors.data + 3 * at, shares[at], behind, sample.data());
       for (std::size_t c = 0; c < sums.size(); ++c) {
         sums[c] += sample[c];
       }
@@ -277,68 +408,6 @@ LookMeasure measure_look(const LookCanvas& canvas) {
           totals_of(traced).rays * 4 * pixels(whole) / pixels(coarse)};
 }
 
-namespace {
-
-// Draws the picture, `at_once` rows at a time: draw(first, how many), counted from its first row. `counts` is what the
-// threads then counted.
-template <class Draw>
-Status paint_rows(std::int32_t at_once, const std::vector<LitCounts>& counts, const Progress& progress,
-                  Painting* painting, const Draw& draw) {
-  const std::int32_t height_px = painting->image.height_px;
-  Status status = Status::kOk;
-  for (std::int32_t y = 0; y < height_px && status == Status::kOk; y += at_once) {
-    status = draw(y, std::min(at_once, height_px - y));
-    tell(progress, static_cast<double>(y) / height_px);
-  }
-  for (const LitCounts& part : counts) {
-    lit::add_counts(part, &painting->counts.lit);
-  }
-  painting->counts.all = totals_of(painting->counts.lit);
-  return status;
-}
-
-// With samples where edges are: the rows that `canvas.work` has room for at a time.
-Status paint_at_edges(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
-                      Painting* painting) {
-  Image& image = painting->image;
-  const LookRows look(canvas, canvas.framing->camera, exposure);
-  std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
-  std::vector<std::uint8_t> colors;  // of the samples that are drawn together
-  const DrawPlaces draw_places = [&](const Camera& camera, Span<const SamplePlace> places, Bytes samples) {
-    colors.resize(3 * places.size);
-    return look.draw_places(camera, places, Bytes(colors.data(), colors.size()), samples, &counts[0]);
-  };
-  EdgeRows rows(canvas.framing->camera, canvas.fine, 4, canvas.threads,
-                {[&](const SampleRun& run, Bytes samples, std::size_t worker) {
-                   return look.draw_run(run, samples, &counts[worker]);
-                 },
-                 [&](std::int32_t px, std::int32_t py, const std::uint32_t* sums, std::uint32_t count) {
-                   LookRows::finish_sums(px, py, sums, count, &image);
-                 },
-                 canvas.streams != nullptr ? draw_places : DrawPlaces()});
-  const std::int32_t at_once = std::min(
-      EdgeRows::rows_within(canvas.work.size, 4, image.width_px, canvas.threads, 0), image.height_px);
-  return paint_rows(at_once, counts, progress, painting, [&](std::int32_t y, std::int32_t count) {
-    return rows.draw(image.first_row + y, count, canvas.work);
-  });
-}
-
-// Pixel by pixel, with all samples of each.
-Status paint_whole(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
-                   Painting* painting) {
-  Image& image = painting->image;
-  const LookRows rows(canvas, canvas.fine, exposure);
-  const std::size_t row_bytes = look_work_bytes(image.width_px, canvas.look->across);
-  const auto at_once = static_cast<std::int32_t>(
-      std::min<std::size_t>(canvas.work.size / row_bytes, static_cast<std::size_t>(image.height_px)));
-  std::vector<LitCounts> counts(static_cast<std::size_t>(canvas.threads));
-  return paint_rows(at_once, counts, progress, painting, [&](std::int32_t y, std::int32_t count) {
-    return rows.draw(image.first_row + y, count, canvas.work, &image, counts.data());
-  });
-}
-
-}  // namespace
-
 Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progress& progress,
                   Painting* painting) {
   const Look& look = *canvas.look;
@@ -365,84 +434,6 @@ Status paint_look(const LookCanvas& canvas, std::uint32_t exposure, const Progre
   painting->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return status;
 }
-
-namespace {
-
-// Rays that are traced together: a few for each lane of the widest vectors, little on the stack.
-constexpr std::size_t kAtOnce = 256;
-
-// Shares of what stands near the model: without what it closes off above. At most kAtOnce places.
-Status darken_corners(const Look& look, const LitStreams& streams, Span<const Vec3Q8> places,
-                      std::uint8_t* const* shares) {
-  std::array<Ray, kAtOnce> rays;
-  std::array<RayPoint, kAtOnce> entries;
-  std::array<std::size_t, kAtOnce> place_of;  // by ray
-  std::array<std::int64_t, kAtOnce> closed{};
-  std::size_t count = 0;
-  const auto trace = [&] {
-    const Status status = streams.first_entry_before({rays.data(), count}, {look.ground.reach, kAroundLength},
-                                                     {entries.data(), count});
-    for (std::size_t ray = 0; ray < count; ++ray) {
-      closed[place_of[ray]] +=
-          entries[ray].t_denominator == 0 ? 0 : closed_at(entries[ray], look.ground.reach);
-    }
-    count = 0;
-    return status;
-  };
-  Status status = Status::kOk;
-  for (std::size_t place = 0; place < places.size && status == Status::kOk; ++place) {
-    for (const Vec3i& direction : kAround) {
-      place_of[count] = place;
-      rays[count++] = {places.data[place], direction};
-    }
-    if (count + kAroundCount > kAtOnce) {
-      status = trace();
-    }
-  }
-  if (status == Status::kOk) {
-    status = trace();
-  }
-  for (std::size_t place = 0; place < places.size; ++place) {
-    *shares[place] = in_corner(*shares[place], closed[place]);
-  }
-  return status;
-}
-
-// Of at most kAtOnce rays. On an error the shares are not to be used.
-Status find_in_vectors(const CompactTree& tree, const Look& look, const LitStreams& streams,
-                       Span<const Ray> rays, std::uint8_t* shares) {
-  std::array<std::uint8_t, kAtOnce> hits;
-  Status status = streams.any_hit(rays, {hits.data(), rays.size});
-  std::array<Vec3Q8, kAtOnce> places;
-  std::array<std::uint8_t*, kAtOnce> lights;
-  std::size_t count = 0;  // that meet the ground
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    shares[i] = hits[i] != 0 ? kNothingBehind : kFullShare;
-    if (hits[i] == 0 && meets_ground(tree, look.ground, rays.data[i], &places[count])) {
-      lights[count++] = shares + i;
-    }
-  }
-  if (status == Status::kOk && look.ground.toward_sun.z > 0) {
-    std::array<Ray, kAtOnce> toward_sun;
-    for (std::size_t i = 0; i < count; ++i) {
-      toward_sun[i] = {places[i], look.ground.toward_sun};
-    }
-    status = streams.any_hit({toward_sun.data(), count}, {hits.data(), count});
-    for (std::size_t i = 0; i < count; ++i) {
-      *lights[i] = hits[i] != 0 ? in_shadow(*lights[i]) : *lights[i];
-    }
-  }
-  std::size_t near = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (is_near_model(tree, look.ground, places[i])) {
-      places[near] = places[i];
-      lights[near++] = lights[i];
-    }
-  }
-  return status != Status::kOk ? status : darken_corners(look, streams, {places.data(), near}, lights.data());
-}
-
-}  // namespace
 
 void find_light_behind(const CompactTree& tree, const Look& look, const LitStreams* streams,
                        Span<const Ray> rays, std::uint8_t* shares) {

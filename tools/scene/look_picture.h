@@ -4,14 +4,12 @@
 /// come. `thimble render`, films and the viewer paint with it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "output/image.h"
 #include "scene/default_look.h"
 #include "scene/edge_rows.h"
-#include "scene/lit_description.h"
 #include "scene/lit_streams.h"
 #include "scene/painter.h"
 #include "thimble/trace/ray.h"
@@ -84,8 +82,7 @@ class LookRows {
                       LitCounts* counts) const;
   void find_shares(const Camera& camera, std::int32_t first_row, std::int32_t rows, Bytes shares) const;
   void finish(std::int32_t x, std::int32_t y, Bytes colors, Bytes shares, Image* image) const;
-  using Sample = std::array<std::uint8_t, 4>;
-  Sample sample_of(Rgb8 color, std::uint8_t share, Rgb8 behind) const;
+  void put_sample(const std::uint8_t* color, std::uint8_t share, Rgb8 behind, std::uint8_t* to) const;
 
   const LookCanvas& canvas_;
   Camera camera_;

@@ -1,4 +1,4 @@
-#include "scene/mesh_shade.h"
+#include "scene/voxelise.h"
 
 #include <algorithm>
 #include <array>
@@ -42,6 +42,17 @@ struct Shade {
 
 double mixed(double p, double q, double r, const std::array<double, 2>& place) {
   return p + (q - p) * place[0] + (r - p) * place[1];
+}
+
+// Colours as light, and back.
+Real3 as_light(const Rgb& color) {
+  return {light_of(color.r), light_of(color.g), light_of(color.b)};
+}
+Rgb as_color(const Real3& light) {
+  return {screen_byte(light[0]), screen_byte(light[1]), screen_byte(light[2])};
+}
+Real3 product(const Real3& a, const Real3& b) {
+  return {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
 }
 
 bool is_inside(const std::array<double, 2>& place) {
@@ -113,13 +124,9 @@ class MeshShade {
         (is_clear(place) || (!is_over && goes_on(below, edges) && is_clear(below)))) {
       return std::nullopt;
     }
-    const Texture::Sample sample = sample_at(place, 1);
-    const std::array<double, 3> tint = tint_at(place);
-    const std::array<double, 3> reflected{tint[0] * sample.light[0], tint[1] * sample.light[1],
-                                          tint[2] * sample.light[2]};
+    const Real3 reflected = product(tint_at(place), sample_at(place, 1).light);
     const std::optional<Shade> glow = may_glow ? glow_at(place, reflected) : std::nullopt;
-    return glow ? glow
-                : Shade{{screen_byte(reflected[0]), screen_byte(reflected[1]), screen_byte(reflected[2])}};
+    return glow ? glow : Shade{as_color(reflected)};
   }
 
   /// Adds the edges of a triangle that may be clear.
@@ -220,25 +227,21 @@ class MeshShade {
   }
 
   /// What the surface gives off, or none.
-  std::optional<Shade> glow_at(const Place& place, const std::array<double, 3>& reflected) const {
+  std::optional<Shade> glow_at(const Place& place, const Real3& reflected) const {
     constexpr double kLeast = 0.1;
     constexpr double kMost = 256;
-    std::array<double, 3> light = surface_->emission;
+    Real3 light = surface_->emission;
     if (surface_->glow != nullptr) {
-      const Texture::Sample sample =
-          surface_->glow->average(box_at(place, 1), surface_->wrap_u, surface_->wrap_v);
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        light[channel] *= sample.light[channel];
-      }
+      light =
+          product(light, surface_->glow->average(box_at(place, 1), surface_->wrap_u, surface_->wrap_v).light);
     }
     const double most = std::max({light[0], light[1], light[2]});
     if (most < std::max({kLeast, reflected[0], reflected[1], reflected[2]})) {
       return std::nullopt;
     }
     const double power = std::fmax(most, 1);  // a colour holds no more than 1
-    return Shade{
-        {screen_byte(light[0] / power), screen_byte(light[1] / power), screen_byte(light[2] / power)},
-        static_cast<std::uint32_t>(std::fmin(power, kMost) * 256)};
+    return Shade{as_color({light[0] / power, light[1] / power, light[2] / power}),
+                 static_cast<std::uint32_t>(std::fmin(power, kMost) * 256)};
   }
 
   /// Clear on the average and at the place itself: a voxel may cover much that is beside the mesh's part of a picture.
@@ -252,17 +255,15 @@ class MeshShade {
   }
 
   /// The triangle's own colour, as light.
-  std::array<double, 3> tint_at(const Place& place) const {
-    std::array<Rgb, 3> of{};
-    if (!mesh_.face_colors.empty()) {
-      of.fill(mesh_.face_colors[triangle_]);
-    } else if (!colors_.empty()) {
-      const auto& [a, b, c] = mesh_.triangles[triangle_];
-      of = {colors_[a], colors_[b], colors_[c]};
+  Real3 tint_at(const Place& place) const {
+    if (!mesh_.face_colors.empty() || colors_.empty()) {
+      return as_light(mesh_.face_colors.empty() ? Rgb{} : mesh_.face_colors[triangle_]);
     }
-    return {mixed(light_of(of[0].r), light_of(of[1].r), light_of(of[2].r), place),
-            mixed(light_of(of[0].g), light_of(of[1].g), light_of(of[2].g), place),
-            mixed(light_of(of[0].b), light_of(of[1].b), light_of(of[2].b), place)};
+    const auto& [a, b, c] = mesh_.triangles[triangle_];
+    const Real3 p = as_light(colors_[a]);
+    const Real3 q = as_light(colors_[b]);
+    const Real3 r = as_light(colors_[c]);
+    return {mixed(p[0], q[0], r[0], place), mixed(p[1], q[1], r[1], place), mixed(p[2], q[2], r[2], place)};
   }
 
   const TriangleMesh& mesh_;
@@ -307,14 +308,12 @@ std::vector<Rgb> vertex_colors(const TriangleMesh& mesh, const std::vector<UnitP
   }
   std::sort(fine.begin(), fine.end());
   for (std::size_t first = 0, last = 0; first < fine.size(); first = last) {
-    std::array<double, 3> light{};
+    Real3 light{};
     for (; last < fine.size() && fine[last].first == fine[first].first; ++last) {
-      const Rgb& color = colors[fine[last].second];
-      light = {light[0] + light_of(color.r), light[1] + light_of(color.g), light[2] + light_of(color.b)};
+      light = plus(light, as_light(colors[fine[last].second]));
     }
     const auto count = static_cast<double>(last - first);
-    const Rgb average{screen_byte(light[0] / count), screen_byte(light[1] / count),
-                      screen_byte(light[2] / count)};
+    const Rgb average = as_color({light[0] / count, light[1] / count, light[2] / count});
     for (std::size_t i = first; i < last; ++i) {
       colors[fine[i].second] = average;
     }

@@ -29,8 +29,6 @@ std::string path_beside(const std::string& path, const std::string& name);
 /// One spelling of a path, links followed as far as it exists; the path itself where that fails.
 std::string canonical_path(const std::string& path);
 
-// Whether a word is a generator's, for who wants no scene of it.
-
 /// Whether `parse_generator` (generators.h) takes it, or says what is wrong with it.
 bool is_generator(const std::string& word);
 

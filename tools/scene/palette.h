@@ -21,7 +21,6 @@
 
 namespace thimble::tools {
 
-/// A plain one.
 Material colored(Rgb color);
 /// What palette index 0 looks like.
 Material default_material();
@@ -113,7 +112,6 @@ class PaletteMap {
   struct Swatch;
 
  private:
-  /// Gives the entries the average of their bins.
   void average_entries(const ColorHistogram& histogram);
   /// 0 where no entry glows, or all do.
   std::uint8_t nearest_entry(const std::array<std::uint8_t, 3>& color, bool glows) const;

@@ -174,6 +174,15 @@ class Columns {
   std::vector<Ends> ends_;
 };
 
+SceneShape shape_in_frames(const SceneSource& source, int threads) {
+  BuildOptions options;
+  options.threads = threads;
+  const auto whole = std::make_shared<const BuiltScene>(*source.in_frames(), options);
+  SceneShape shape = shape_of(*whole);
+  shape.owner = whole;
+  return shape;
+}
+
 }  // namespace
 
 std::array<Vec3i, 8> box_corners(const VoxelBox& box) {
@@ -211,25 +220,11 @@ SceneShape shape_of(const BuiltScene& built) {
   return shape;
 }
 
-namespace {
-
-SceneShape shape_in_frames(const SceneSource& source, int threads) {
-  BuildOptions options;
-  options.threads = threads;
-  const auto whole = std::make_shared<const BuiltScene>(*source.in_frames(), options);
-  SceneShape shape = shape_of(*whole);
-  shape.owner = whole;
-  return shape;
-}
-
-}  // namespace
-
 SceneShape shape_of(const SceneSource& source, const BuiltScene& built) {
   return source.in_frames() == nullptr ? shape_of(built) : shape_in_frames(source, built.threads());
 }
-
 SceneShape shape_of(const SceneSource& source, const CompactTree& tree) {
-  return source.in_frames() == nullptr ? shape_of(tree) : shape_in_frames(source, BuildOptions().threads);
+  return source.in_frames() == nullptr ? shape_of(tree) : shape_in_frames(source, 1);
 }
 
 }  // namespace thimble::tools

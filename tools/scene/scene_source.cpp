@@ -7,7 +7,6 @@
 #include "readers/read_any.h"
 #include "readers/text.h"
 #include "scene/generators.h"
-#include "scene/mesh_shade.h"
 #include "scene/named_scenes.h"
 #include "scene/palette.h"
 #include "scene/voxelise.h"

@@ -19,9 +19,7 @@ constexpr std::int32_t kDimmest = 72;  // of a star's brightest channel, before 
 
 struct Axis {
   std::int64_t x, y, z;
-  std::int64_t along(std::int64_t dx, std::int64_t dy, std::int64_t dz) const {
-    return (x * dx + y * dy + z * dz) >> kAxisBits;
-  }
+  std::int64_t along(const Axis& way) const { return (x * way.x + y * way.y + z * way.z) >> kAxisBits; }
 };
 
 Axis axis_of(const Real3& v) {
@@ -57,7 +55,7 @@ class Sky {
     near_ = INT64_MAX;
     far_ = INT64_MIN;
     for (const Vec3i& corner : box_corners(canvas.tree->bounds())) {
-      const std::int64_t depth = depth_of(corner);
+      const std::int64_t depth = forward_.along(from_eye_to(corner, 0));
       near_ = std::min(near_, depth);
       far_ = std::max(far_, depth);
     }
@@ -75,16 +73,14 @@ class Sky {
   // False where it lies behind the eye or beside those rows of the picture.
   bool shine(const Vec3i& corner, int level, std::uint8_t material, RowRange rows, Star* star) const {
     const std::int64_t half = std::int64_t{Q8::kOne / 2} << level;
-    const std::int64_t dx = std::int64_t{corner.x} * Q8::kOne + half - eye_.x.raw;
-    const std::int64_t dy = std::int64_t{corner.y} * Q8::kOne + half - eye_.y.raw;
-    const std::int64_t dz = std::int64_t{corner.z} * Q8::kOne + half - eye_.z.raw;
-    const std::int64_t depth = forward_.along(dx, dy, dz);
+    const Axis from_eye = from_eye_to(corner, half);
+    const std::int64_t depth = forward_.along(from_eye);
     const bool perspective = canvas_.framing->kept.is_perspective;
     if (perspective && depth < Q8::kOne / 4) {
       return false;
     }
     const std::int64_t divisor = perspective ? depth : Q8::kOne;
-    star->y_q8 = camera_.height_px() * 128 + floor_divide(down_.along(dx, dy, dz) * pixels_q8_, divisor);
+    star->y_q8 = camera_.height_px() * 128 + floor_divide(down_.along(from_eye) * pixels_q8_, divisor);
     const std::int64_t side =
         (pixels_q8_ << level) * (perspective ? Q8::kOne : 1) / (perspective ? divisor : 1);
     const std::int64_t ratio_q8 =
@@ -94,7 +90,7 @@ class Sky {
         star->y_q8 - star->radius_q8 >= (rows.first + rows.count) * 256LL) {
       return false;
     }
-    star->x_q8 = camera_.width_px() * 128 + floor_divide(right_.along(dx, dy, dz) * pixels_q8_, divisor);
+    star->x_q8 = camera_.width_px() * 128 + floor_divide(right_.along(from_eye) * pixels_q8_, divisor);
     if (star->x_q8 + star->radius_q8 <= 0 || star->x_q8 - star->radius_q8 >= camera_.width_px() * 256LL) {
       return false;
     }
@@ -116,10 +112,10 @@ class Sky {
   }
 
  private:
-  std::int64_t depth_of(const Vec3i& corner) const {
-    return forward_.along(std::int64_t{corner.x} * Q8::kOne - eye_.x.raw,
-                          std::int64_t{corner.y} * Q8::kOne - eye_.y.raw,
-                          std::int64_t{corner.z} * Q8::kOne - eye_.z.raw);
+  // In 1/256 voxel, to what lies `half` of them beyond the corner on each axis.
+  Axis from_eye_to(const Vec3i& corner, std::int64_t half) const {
+    const auto way = [&](int axis) { return std::int64_t{corner[axis]} * Q8::kOne + half - eye_[axis].raw; };
+    return {way(0), way(1), way(2)};
   }
 
   const LookCanvas& canvas_;
@@ -135,7 +131,7 @@ class Sky {
   std::int64_t middle_ = 0;
 };
 
-// Adds a star's light to the rows first .. first + rows - 1.
+// Adds a star's light to those rows.
 void add_star(const Sky::Star& star, std::int32_t width, RowRange rows, std::uint32_t* sums) {
   const std::int64_t r = star.radius_q8;
   const std::int64_t square = r * r;
@@ -162,10 +158,6 @@ void add_star(const Sky::Star& star, std::int32_t width, RowRange rows, std::uin
   }
 }
 
-std::uint32_t brightest(const std::uint32_t* sum) {
-  return std::max({sum[0], sum[1], sum[2]});
-}
-
 // Greys of logarithmic steps, to find a middle among them.
 int step_of(std::uint32_t value) {
   int bits = 0;
@@ -187,6 +179,7 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
       canvas.work.size / (kStarBytes * static_cast<std::size_t>(width)), static_cast<std::size_t>(height)));
   const Sky sky(canvas, canvas.tree->voxel_count());
   auto* const sums = reinterpret_cast<std::uint32_t*>(canvas.work.data);
+  const std::size_t line = 3 * static_cast<std::size_t>(width);
   // The light of some rows, a part of them on each thread. Sums do not depend on who adds to them when.
   const auto gather = [&](std::int32_t first, std::int32_t rows) {
     const auto parts = std::min(canvas.threads, rows);
@@ -195,12 +188,8 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
         return static_cast<std::int32_t>(static_cast<std::int64_t>(number) * rows / parts);
       };
       const RowRange own{first + cut(part), cut(part + 1) - cut(part)};
-      std::uint32_t* const own_sums = sums + std::size_t{3} * static_cast<std::size_t>(width) *
-                                                 static_cast<std::size_t>(own.first - first);
-      std::fill(
-          own_sums,
-          own_sums + std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(own.count),
-          0U);
+      std::uint32_t* const own_sums = sums + line * static_cast<std::size_t>(own.first - first);
+      std::fill_n(own_sums, line * static_cast<std::size_t>(own.count), 0U);
       walk_blocks(*canvas.tree, [&](const Vec3i& corner, int level, std::uint8_t material) {
         Sky::Star star{};
         if (sky.shine(corner, level, material, own, &star)) {
@@ -215,8 +204,8 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
   for (std::int32_t y = 0; y < height; y += at_once) {
     const std::int32_t rows = std::min(at_once, height - y);
     gather(y, rows);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
-      const std::uint32_t value = brightest(sums + 3 * i);
+    for (std::size_t i = 0; i < line * static_cast<std::size_t>(rows); i += 3) {
+      const std::uint32_t value = std::max({sums[i], sums[i + 1], sums[i + 2]});
       counts[static_cast<std::size_t>(step_of(value))] += value != 0 ? 1 : 0;
       lit += value != 0 ? 1 : 0;
     }
@@ -248,11 +237,9 @@ Status paint_stars(const LookCanvas& canvas, const Progress& progress, Painting*
       }
       std::uint8_t* const pixel = image.pixels.data() + 3 * (first + i);
       for (std::size_t c = 0; c < 3; ++c) {
-        if (!image.alpha.empty()) {
-          pixel[c] = static_cast<std::uint8_t>(most == 0 ? 0 : shown[c] * 255 / most);
-        } else {
-          pixel[c] = static_cast<std::uint8_t>(shown[c] + behind[c] * (255 - shown[c]) / 255);
-        }
+        pixel[c] =
+            static_cast<std::uint8_t>(image.alpha.empty() ? shown[c] + behind[c] * (255 - shown[c]) / 255
+                                                          : shown[c] * 255 / std::max(most, 1U));
       }
       if (!image.alpha.empty()) {
         image.alpha[first + i] = static_cast<std::uint8_t>(most);

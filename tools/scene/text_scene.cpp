@@ -16,13 +16,13 @@ namespace {
 
 using MaterialMap = std::array<std::uint8_t, 256>;
 
-// A model where it stands.
+// A part where it stands.
 struct Placement {
-  std::shared_ptr<const OpenedModel> model;
   const SceneText::Part* part = nullptr;
-  std::array<std::int32_t, 3> size{};  // of its box, unturned
-  VoxelBox solid;                      // what it fills of the world, before anything is cut off
-  MaterialMap material{};
+  std::shared_ptr<const OpenedModel> model{};  // null: it is a box or a ball
+  std::array<std::int32_t, 3> size{};          // of the model's box, unturned
+  VoxelBox solid;                              // what it fills of the world, before anything is cut off
+  MaterialMap material{};                      // of the model's; of a box or a ball the first
 };
 
 Vec3i placed(const Placement& placement, const Vec3i& voxel) {
@@ -57,10 +57,6 @@ VoxelBox box_of_ball(const SceneText::Part& ball) {
   return box;
 }
 
-VoxelBox box_of(const SceneText::Part& part) {
-  return part.kind == SceneText::PartKind::kBox ? VoxelBox{part.low, part.high} : box_of_ball(part);
-}
-
 VoxelBox cut(const VoxelBox& box, std::int32_t side) {
   VoxelBox result;
   for (int axis = 0; axis < 3; ++axis) {
@@ -85,10 +81,14 @@ class TextScene {
     facts_.placements = text.parts.size();
     facts_.lighting.emplace();
     facts_.extent = {1, 1, 1};
-    models_.reserve(text_.parts.size());
     for (const SceneText::Part& part : text_.parts) {
+      Placement& placement = placements_.emplace_back();
+      placement.part = &part;
       if (part.kind == SceneText::PartKind::kModel) {
-        add_model(part, arguments.scene, opening, progress);
+        add_model(arguments.scene, opening, progress, &placement);
+      } else {
+        placement.solid =
+            part.kind == SceneText::PartKind::kBox ? VoxelBox{part.low, part.high} : box_of_ball(part);
       }
     }
     choose_level(arguments.depth);
@@ -99,39 +99,38 @@ class TextScene {
     facts_.camera = text_.camera;
     facts_.single_material = materials_ <= 1;
     // A box's or a ball's material has a colour, and so has what replaces a model's.
-    const bool stated = std::any_of(text_.parts.begin(), text_.parts.end(), [](const SceneText::Part& part) {
-      return part.kind != SceneText::PartKind::kModel || part.replaces;
-    });
-    facts_.has_colors = !facts_.single_material || stated ||
-                        std::any_of(models_.begin(), models_.end(),
-                                    [](const Placement& each) { return each.model->source->has_colors(); });
+    facts_.has_colors =
+        !facts_.single_material ||
+        std::any_of(placements_.begin(), placements_.end(), [](const Placement& each) {
+          return each.model == nullptr || each.part->replaces || each.model->source->has_colors();
+        });
   }
 
   const SourceFacts& facts() const { return facts_; }
   // Hands what its models were read from, and what was said of them, on to `source`.
   void add_models_to(SceneSource* source) const {
-    for (const Placement& model : models_) {
-      for (const std::string& file : model.model->source->files()) {
-        source->add_file(file);
+    for (const Placement& each : placements_) {
+      if (each.model != nullptr) {
+        for (const std::string& file : each.model->source->files()) {
+          source->add_file(file);
+        }
+        source->add_notes(each.model->source->notes());
       }
-      source->add_notes(model.model->source->notes());
     }
   }
 
   void stream_blocks(const VisitBlock& visit) const {
-    std::size_t model = 0;
-    for (std::size_t i = 0; i < text_.parts.size(); ++i) {
-      switch (text_.parts[i].kind) {
-        case SceneText::PartKind::kModel:
-          stream_model(models_[model++], visit);
-          break;
-        case SceneText::PartKind::kBox:
-          stream_box(text_.parts[i], part_material_[i], visit);
-          break;
-        case SceneText::PartKind::kBall:
-          stream_ball(text_.parts[i], part_material_[i], visit);
-          break;
+    for (const Placement& each : placements_) {
+      if (each.model != nullptr) {
+        stream_model(each, visit);
+        continue;
       }
+      const VoxelBox box = cut(each.solid, side());
+      const auto filled = [&](const Vec3i& corner, int level) {
+        return each.part->kind == SceneText::PartKind::kBox ? filled_by_box(box, corner, level)
+                                                            : filled_by_ball(*each.part, corner, level);
+      };
+      stream_filled({}, facts_.level, filled, each.material[0], visit);
     }
   }
 
@@ -173,51 +172,43 @@ class TextScene {
     }
   }
 
-  void stream_box(const SceneText::Part& part, std::uint8_t material, const VisitBlock& visit) const {
-    const VoxelBox box = cut(box_of(part), side());
-    const auto filled = [&](const Vec3i& corner, int level) {
-      bool within = true;
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t low = corner[axis];
-        const std::int32_t high = low + (std::int32_t{1} << level);
-        if (low >= box.high[axis] || high <= box.low[axis]) {
-          return Filled::kNothing;
-        }
-        within = within && low >= box.low[axis] && high <= box.high[axis];
+  static Filled filled_by_box(const VoxelBox& box, const Vec3i& corner, int level) {
+    bool within = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t low = corner[axis];
+      const std::int32_t high = low + (std::int32_t{1} << level);
+      if (low >= box.high[axis] || high <= box.low[axis]) {
+        return Filled::kNothing;
       }
-      return within ? Filled::kAll : Filled::kSome;
-    };
-    stream_filled({}, facts_.level, filled, material, visit);
+      within = within && low >= box.low[axis] && high <= box.high[axis];
+    }
+    return within ? Filled::kAll : Filled::kSome;
   }
 
-  // The voxels whose centres lie in the ball.
-  void stream_ball(const SceneText::Part& part, std::uint8_t material, const VisitBlock& visit) const {
-    const std::int64_t reach = std::int64_t{part.radius_q8} * part.radius_q8;
-    const auto filled = [&](const Vec3i& corner, int level) {
-      std::int64_t nearest = 0;
-      std::int64_t farthest = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        // From the ball's centre to the centres of the block's first and last voxel.
-        const std::int64_t first =
-            std::int64_t{corner[axis]} * Q8::kOne + Q8::kOne / 2 - part.center[axis].raw;
-        const std::int64_t last = first + ((std::int64_t{1} << level) - 1) * Q8::kOne;
-        nearest += first > 0 ? first * first : last < 0 ? last * last : 0;
-        farthest += std::max(first * first, last * last);
-      }
-      return farthest <= reach ? Filled::kAll : nearest > reach ? Filled::kNothing : Filled::kSome;
-    };
-    stream_filled({}, facts_.level, filled, material, visit);
+  // By the voxels whose centres lie in the ball.
+  static Filled filled_by_ball(const SceneText::Part& ball, const Vec3i& corner, int level) {
+    const std::int64_t reach = std::int64_t{ball.radius_q8} * ball.radius_q8;
+    std::int64_t nearest = 0;
+    std::int64_t farthest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      // From the ball's centre to the centres of the block's first and last voxel.
+      const std::int64_t first = std::int64_t{corner[axis]} * Q8::kOne + Q8::kOne / 2 - ball.center[axis].raw;
+      const std::int64_t last = first + ((std::int64_t{1} << level) - 1) * Q8::kOne;
+      nearest += first > 0 ? first * first : last < 0 ? last * last : 0;
+      farthest += std::max(first * first, last * last);
+    }
+    return farthest <= reach ? Filled::kAll : nearest > reach ? Filled::kNothing : Filled::kSome;
   }
 
-  void add_model(const SceneText::Part& part, const std::string& own_path, SceneOpening* opening,
-                 const Progress& progress) {
+  void add_model(const std::string& own_path, SceneOpening* opening, const Progress& progress,
+                 Placement* placement) {
+    Placement& model = *placement;
+    const SceneText::Part& part = *model.part;
     SceneArguments arguments;
     arguments.scene = part.file;
     arguments.depth = part.depth;
     arguments.as_voxels = part.as_voxels;
     arguments.z_up = part.z_up;
-    Placement& model = models_.emplace_back();
-    model.part = &part;
     try {
       const bool is_generated = parse_generator(part.file).has_value();
       if (!is_generated) {
@@ -274,20 +265,13 @@ class TextScene {
   void choose_level(const std::optional<int>& asked) {
     std::int32_t largest = 1;
     TextPlace largest_place{1, 1};
-    const auto need = [&](const VoxelBox& box, const TextPlace& place) {
-      const std::int32_t end = std::max({box.high.x, box.high.y, box.high.z});
-      if (!box.empty() && end > largest) {
-        largest = end;
-        largest_place = place;
-      }
-    };
     // What is cut off at a given depth counts for the depth when nobody gives one.
-    for (const Placement& model : models_) {
-      need(model.solid, model.part->place);
-    }
-    for (const SceneText::Part& part : text_.parts) {
-      if (part.kind != SceneText::PartKind::kModel) {
-        need(box_of(part), part.place);
+    for (const Placement& each : placements_) {
+      const Vec3i& high = each.solid.high;
+      const std::int32_t end = std::max({high.x, high.y, high.z});
+      if (!each.solid.empty() && end > largest) {
+        largest = end;
+        largest_place = each.part->place;
       }
     }
     int& level = facts_.level;
@@ -301,56 +285,51 @@ class TextScene {
   }
 
   void check_parts() {
-    for (const Placement& model : models_) {
-      const VoxelBox& box = model.solid;
-      const VoxelBox kept = cut(box, side());
-      fail_if(!model.part->crop && !(kept == box), model.part->place, "the model's voxels from ",
-              corner_text(box.low), " to ", corner_text(box.high), " leave the world of ", side(),
-              " voxels a side (depth ", facts_.level, "); crop cuts them off");
-      take(kept, model.model->voxels);
-    }
     std::uint64_t primitive_voxels = 0;
-    for (const SceneText::Part& part : text_.parts) {
-      if (part.kind == SceneText::PartKind::kModel) {
-        continue;
+    for (const Placement& each : placements_) {
+      const VoxelBox& box = each.solid;
+      const VoxelBox kept = cut(box, side());
+      const TextPlace& place = each.part->place;
+      std::uint64_t voxels = 0;
+      if (each.model != nullptr) {
+        fail_if(!each.part->crop && !(kept == box), place, "the model's voxels from ", corner_text(box.low),
+                " to ", corner_text(box.high), " leave the world of ", side(), " voxels a side (depth ",
+                facts_.level, "); crop cuts them off");
+        voxels = each.model->voxels;
+      } else {
+        fail_if(kept.empty(), place, "all of this lies outside the world of ", side(),
+                " voxels a side (depth ", facts_.level, ")");
+        voxels = std::uint64_t{1} * static_cast<std::uint64_t>(kept.high.x - kept.low.x) *
+                 static_cast<std::uint64_t>(kept.high.y - kept.low.y) *
+                 static_cast<std::uint64_t>(kept.high.z - kept.low.z);
+        primitive_voxels += voxels;
+        fail_if(primitive_voxels > kMostPrimitiveVoxels, place, "boxes and balls up to here hold ",
+                grouped(primitive_voxels), " voxels, the limit is ", grouped(kMostPrimitiveVoxels));
       }
-      const VoxelBox box = cut(box_of(part), side());
-      fail_if(box.empty(), part.place, "all of this lies outside the world of ", side(),
-              " voxels a side (depth ", facts_.level, ")");
-      const std::uint64_t volume = std::uint64_t{1} * static_cast<std::uint64_t>(box.high.x - box.low.x) *
-                                   static_cast<std::uint64_t>(box.high.y - box.low.y) *
-                                   static_cast<std::uint64_t>(box.high.z - box.low.z);
-      primitive_voxels += volume;
-      fail_if(primitive_voxels > kMostPrimitiveVoxels, part.place, "boxes and balls up to here hold ",
-              grouped(primitive_voxels), " voxels, the limit is ", grouped(kMostPrimitiveVoxels));
-      take(box, volume);
-    }
-  }
-
-  void take(const VoxelBox& box, std::uint64_t voxels) {
-    facts_.points += voxels;
-    for (int axis = 0; axis < 3 && !box.empty(); ++axis) {
-      std::int32_t& end = (*facts_.extent)[static_cast<std::size_t>(axis)];
-      end = std::max(end, box.high[axis]);
+      facts_.points += voxels;
+      for (int axis = 0; axis < 3 && !kept.empty(); ++axis) {
+        std::int32_t& end = (*facts_.extent)[static_cast<std::size_t>(axis)];
+        end = std::max(end, kept.high[axis]);
+      }
     }
   }
 
   // What only the world's size decides.
   void check_numbers() {
-    const auto in_reach = [this](std::int32_t raw) {
-      return raw >= kMinOriginWorlds * (Q8::kOne << facts_.level) &&
-             raw <= kMaxOriginWorlds * (Q8::kOne << facts_.level);
+    const auto in_reach = [this](const Vec3i& at) {
+      const std::int32_t world = Q8::kOne << facts_.level;
+      const auto [least, most] = std::minmax({at.x, at.y, at.z});
+      return least >= kMinOriginWorlds * world && most <= kMaxOriginWorlds * world;
     };
     const std::string limits =
         concat(kMinOriginWorlds * side(), " to ", kMaxOriginWorlds * side(), " (-4 to 5 world sizes)");
     for (const SceneText::PlacedLight& each : text_.lights) {
-      const Vec3i at = each.light.place;
-      fail_if(each.light.is_point && !(in_reach(at.x) && in_reach(at.y) && in_reach(at.z)), each.place,
+      fail_if(each.light.is_point && !in_reach(each.light.place), each.place,
               "the lamp is outside the accepted ", limits);
     }
     if (text_.camera) {
       const Vec3Q8& eye = text_.camera->eye;
-      fail_if(!(in_reach(eye.x.raw) && in_reach(eye.y.raw) && in_reach(eye.z.raw)), text_.camera_place,
+      fail_if(!in_reach({eye.x.raw, eye.y.raw, eye.z.raw}), text_.camera_place,
               "the eye of the camera is outside the accepted ", limits);
       Camera camera;
       fail_if(set_camera(*text_.camera, 1, 1, facts_.level, &camera) == Status::kBadArgument,
@@ -387,19 +366,16 @@ class TextScene {
   }
 
   void merge_palettes() {
-    part_material_.resize(text_.parts.size());
-    std::size_t number = 0;
-    for (std::size_t i = 0; i < text_.parts.size(); ++i) {
-      const SceneText::Part& part = text_.parts[i];
-      if (part.kind != SceneText::PartKind::kModel) {
+    for (Placement& each : placements_) {
+      const SceneText::Part& part = *each.part;
+      if (each.model == nullptr) {
         const SceneText::NamedSurface& named = text_.materials[part.material];
-        part_material_[i] = named_material(named, named.surface, part.place);
+        each.material[0] = named_material(named, named.surface, part.place);
         continue;
       }
-      Placement& model = models_[number];
-      const LitDescription lit = model.model->source->lighting();
+      const LitDescription lit = each.model->source->lighting();
       for (std::size_t index = 0; index < 256; ++index) {
-        if (!model.model->used.is[index]) {
+        if (!each.model->used.is[index]) {
           continue;
         }
         Surface surface = lit.surfaces[index];
@@ -408,12 +384,11 @@ class TextScene {
           const Rgb8 own = surface.albedo;
           surface = named.surface;
           surface.albedo = named.has_color ? surface.albedo : own;
-          model.material[index] = named_material(named, surface, part.place);
+          each.material[index] = named_material(named, surface, part.place);
           continue;
         }
-        model.material[index] = world_material(surface, part.place);
+        each.material[index] = world_material(surface, part.place);
       }
-      ++number;
     }
   }
 
@@ -435,8 +410,7 @@ class TextScene {
   }
 
   SceneText text_;
-  std::vector<Placement> models_;  // in the order of the parts
-  std::vector<std::uint8_t> part_material_;
+  std::vector<Placement> placements_;  // of the parts
   SourceFacts facts_;
   std::size_t materials_ = 0;
   std::uint64_t surveyed_ = 0;  // voxels of models

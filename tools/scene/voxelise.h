@@ -105,7 +105,7 @@ std::vector<UnitPoint> quantise_vertices(const TriangleMesh& mesh, int level, bo
 void voxelise_triangle(const UnitTriangle& triangle,
                        const std::function<void(const UnitPoint& voxel)>& visit);
 
-/// Whether its voxels have colours of their own (mesh_shade.h).
+/// Whether its voxels have colours of their own (below).
 bool is_shaded(const TriangleMesh& mesh);
 /// Streams the voxels of `mesh` in a world of 2^level voxels a side (level 1..12). `colors` may be null:
 /// then, as for a mesh without colours, everything is material 0. `progress` may be empty. InputError "no
@@ -120,7 +120,7 @@ bool is_shaded(const TriangleMesh& mesh);
 ///
 /// A mesh with colours or pictures goes twice, so that of the triangles that meet a voxel the last one counts that its middle is
 /// over, and only without one the last of all: an edge does not bleed into what is beside it. Voxels have colours of
-/// their own (mesh_shade.h), and none comes where all is clear.
+/// their own (below), and none comes where all is clear.
 void voxelise(const TriangleMesh& mesh, int level, bool z_up, const PaletteMap* colors, const BlockSink& sink,
               const Progress& progress = {});
 
@@ -137,7 +137,6 @@ struct TriangleBlock {
 UnitPoint voxel_of(const UnitPoint& corner, std::uint64_t mask);
 /// Of eight parts, bit a of `child` says the upper half of axis a.
 TriangleBlock child_of(const TriangleBlock& block, int child);
-/// Whether the triangle meets the block.
 bool meets_block(const TriangleBoxTest& test, const TriangleBlock& block);
 
 /// A triangle and which of its voxels count.
@@ -166,5 +165,23 @@ void voxelise_cells(std::span<const CellTriangle> triangles, int level, const Bl
 void voxelise_triangles(std::size_t count, std::size_t passes,
                         const std::function<CellTriangle(std::size_t)>& triangle_at, int level,
                         const CellShade& shade, const BlockSink& sink, const Progress& progress);
+
+// Voxels of meshes with colours or pictures.
+//
+// A voxel has the colour of its triangle next to the voxel's middle: the face's, or that of the corners mixed there, times
+// that of the picture, averaged as light over as much of it as a voxel covers. Where that is clear, the triangle gives no voxel; nor does its edge where the middle is
+// beyond it and the picture, which continues there on a neighbour, is clear. A voxel that gives off a tenth of a screen's
+// white, and more than it has of a colour, is of that light alone.
+
+/// `voxelise` of a mesh that `is_shaded`; the material of a voxel is what `material_of` says of its colour and, where it
+/// glows, its power (ColorHistogram), once or more often a voxel. Memory: 12 bytes a vertex, 19 more with a colour, and 24 a triangle that may
+/// be clear; cell by cell 88 a triangle more, and the lists.
+/// @throws InputError  no triangles, or so many clear ones over each other that it does not end
+void voxelise_shaded(const TriangleMesh& mesh, int level, bool z_up,
+                     const std::function<std::uint8_t(Rgb, std::uint32_t power_q8)>& material_of,
+                     const BlockSink& sink, const Progress& progress);
+
+/// For PaletteMap: the colours of its voxels in a world of 2^level, for which it is voxelised. Empty when it has none.
+ColorHistogram mesh_colors(const TriangleMesh& mesh, int level, bool z_up);
 
 }  // namespace thimble::tools

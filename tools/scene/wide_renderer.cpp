@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "scene/built_scene.h"
+#include "scene/workers.h"
 #include "wide/raster/renderer.h"
 #include "wide/rays/ray_map.h"
 #include "wide/threads.h"
@@ -124,6 +125,13 @@ FirstHits wide_first_hits(BuiltScene* built) {
     return nullptr;
   }
   return [map](Span<const Ray> rays, Span<Hit> hits) { return wide::first_hit(map, rays, hits); };
+}
+
+void each_task(std::size_t tasks, int threads,
+               const std::function<void(std::size_t task, std::size_t worker)>& run) {
+  wide::Threads(threads).each(static_cast<int>(tasks), [&](int task, int thread) {
+    run(static_cast<std::size_t>(task), static_cast<std::size_t>(thread));
+  });
 }
 
 }  // namespace thimble::tools

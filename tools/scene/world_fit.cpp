@@ -30,6 +30,14 @@ double longest(const Bounds& bounds) {
   return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
 }
 
+[[noreturn]] void refuse(const char* counts_in, const CloudPoint& point, std::int32_t side) {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "%s %llu: (%.10g, %.10g, %.10g) is outside the world's voxels 0..%d on an axis", counts_in,
+                static_cast<unsigned long long>(point.line), point.x, point.y, point.z, side - 1);
+  throw InputError(text);
+}
+
 }  // namespace
 
 WorldFit::WorldFit(const Bounds& bounds, int level) : center_{}, center_units_{}, half_extent_(0) {
@@ -60,18 +68,6 @@ std::array<std::int32_t, 3> WorldFit::units(const std::array<double, 3>& positio
   }
   return result;
 }
-
-namespace {
-
-[[noreturn]] void refuse(const char* counts_in, const CloudPoint& point, std::int32_t side) {
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "%s %llu: (%.10g, %.10g, %.10g) is outside the world's voxels 0..%d on an axis", counts_in,
-                static_cast<unsigned long long>(point.line), point.x, point.y, point.z, side - 1);
-  throw InputError(text);
-}
-
-}  // namespace
 
 PointSurvey survey_points(const PointCloud& cloud) {
   constexpr std::size_t kMostSamples = std::size_t{1} << 16;

@@ -5,7 +5,6 @@
 #include <stdint.h>
 
 #include "scene/backdrop.h"
-#include "scene/tone_table.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
 #include "thimble/picture/shading.h"

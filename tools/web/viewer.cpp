@@ -10,7 +10,6 @@
 #include "scene/backdrop.h"
 #include "scene/magnify.h"
 #include "scene/moving_pool.h"
-#include "scene/tone_table.h"
 #include "thimble/base/memory.h"
 #include "thimble/light/render.h"
 #include "thimble/light/scene.h"
