@@ -8,7 +8,6 @@
 #include "output/hit_rows.h"
 #include "output/units.h"
 #include "readers/source.h"
-#include "scene/painter.h"
 #include "thimble/picture/anytime.h"
 
 namespace thimble::tools {
@@ -93,14 +92,6 @@ std::vector<Knob<Setting>> plain_knobs(int depth) {
            }}};
 }
 
-// Every knob at its best, with at most `most_across`^2 samples a pixel.
-Setting best_setting(int most_across) {
-  Setting setting;
-  setting.quality.across = most_across;
-  setting.direction_bits = kMaxDirectionBits;
-  return setting;
-}
-
 template <int LightSetting::*kKnob>
 void set_light(LightSetting* setting, double value) {
   setting->*kKnob = static_cast<int>(value);
@@ -129,9 +120,7 @@ class LightStudio {
           surface.roughness != 0) {
         own_.roughness_rays = 4;
       }
-    }
-    for (Surface& surface : polished_.surfaces) {
-      surface.roughness = 0;
+      polished_.surfaces[material].roughness = 0;
     }
   }
 
@@ -207,8 +196,8 @@ struct Prepared {
 class AccuracyStudio {
  public:
   AccuracyStudio(const SceneSource& source, BuiltScene* built, const AccuracyOptions& options)
-      : source_(source), built_(*built), options_(options) {
-    camera_ = frame_scene(options.view, source, {built->level(), built->bounds()}).camera;
+      : source_(source), built_(*built), options_(options), shape_{built->level(), built->bounds()} {
+    camera_ = frame_scene(options.view, source, shape_).camera;
     shading_ = scene_shading(options.shade, {built->palette().data(), built->palette().size()}, camera_,
                              built->bounds());
     Quality cutting;
@@ -220,9 +209,8 @@ class AccuracyStudio {
   Prepared prepare(const Setting& setting) const {
     ViewWishes view = options_.view;
     view.direction_bits = setting.direction_bits;
-    const Camera camera = frame_scene(view, source_, {built_.level(), built_.bounds()}).camera;
-    const Camera fine =
-        frame_scene(finer(view, setting.quality.across), source_, {built_.level(), built_.bounds()}).camera;
+    const Camera camera = frame_scene(view, source_, shape_).camera;
+    const Camera fine = frame_scene(finer(view, setting.quality.across), source_, shape_).camera;
     return {camera, fine, QualityFrame(built_, setting.quality, camera, fine, shading_, colors_)};
   }
 
@@ -299,6 +287,7 @@ class AccuracyStudio {
   const SceneSource& source_;
   const BuiltScene& built_;
   const AccuracyOptions& options_;
+  SceneShape shape_;  // its bounds alone
   Camera camera_;
   Shading shading_;
   NodeColors colors_;
@@ -336,8 +325,9 @@ constexpr std::uint32_t kFirstVisits = 256;
 // The setting with the most samples and bits that this view can have: a fine picture may be too large or too
 // fine.
 Prepared prepare_reference(const AccuracyStudio& studio, AccuracyStudy* study) {
+  study->reference.direction_bits = kMaxDirectionBits;
   for (int across = kMaxSamplesAcross;; --across) {
-    study->reference = best_setting(across);
+    study->reference.quality.across = across;
     try {
       Prepared best = studio.prepare(study->reference);
       if (across < kMaxSamplesAcross) {
@@ -369,10 +359,9 @@ std::vector<Prepared> prepare_trials(const AccuracyStudio& studio, int level, Ac
       reason = error.what();
       continue;
     }
-    AccuracyRow row;
+    AccuracyRow& row = study->rows.emplace_back();
     row.group = trial.group;
     row.setting = trial.setting;
-    study->rows.push_back(row);
   }
   if (!left_out.empty()) {
     study->notes.push_back(
@@ -390,13 +379,12 @@ void add_work_rows(AccuracyStudio& studio, const Prepared& plain, const Pixels& 
        visits *= 2) {
     AnytimeFrame frame;
     studio.refine(plain.camera, visits, &memory, &frame);
-    WorkRow row;
+    WorkRow& row = study->work.emplace_back();
     row.given_visits = visits;
     row.inexact_px = frame.inexact();
     row.error_bound_grays = frame.mean_error_bound_q8() / 256.0;
     row.mean_error_grays = mean_gray_error(memory, exact);
     row.picture.group = "anytime";
-    study->work.push_back(row);
     if (visits > UINT32_MAX / 2) {
       study->notes.emplace_back("any-time frames end at " + grouped(visits) + " node visits here");
       return;
@@ -520,10 +508,9 @@ AccuracyStudy study_accuracy(const SceneSource& source, BuiltScene* built, const
   study.effects = light.effects();
   study.light_reference = light.best();
   for (const auto& trial : light.trials()) {
-    AccuracyRow row;
+    AccuracyRow& row = study.light.emplace_back();
     row.group = trial.group;
     row.light = trial.setting;
-    study.light.push_back(row);
   }
   Pixels light_reference;
   if (!study.light.empty()) {
@@ -584,14 +571,11 @@ std::string Setting::text() const {
 
 std::string LightSetting::text() const {
   std::string result;
-  const auto add = [&](const char* name, int value) {
-    if (value >= 0) {
-      result += (result.empty() ? "" : ", ") + std::string(name) + " " + std::to_string(value);
-    }
-  };
-  add("occlusion rays", occlusion_rays);
-  add("roughness rays", roughness_rays);
-  add("bounces", bounces);
+  for (const auto& [name, value] : {std::pair{"occlusion rays ", occlusion_rays},
+                                    {"roughness rays ", roughness_rays},
+                                    {"bounces ", bounces}}) {
+    result += value < 0 ? "" : (result.empty() ? "" : ", ") + (name + std::to_string(value));
+  }
   return result;
 }
 

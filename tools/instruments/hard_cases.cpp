@@ -129,6 +129,19 @@ reference::Ray through_corner(Draw& draw, std::int64_t side) {
   return through(draw, corner(draw, side), side);
 }
 
+// Along an axis, on a line of corners; beside it by at most `kBeside` for `kAlong` on the way.
+template <int kAlong, int kBeside>
+reference::Ray along_axis(Draw& draw, std::int64_t side) {
+  const auto axis = static_cast<std::size_t>(draw.from(0, 2));
+  const Components origin = beside_world(draw, side, axis);
+  Components direction{};
+  for (std::size_t other = 0; kBeside != 0 && other < 3; ++other) {
+    direction[other] = draw.from(-kBeside, kBeside);
+  }
+  direction[axis] = origin[axis] < 0 ? kAlong : -kAlong;
+  return {origin, direction};
+}
+
 struct HardCase {
   const char* name;
   int level;
@@ -164,14 +177,7 @@ const HardCase kCases[] = {
        direction[(axis + 1) % 3] = draw.from(1, 32767);
        return reference::Ray{origin, direction};
      }},
-    {"in an edge", kSmall,
-     [](Draw& draw, std::int64_t side) {
-       const auto axis = static_cast<std::size_t>(draw.from(0, 2));
-       const Components origin = beside_world(draw, side, axis);
-       Components direction{};
-       direction[axis] = origin[axis] < 0 ? 1 : -1;
-       return reference::Ray{origin, direction};
-     }},
+    {"in an edge", kSmall, along_axis<1, 0>},
     {"starts on a face", kSmall,
      [](Draw& draw, std::int64_t side) {
        Components origin = inside(draw, side);
@@ -190,17 +196,7 @@ const HardCase kCases[] = {
        origin[axis] += draw.sign();
        return reference::Ray{origin, any_direction(draw)};
      }},
-    {"almost along an axis", kSmall,
-     [](Draw& draw, std::int64_t side) {
-       const auto axis = static_cast<std::size_t>(draw.from(0, 2));
-       const Components origin = beside_world(draw, side, axis);
-       Components direction{};
-       for (std::size_t other = 0; other < 3; ++other) {
-         direction[other] = draw.from(-2, 2);
-       }
-       direction[axis] = origin[axis] < 0 ? 1048575 : -1048575;
-       return reference::Ray{origin, direction};
-     }},
+    {"almost along an axis", kSmall, along_axis<1048575, 2>},
     {"an edge, missed by the least", kSmall,
      [](Draw& draw, std::int64_t side) {
        // The order of two planes, s_a * d_b - s_b * d_a, is 1: no ray with such directions comes closer to an
@@ -269,22 +265,20 @@ reference::TextbookHit core_hit(const CompactTree& tree, const Ray& ray, Width w
   return result;
 }
 
-void judge(const reference::Hit& right, const reference::TextbookHit& answer, std::size_t tracer,
-           HardCaseRow* row) {
-  if (right.hit != answer.hit || (right.hit && right.voxel != answer.voxel)) {
-    ++row->wrong[tracer];
-  } else if (right.hit && right.axis >= 0 && right.axis != answer.axis) {
-    ++row->wrong_face[tracer];
-  }
-}
-
 void trace_all(const CaseWorld& world, const reference::Ray& ray, HardCaseRow* row) {
   const reference::Hit right = reference::walk(world.grid, ray);
   row->hits += right.hit ? 1 : 0;
   ++row->rays;
   const Ray own = core_ray(ray);
   std::size_t tracer = 0;
-  const auto next = [&](const reference::TextbookHit& answer) { judge(right, answer, tracer++, row); };
+  const auto next = [&](const reference::TextbookHit& answer) {
+    if (right.hit != answer.hit || (right.hit && right.voxel != answer.voxel)) {
+      ++row->wrong[tracer];
+    } else if (right.hit && right.axis >= 0 && right.axis != answer.axis) {
+      ++row->wrong_face[tracer];
+    }
+    ++tracer;
+  };
   next(core_hit(world.tree, own, Width::k64));
   if (accepts_32(own, world.level)) {
     next(core_hit(world.tree, own, Width::k32));

@@ -157,10 +157,8 @@ PictureError picture_error(const TracedPicture& picture, const TracedPicture& re
   PictureError error;
   error.compare_distances(picture.distances, reference.distances);
   for (std::size_t i = 0; i < picture.colors.size(); ++i) {
-    const Rgb8& a = picture.colors[i];
-    const Rgb8& b = reference.colors[i];
     const bool same_hit = (picture.distances[i] < 0) == (reference.distances[i] < 0);
-    error.wrong_px += !same_hit || a.r != b.r || a.g != b.g || a.b != b.b ? 1U : 0U;
+    error.wrong_px += same_hit && picture.colors[i] == reference.colors[i] ? 0U : 1U;
   }
   return error;
 }

@@ -85,7 +85,7 @@ struct MemoryStudy {
 /// Dense grids beyond this are counted, not filled and drawn.
 inline constexpr std::uint64_t kMostDenseBytes = std::uint64_t{128} << 20;
 
-/// Measures. Throws InputError.
+/// Throws InputError.
 MemoryStudy study_memory(const SceneSource& source, const std::string& name, const StudyOptions& options,
                          const Progress& progress);
 /// What `thimble memory --json` writes of it: an array of objects, one a depth (commands/memory.cpp).

@@ -331,16 +331,21 @@ void parallel_depth_per_t(Draw& draw, Found* found) {
 
 // --- Shading.
 
+// At any distance, by a component of the direction that is not so small that the depth would be clamped.
+Hit any_hit(Draw& draw) {
+  Hit hit;
+  hit.kind = HitKind::kHit;
+  hit.axis = 0;
+  hit.t_numerator = draw.any_size(23);
+  hit.t_denominator = 256 * draw.any_size(20);
+  return hit;
+}
+
 // In units of the bound, which has two parts.
 void planar_depths(Draw& draw, Found* found) {
   const auto made = any_camera<PerspectiveView>(draw);
   for (int i = 0; i < kPixelsACamera; ++i) {
-    Hit hit;
-    hit.kind = HitKind::kHit;
-    hit.axis = 0;
-    hit.t_numerator = draw.any_size(23);
-    // A component of the direction; not so small that the depth would be clamped.
-    hit.t_denominator = 256 * draw.from32(1, (std::int64_t{1} << draw.from(1, 20)) - 1);
+    const Hit hit = any_hit(draw);
     const Real exact = static_cast<Real>(hit.t_numerator) * made.camera.depth_per_t_q8() / hit.t_denominator;
     if (exact < INT32_MAX) {
       const Real bound = exact / (1 << kPlanarDepthErrorShift) + kPlanarDepthErrorQ8;
@@ -352,11 +357,7 @@ void planar_depths(Draw& draw, Found* found) {
 void depth_shades(Draw& draw, Found* found) {
   const auto made = any_camera<PerspectiveView>(draw);
   for (int i = 0; i < kPixelsACamera; ++i) {
-    Hit hit;
-    hit.kind = HitKind::kHit;
-    hit.axis = 0;
-    hit.t_numerator = draw.any_size(23);
-    hit.t_denominator = 256 * draw.any_size(20);
+    const Hit hit = any_hit(draw);
     Shading shading;
     shading.near_q8 = draw.from32(0, 1) == 0 ? 0 : draw.any_size(28);
     shading.far_q8 = shading.near_q8 + draw.any_size(29);
