@@ -10,10 +10,18 @@
 #include <string>
 #include <vector>
 
-#include "host/packed_picture.h"
+#include "thimble/picture/pixel.h"
 #include "thimble/picture/render.h"
 
 namespace thimble::host {
+
+/// What a display holds: rows (or pages) from the top, without gaps, row_bytes(format, width_px) each.
+struct PackedPicture {
+  std::int32_t width_px = 0;
+  std::int32_t height_px = 0;
+  PixelFormat format = PixelFormat::kRgb888;
+  std::vector<std::uint8_t> bytes;
+};
 
 class StrictDisplay {
  public:

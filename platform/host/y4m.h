@@ -5,9 +5,10 @@
 /// pixel (C444), which rounds them by up to about 2 of 255.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
-#include "host/packed_picture.h"
 #include "host/screen.h"
 
 namespace thimble::host {

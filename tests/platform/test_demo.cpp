@@ -388,8 +388,8 @@ TEST_CASE("demo: rates that are held -> squares as small as the rate leaves time
       steps.insert(step);
       const auto every = static_cast<std::size_t>(step);
       for (std::size_t frame = 0; frame < 2; ++frame) {
-        const std::vector<std::uint8_t> shown = host::expand_rgb(held.pictures[frame]);
-        const std::vector<std::uint8_t> wanted = host::expand_rgb(exact.pictures[frame]);
+        const std::vector<std::uint8_t> shown = tests::pixels_of(held.pictures[frame]);
+        const std::vector<std::uint8_t> wanted = tests::pixels_of(exact.pictures[frame]);
         REQUIRE(shown.size() == 3 * width * static_cast<std::size_t>(board.height_px));
         unsigned others = 0;
         for (std::size_t at = 0; at < shown.size(); ++at) {

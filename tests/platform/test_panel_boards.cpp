@@ -7,7 +7,6 @@
 
 #include "apps/apps.h"
 #include "boards/board_table.h"
-#include "host/packed_picture.h"
 #include "support/baked_demo.h"
 #include "support/simulated_run.h"
 #include "thimble/picture/render.h"
@@ -37,7 +36,7 @@ TEST_CASE("panel formats: applications on boards with such displays -> the pictu
           {&board, true, scene, played.application, played.hold_fps}, 3, {{{1, "b"}}, {}});
       CHECK(run.fault == "");
       CHECK(run.last.bytes.size() == band_bytes(format, 84, 43));
-      return host::expand_rgb(run.last);
+      return tests::pixels_of(run.last);
     };
     CHECK(last_picture(PixelFormat::kMono1Pages) == last_picture(PixelFormat::kMono1));
     CHECK(last_picture(PixelFormat::kGray4Low) == last_picture(PixelFormat::kGray4));

@@ -121,8 +121,7 @@ TEST_CASE("particles app: the picture -> lit where the field is set, brighter aw
   for (const std::uint32_t frame : {1U, 100U, 810U}) {
     Direct direct(golden::kParticlesStates[0]);
     direct.crc_after(frame);
-    const host::PackedPicture& picture = run.pictures[frame - 1];
-    const std::vector<std::uint8_t> grays = host::expand_gray(picture);
+    const std::vector<std::uint8_t> grays = tests::pixels_of(run.pictures[frame - 1], PixelFormat::kGray8);
     for (std::int32_t y = 0; y < 64; ++y) {
       for (std::int32_t x = 0; x < 128; ++x) {
         const std::uint8_t gray = grays[static_cast<std::size_t>(y * 128 + x)];

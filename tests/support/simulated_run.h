@@ -10,6 +10,7 @@
 
 #include "boards/board_table.h"
 #include "host/simulation.h"
+#include "output/image.h"
 
 namespace thimble::tests {
 
@@ -22,6 +23,11 @@ inline const platform::BoardFacts& board_of(const char* name) {
 /// The board that most cases are of.
 inline const platform::BoardFacts& flagship() {
   return board_of("lm3s6965evb");
+}
+
+/// r, g, b of every pixel, or what it is in another format.
+inline auto pixels_of(const host::PackedPicture& of, PixelFormat format = PixelFormat::kRgb888) {
+  return tools::converted({of.width_px, of.height_px, of.format, of.bytes}, format).pixels;
 }
 
 struct Hand {

@@ -149,8 +149,9 @@ std::string stats_text(const SimCommand& command, const SessionResult& result, c
     put_all(&json, "threads", command.engine.threads, "engine", engine);
   }
   const bool is_drawn = result.pictures != 0;
-  put_all(&json, "frame_crc32", is_drawn ? crc_of(host::expand_rgb(result.picture)) : "", "display_crc32",
-          is_drawn ? crc_of(result.picture.bytes) : "");
+  put_all(&json, "frame_crc32",
+          is_drawn ? crc_of(converted(result.picture, PixelFormat::kRgb888).pixels) : "", "display_crc32",
+          is_drawn ? crc_of(result.picture.pixels) : "");
   return json_text(json);
 }
 
@@ -186,13 +187,9 @@ int run_and_write(SimCommand* command, std::string* sentence) {
                    [&] { return read_picture(command->check_path, board.width_px, board.height_px); });
   }
   if (!command->keys_path.empty()) {
-    try {
-      session.keys = about(command->keys_path, [&] {
-        return host::KeyScript(load_file(command->keys_path, std::uint64_t{1} << 20).text());
-      });
-    } catch (const host::KeyScriptError& error) {
-      throw OutputError(command->keys_path + ": " + error.what());
-    }
+    session.keys = about(command->keys_path, [&] {
+      return KeyScript(load_file(command->keys_path, std::uint64_t{1} << 20).text());
+    });
   }
   std::vector<std::uint8_t> scene;
   if (session.application->wants_scene) {
@@ -228,8 +225,7 @@ int run_and_write(SimCommand* command, std::string* sentence) {
     *sentence = who + " drew no picture";
     return 1;
   }
-  const Image picture{board.width_px, board.height_px, PixelFormat::kRgb888,
-                      host::expand_rgb(result.picture)};
+  const Image picture = converted(result.picture, PixelFormat::kRgb888);
   if (outputs[kShot] != nullptr) {
     write_picture(outputs[kShot], command->shot_path, picture);
   }

@@ -287,7 +287,7 @@ class SimSession {
   }
 
   void take_script() {
-    for (const host::KeyScript::Step& step : options_.keys.take(simulation_.frames_asked())) {
+    for (const KeyScript::Step& step : options_.keys.take(simulation_.frames_asked())) {
       scripted_ = (scripted_ | step.press) & ~step.release;
       typed_ += step.typed;
     }
@@ -301,16 +301,16 @@ class SimSession {
     pictures_ = simulation_.display().pictures();
     ++frames_;
     seconds_ += simulation_.frame_seconds();
-    const host::PackedPicture& picture = simulation_.display().picture();
+    const Image picture = shown_image();
     const bool as_gray = options_.recording != nullptr && is_gray(picture.format);
     if (as_gray) {
-      options_.recording->write(host::y4m_gray_frame(host::expand_gray(picture)));
+      options_.recording->write(host::y4m_gray_frame(converted(picture, PixelFormat::kGray8).pixels));
     }
     if (!watched() && (as_gray || options_.recording == nullptr)) {
       return;
     }
-    const std::vector<std::uint8_t> rgb = host::expand_rgb(picture);
-    const host::Picture shown{rgb.data(), picture.width_px, picture.height_px};
+    const Image rgb = converted(picture, PixelFormat::kRgb888);
+    const host::Picture shown{rgb.pixels.data(), picture.width_px, picture.height_px};
     if (options_.recording != nullptr && !as_gray) {
       options_.recording->write(host::y4m_color_frame(shown));
     }
@@ -325,7 +325,11 @@ class SimSession {
     to->pictures = simulation_.display().pictures();
     to->rows_sent = simulation_.display().rows_sent();
     to->rows_kept = simulation_.display().rows_kept();
-    to->picture = simulation_.display().picture();
+    to->picture = shown_image();
+  }
+  Image shown_image() const {
+    const host::PackedPicture& picture = simulation_.display().picture();
+    return {picture.width_px, picture.height_px, picture.format, picture.bytes};
   }
 
   void update_status() {

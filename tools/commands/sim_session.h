@@ -7,11 +7,11 @@
 
 #include "apps/app_table.h"
 #include "boards/board_table.h"
-#include "host/key_script.h"
+#include "commands/key_script.h"
 #include "host/look.h"
-#include "host/packed_picture.h"
 #include "host/screen.h"
 #include "host/simulation.h"
+#include "output/image.h"
 #include "output/output_file.h"
 
 namespace thimble::tools {
@@ -26,7 +26,7 @@ struct SessionOptions {
   std::uint32_t frames = 0;    ///< 0: as long as it lasts
   int frames_a_second = 30;    ///< of the screen and of the recording
   std::uint32_t hold_fps = 0;  ///< the rate that the application holds (port::Facts)
-  host::KeyScript keys;
+  KeyScript keys;
   OutputFile* recording = nullptr;
   host::FramePainter* painter = nullptr;  ///< what draws in the core's place; may be null
 };
@@ -38,7 +38,7 @@ struct SessionResult {
   std::uint32_t pictures = 0;
   std::uint64_t rows_sent = 0;  ///< to the display
   std::uint64_t rows_kept = 0;  ///< left there, unchanged
-  host::PackedPicture picture;  ///< the last one
+  Image picture;                ///< the last one, in the display's format
   host::MemoryUse use;
   double mean_frame_seconds = 0;  ///< of the application on this machine
 };

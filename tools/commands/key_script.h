@@ -11,18 +11,11 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace thimble::host {
-
-/// `what()` names the line and says what is wrong with it.
-class KeyScriptError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+namespace thimble::tools {
 
 class KeyScript {
  public:
@@ -34,7 +27,7 @@ class KeyScript {
   };
 
   KeyScript() = default;
-  /// Throws KeyScriptError.
+  /// Throws InputError "line L: ...".
   explicit KeyScript(std::string_view text);
 
   /// The steps up to frame `frame` that were not taken yet.
@@ -45,4 +38,4 @@ class KeyScript {
   std::size_t next_ = 0;
 };
 
-}  // namespace thimble::host
+}  // namespace thimble::tools
