@@ -25,7 +25,19 @@ struct Look {
   bool has_gaps = false;
 };
 
-Look look_of(Theme theme, PixelFormat format);
+/// Of a display of that format.
+constexpr Look look_of(Theme theme, PixelFormat format) {
+  const bool is_color = !is_gray(format);
+  switch (theme) {
+    case Theme::kOled:
+      return {is_color, {7, 8, 11}, {226, 242, 255}, {0, 0, 0}, {3, 3, 5}, true};
+    case Theme::kLcd:
+      return is_color ? Look{.gap = {12, 12, 14}, .ground = {18, 18, 20}, .has_gaps = true}
+                      : Look{false, {167, 180, 133}, {34, 44, 30}, {177, 190, 143}, {177, 190, 143}, true};
+    default:
+      return {.ground = {24, 24, 26}};
+  }
+}
 
 /// The colour on the screen of a pixel of the picture.
 constexpr Rgb8 looks(const Look& look, Rgb8 pixel) {

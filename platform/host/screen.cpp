@@ -5,9 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "host/terminal.h"
-#include "host/window_x11.h"
-
 namespace thimble::host {
 namespace {
 

@@ -141,4 +141,23 @@ enum class ScreenKind : std::uint8_t { kAuto, kWindow, kTerminal, kNone };
 /// Throws ScreenError; kAuto and kNone always open something.
 std::unique_ptr<Screen> open_screen(ScreenKind kind, const ScreenOptions& options);
 
+/// A screen in a window of the X Window System, by libX11 alone, on $DISPLAY. Throws ScreenError where there is none, or none
+/// with 8 bits a colour.
+///
+/// The picture is magnified by a whole number, as far as the window has room; in a window smaller than the
+/// picture it is made smaller. It stays sharp: no pixel is mixed with its neighbour when it is magnified.
+std::unique_ptr<Screen> open_window(const ScreenOptions& options);
+/// The window system that windows are of; null where the build has none (-DTHIMBLE_WINDOW=OFF), and open_window always
+/// throws.
+const char* window_kind();
+
+/// A screen in the terminal that the program was started from: two pixels a cell, by the upper half block and its ground.
+/// Throws ScreenError where there is none, where its $TERM is `dumb`, and while another one is open.
+///
+/// It needs a terminal that takes xterm's sequences and UTF-8, which nearly all do, also over ssh and in tmux
+/// and screen. Colours have 24 bits where $COLORTERM says `truecolor` or `24bit` (or $TERM ends in
+/// `-direct`), else they are the nearest of xterm's 256. Only cells that change are sent. The terminal does
+/// not tell when a key is let go: it counts as held for a moment after each press or repeat.
+std::unique_ptr<Screen> open_terminal(const ScreenOptions& options);
+
 }  // namespace thimble::host

@@ -24,10 +24,7 @@ constexpr std::size_t kFlashAlignment = 8;  // without it a baked brick map is n
 constexpr std::size_t kSignalStackBytes = 65536;
 
 // The actions of kFaults before the simulation; one at a time has them.
-std::array<struct sigaction, 65>& previous_actions() {
-  static std::array<struct sigaction, 65> actions{};
-  return actions;
-}
+std::array<struct sigaction, 65> previous_actions{};
 
 // Frames of a 64-bit host are about twice a chip's, and those of instrumented code many times as large. The
 // thread's own bookkeeping lies on its stack too.
@@ -69,7 +66,7 @@ extern "C" void on_fault(int number, siginfo_t* info, void* context) {
     wait_for_ever();  // there is nothing to go back to
   }
   // Not the application's: it takes the course that it would have taken.
-  ::sigaction(number, &previous_actions()[static_cast<std::size_t>(number)], nullptr);
+  ::sigaction(number, &previous_actions[static_cast<std::size_t>(number)], nullptr);
   if (info->si_code <= 0) {
     ::raise(number);
   }
@@ -81,13 +78,13 @@ void take_faults() {
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;
   sigemptyset(&action.sa_mask);
   for (const int number : kFaults) {
-    ::sigaction(number, &action, &previous_actions()[static_cast<std::size_t>(number)]);
+    ::sigaction(number, &action, &previous_actions[static_cast<std::size_t>(number)]);
   }
 }
 
 void give_faults_back() {
   for (const int number : kFaults) {
-    ::sigaction(number, &previous_actions()[static_cast<std::size_t>(number)], nullptr);
+    ::sigaction(number, &previous_actions[static_cast<std::size_t>(number)], nullptr);
   }
 }
 

@@ -29,7 +29,7 @@ constexpr std::string_view kLeave =
 constexpr std::array kEnding{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr int kPatienceMs = 200;  // for a terminal that takes no bytes, while a signal is handled
 
-struct State {
+struct {
   int descriptor = -1;
   termios before{};
   termios raw{};
@@ -40,11 +40,7 @@ struct State {
   // Handlers write to it and `wait` polls it, so that a signal between a look at the flags and the wait
   // ends the wait. The same pipe for the whole program: a handler may run late.
   std::array<int, 2> wakeup{-1, -1};
-};
-State& state() {
-  static State only;
-  return only;
-}
+} in_use;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 bool in_foreground(int descriptor) {
@@ -72,36 +68,34 @@ void send(int descriptor, std::string_view text) {
 void wake() {
   const char byte = 0;
   // A full pipe wakes just as well.
-  [[maybe_unused]] const ssize_t count = ::write(state().wakeup[1], &byte, 1);
+  [[maybe_unused]] const ssize_t count = ::write(in_use.wakeup[1], &byte, 1);
 }
 
 void drain() {
   std::array<char, 64> bytes{};
-  while (::read(state().wakeup[0], bytes.data(), bytes.size()) > 0) {
+  while (::read(in_use.wakeup[0], bytes.data(), bytes.size()) > 0) {
   }
 }
 
 void enter() {
-  State& now = state();
-  ::tcsetattr(now.descriptor, TCSANOW, &now.raw);
-  send(now.descriptor, kEnter);
-  now.entered = true;
+  ::tcsetattr(in_use.descriptor, TCSANOW, &in_use.raw);
+  send(in_use.descriptor, kEnter);
+  in_use.entered = true;
 }
 
 void leave() {
-  State& now = state();
-  if (!now.entered.exchange(false)) {
+  if (!in_use.entered.exchange(false)) {
     return;
   }
-  send(now.descriptor, kLeave);
-  ::tcflush(now.descriptor, TCIFLUSH);  // what the mouse still sent is not for the shell
-  ::tcsetattr(now.descriptor, TCSANOW, &now.before);
+  send(in_use.descriptor, kLeave);
+  ::tcflush(in_use.descriptor, TCIFLUSH);  // what the mouse still sent is not for the shell
+  ::tcsetattr(in_use.descriptor, TCSANOW, &in_use.before);
 }
 
 extern "C" void on_end(int number, siginfo_t* info, void* /*context*/) {
   const int error = errno;
   leave();
-  ::sigaction(number, &state().previous[static_cast<std::size_t>(number)], nullptr);
+  ::sigaction(number, &in_use.previous[static_cast<std::size_t>(number)], nullptr);
   // A fault happens again when this returns; anything else has to be sent again, and comes when it returns.
   if (info->si_code <= 0 || number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGQUIT) {
     ::raise(number);
@@ -130,10 +124,10 @@ extern "C" void on_stop(int number) {
 extern "C" void on_continue(int /*number*/) {
   const int error = errno;
   // In the background the terminal belongs to somebody else; reading from it will stop us until it is ours.
-  if (in_foreground(state().descriptor)) {
+  if (in_foreground(in_use.descriptor)) {
     enter();
-    state().reentered = true;
-    state().resized = true;
+    in_use.reentered = true;
+    in_use.resized = true;
     wake();
   }
   errno = error;
@@ -141,7 +135,7 @@ extern "C" void on_continue(int /*number*/) {
 
 extern "C" void on_resize(int /*number*/) {
   const int error = errno;
-  state().resized = true;
+  in_use.resized = true;
   wake();
   errno = error;
 }
@@ -152,11 +146,11 @@ void install(int number, void (*handler)(int)) {
   action.sa_flags = SA_ONSTACK | SA_RESTART;
   sigemptyset(&action.sa_mask);
   sigaddset(&action.sa_mask, SIGCONT);
-  ::sigaction(number, &action, &state().previous[static_cast<std::size_t>(number)]);
+  ::sigaction(number, &action, &in_use.previous[static_cast<std::size_t>(number)]);
 }
 
 void install_end(int number) {
-  struct sigaction& previous = state().previous[static_cast<std::size_t>(number)];
+  struct sigaction& previous = in_use.previous[static_cast<std::size_t>(number)];
   ::sigaction(number, nullptr, &previous);
   if (previous.sa_handler == SIG_IGN) {
     return;
@@ -184,26 +178,25 @@ void give_signals_a_stack() {
 }  // namespace
 
 TerminalMode::TerminalMode(int descriptor) {
-  State& now = state();
-  if (now.wakeup[0] < 0 && ::pipe2(now.wakeup.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
+  if (in_use.wakeup[0] < 0 && ::pipe2(in_use.wakeup.data(), O_NONBLOCK | O_CLOEXEC) != 0) {
     throw ScreenError("the terminal cannot be used: this program may not open more files");
   }
-  now.descriptor = descriptor;
-  ::tcgetattr(descriptor, &now.before);
-  now.raw = now.before;
+  in_use.descriptor = descriptor;
+  ::tcgetattr(descriptor, &in_use.before);
+  in_use.raw = in_use.before;
   // Raw, except that Ctrl-C, Ctrl-Z and Ctrl-\ stay what they are.
-  now.raw.c_iflag &= ~static_cast<tcflag_t>(BRKINT | ICRNL | INLCR | IGNCR | INPCK | ISTRIP | IXON);
-  now.raw.c_oflag &= ~static_cast<tcflag_t>(OPOST);
-  now.raw.c_lflag &= ~static_cast<tcflag_t>(ECHO | ECHONL | ICANON | IEXTEN);
-  now.raw.c_cc[VMIN] = 0;
-  now.raw.c_cc[VTIME] = 0;
+  in_use.raw.c_iflag &= ~static_cast<tcflag_t>(BRKINT | ICRNL | INLCR | IGNCR | INPCK | ISTRIP | IXON);
+  in_use.raw.c_oflag &= ~static_cast<tcflag_t>(OPOST);
+  in_use.raw.c_lflag &= ~static_cast<tcflag_t>(ECHO | ECHONL | ICANON | IEXTEN);
+  in_use.raw.c_cc[VMIN] = 0;
+  in_use.raw.c_cc[VTIME] = 0;
   give_signals_a_stack();
   static const bool at_exit = std::atexit(restore_terminal) == 0;
   static_cast<void>(at_exit);
   for (const int number : kEnding) {
     install_end(number);
   }
-  struct sigaction& stop = now.previous[SIGTSTP];
+  struct sigaction& stop = in_use.previous[SIGTSTP];
   ::sigaction(SIGTSTP, nullptr, &stop);
   if (stop.sa_handler != SIG_IGN) {
     install(SIGTSTP, on_stop);
@@ -214,28 +207,27 @@ TerminalMode::TerminalMode(int descriptor) {
 }
 
 TerminalMode::~TerminalMode() {
-  State& now = state();
   leave();
   for (const int number : kEnding) {
-    ::sigaction(number, &now.previous[static_cast<std::size_t>(number)], nullptr);
+    ::sigaction(number, &in_use.previous[static_cast<std::size_t>(number)], nullptr);
   }
   for (const int number : {SIGTSTP, SIGCONT, SIGWINCH}) {
-    ::sigaction(number, &now.previous[static_cast<std::size_t>(number)], nullptr);
+    ::sigaction(number, &in_use.previous[static_cast<std::size_t>(number)], nullptr);
   }
 }
 
 bool TerminalMode::is_entered() const {
-  return state().entered;
+  return in_use.entered;
 }
 bool TerminalMode::take_resized() {
-  return state().resized.exchange(false);
+  return in_use.resized.exchange(false);
 }
 bool TerminalMode::take_reentered() {
-  return state().reentered.exchange(false);
+  return in_use.reentered.exchange(false);
 }
 
 Wakeup TerminalMode::wait(int timeout_ms) {
-  std::array<pollfd, 2> sources{{{state().descriptor, POLLIN, 0}, {state().wakeup[0], POLLIN, 0}}};
+  std::array<pollfd, 2> sources{{{in_use.descriptor, POLLIN, 0}, {in_use.wakeup[0], POLLIN, 0}}};
   const int ready = ::poll(sources.data(), sources.size(), timeout_ms);
   if (ready == 0) {
     return Wakeup::kTime;

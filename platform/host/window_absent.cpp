@@ -1,5 +1,5 @@
 // In place of window_x11.cpp in a build without libX11.
-#include "host/window_x11.h"
+#include "host/screen.h"
 
 namespace thimble::host {
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "host/screen.h"
-#include "host/terminal.h"
 #include "host/terminal_cells.h"
 #include "host/terminal_input.h"
 #include "host/terminal_mode.h"

@@ -2,7 +2,7 @@
 #include "output/version.h"
 
 #include "commands/commands.h"
-#include "host/window_x11.h"
+#include "host/screen.h"
 #include "output/units.h"
 #include "scene/gpu_engine.h"
 #include "scene/wide_renderer.h"
