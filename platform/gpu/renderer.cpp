@@ -63,27 +63,252 @@ struct Slot {
 }  // namespace
 
 struct Renderer::State {
-  State(const CompactTree& tree, Span<const Rgb8> palette, const Options& options);
+  State(const CompactTree& tree, Span<const Rgb8> palette, const Options& chosen) : options(chosen) {
+    SceneWords words = make_scene_words(tree);
+    set_palette(palette, words.words.data());
+    level = words.level;
+    parameters = words.parameters;
+    try {
+      make_layouts();
+      slots.resize(static_cast<std::size_t>(std::max(options.frames, 1)));
+      for (Slot& slot : slots) {
+        make(&slot);
+      }
+      upload(words.words);
+    } catch (const DeviceError&) {
+      release();
+      throw;
+    }
+  }
+
   ~State() { release(); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  void set_up(const SceneWords& words);
-  void upload(const std::vector<std::uint32_t>& words);
-  void make_layouts();
-  void make(Slot* slot);
-  VkPipeline pipeline(bool lit, bool pairs);
-  void fit(Slot* slot, std::size_t bytes);
-  // Starts a kernel over the width and height of `parameters`; `in_bytes` of the slot's host memory go to its output
+  // By way of memory that both see, a part at a time.
+  void upload(const std::vector<std::uint32_t>& words) {
+    const std::size_t bytes = 4 * words.size();
+    if (bytes > device.most_bytes()) {
+      throw DeviceError("the scene takes " + std::to_string(bytes) + " bytes, and a kernel of " +
+                        device.info().name + " sees at most " + std::to_string(device.most_bytes()));
+    }
+    try {
+      scene = device.make_buffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                 Memory::kDevice);
+    } catch (const DeviceError&) {
+      throw DeviceError("the scene takes " + std::to_string(bytes) + " bytes, more than " +
+                        device.info().name + " has free");
+    }
+    const std::size_t part = std::min(bytes, kUploadBytes);
+    const Buffer from = device.make_buffer(part, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Memory::kReadBack);
+    VkCommandBuffer copy = slots[0].commands;
+    for (std::size_t first = 0; first < bytes; first += part) {
+      const std::size_t size = std::min(part, bytes - first);
+      std::memcpy(from.words(), words.data() + first / 4, size);
+      begin_once(copy);
+      const VkBufferCopy region{0, first, size};
+      vkCmdCopyBuffer(copy, from.get(), scene.get(), 1, &region);
+      submit(device, copy, VK_NULL_HANDLE, "take the scene");
+      require(vkQueueWaitIdle(device.queue()), "take the scene");
+    }
+  }
+
+  void make_layouts() {
+    VkDescriptorSetLayoutBinding bindings[3]{};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      bindings[i].binding = i;
+      bindings[i].descriptorType =
+          i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+      bindings[i].descriptorCount = 1;
+      bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+    }
+    auto set = vulkan<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    set.bindingCount = 3;
+    set.pBindings = bindings;
+    require(vkCreateDescriptorSetLayout(device.get(), &set, nullptr, &set_layout),
+            "take the kernel's layout");
+    auto info = vulkan<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+    info.setLayoutCount = 1;
+    info.pSetLayouts = &set_layout;
+    require(vkCreatePipelineLayout(device.get(), &info, nullptr, &layout), "take the kernel's layout");
+    const auto frames = static_cast<std::uint32_t>(std::max(options.frames, 1));
+    const VkDescriptorPoolSize sizes[2] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, frames},
+                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * frames}};
+    auto pool = vulkan<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+    pool.maxSets = frames;
+    pool.poolSizeCount = 2;
+    pool.pPoolSizes = sizes;
+    require(vkCreateDescriptorPool(device.get(), &pool, nullptr, &descriptors), "take the kernel's layout");
+    auto command_pool = vulkan<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+    command_pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+    command_pool.queueFamilyIndex = device.family();
+    require(vkCreateCommandPool(device.get(), &command_pool, nullptr, &commands), "take commands");
+    if (device.tick_seconds() > 0) {
+      auto query = vulkan<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+      query.queryType = VK_QUERY_TYPE_TIMESTAMP;
+      query.queryCount = 2 * frames;
+      require(vkCreateQueryPool(device.get(), &query, nullptr, &queries), "keep the time");
+    }
+  }
+
+  void make(Slot* slot) {
+    slot->parameters =
+        device.make_buffer(sizeof(Parameters), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Memory::kWritten);
+    auto set = vulkan<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    set.descriptorPool = descriptors;
+    set.descriptorSetCount = 1;
+    set.pSetLayouts = &set_layout;
+    require(vkAllocateDescriptorSets(device.get(), &set, &slot->descriptors), "take the kernel's layout");
+    auto info = vulkan<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    info.commandPool = commands;
+    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    info.commandBufferCount = 1;
+    require(vkAllocateCommandBuffers(device.get(), &info, &slot->commands), "take commands");
+    auto fence = vulkan<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+    require(vkCreateFence(device.get(), &fence, nullptr, &slot->fence), "take commands");
+  }
+
+  VkPipeline pipeline(bool lit, bool pairs) {
+    const std::size_t number = (lit ? 2U : 0U) + (pairs ? 1U : 0U);
+    VkPipeline& made = pipelines[number];
+    if (made != VK_NULL_HANDLE) {
+      return made;
+    }
+    auto module = vulkan<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+    module.codeSize = kKernels[number].size_bytes();
+    module.pCode = kKernels[number].data();
+    VkShaderModule shader = VK_NULL_HANDLE;
+    require(vkCreateShaderModule(device.get(), &module, nullptr, &shader), "take the kernel");
+    auto info = vulkan<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    info.stage.module = shader;
+    info.stage.pName = "main";
+    info.layout = layout;
+    const VkResult result = vkCreateComputePipelines(device.get(), VK_NULL_HANDLE, 1, &info, nullptr, &made);
+    vkDestroyShaderModule(device.get(), shader, nullptr);
+    require(result, "compile the kernel");
+    return made;
+  }
+
+  // Makes the slot's buffers large enough, and tells the kernel where they are.
+  void fit(Slot* slot, std::size_t bytes) {
+    if (slot->output.size() >= bytes) {
+      return;
+    }
+    slot->output = {};
+    slot->host = {};
+    constexpr VkBufferUsageFlags kCopied =
+        VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    slot->output = device.make_buffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | kCopied, Memory::kDevice);
+    slot->host = device.make_buffer(bytes, kCopied, Memory::kReadBack);
+    const VkDescriptorBufferInfo buffers[3] = {{slot->parameters.get(), 0, VK_WHOLE_SIZE},
+                                               {scene.get(), 0, VK_WHOLE_SIZE},
+                                               {slot->output.get(), 0, VK_WHOLE_SIZE}};
+    VkWriteDescriptorSet writes[3]{};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+      writes[i].dstSet = slot->descriptors;
+      writes[i].dstBinding = i;
+      writes[i].descriptorCount = 1;
+      writes[i].descriptorType =
+          i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+      writes[i].pBufferInfo = &buffers[i];
+    }
+    vkUpdateDescriptorSets(device.get(), 3, writes, 0, nullptr);
+  }
+
+  // Starts a kernel over the width and height of `told`; `in_bytes` of the slot's host memory go to its output
   // first, `out_bytes` come back.
-  void start(std::size_t number, const Parameters& parameters, bool pairs, std::size_t in_bytes,
-             std::size_t out_bytes);
-  double finish(std::size_t number);
+  void start(std::size_t number, const Parameters& told, bool pairs, std::size_t in_bytes,
+             std::size_t out_bytes) {
+    Slot& slot = slots[number];
+    VkPipeline kernel = pipeline(told[kernel::kMode] == kernel::kModeLit, pairs);
+    std::memcpy(slot.parameters.words(), told.words, sizeof told);
+    slot.reads_back = out_bytes != 0;
+    const auto query = static_cast<std::uint32_t>(2 * number);
+    begin_once(slot.commands);
+    if (queries != VK_NULL_HANDLE) {
+      vkCmdResetQueryPool(slot.commands, queries, query, 2);
+    }
+    if (in_bytes != 0) {
+      const VkBufferCopy region{0, 0, in_bytes};
+      vkCmdCopyBuffer(slot.commands, slot.host.get(), slot.output.get(), 1, &region);
+      wait_for(slot.commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+               VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+    }
+    vkCmdBindPipeline(slot.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel);
+    vkCmdBindDescriptorSets(slot.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &slot.descriptors, 0,
+                            nullptr);
+    if (queries != VK_NULL_HANDLE) {
+      vkCmdWriteTimestamp(slot.commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, queries, query);
+    }
+    vkCmdDispatch(slot.commands, (told[kernel::kWidth] + kGroupSide - 1) / kGroupSide,
+                  (told[kernel::kHeight] + kGroupSide - 1) / kGroupSide, 1);
+    if (queries != VK_NULL_HANDLE) {
+      vkCmdWriteTimestamp(slot.commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, queries, query + 1);
+    }
+    if (out_bytes != 0) {
+      wait_for(slot.commands, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+               VK_ACCESS_TRANSFER_READ_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT);
+      const VkBufferCopy region{0, 0, out_bytes};
+      vkCmdCopyBuffer(slot.commands, slot.output.get(), slot.host.get(), 1, &region);
+      wait_for(slot.commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+               VK_ACCESS_HOST_READ_BIT, VK_PIPELINE_STAGE_HOST_BIT);
+    }
+    submit(device, slot.commands, slot.fence, "draw");
+  }
+
+  double finish(std::size_t number) {
+    Slot& slot = slots[number];
+    require(vkWaitForFences(device.get(), 1, &slot.fence, VK_TRUE, kForever), "draw");
+    require(vkResetFences(device.get(), 1, &slot.fence), "draw");
+    if (queries == VK_NULL_HANDLE) {
+      return 0;
+    }
+    std::uint64_t ticks[2] = {0, 0};
+    require(
+        vkGetQueryPoolResults(device.get(), queries, static_cast<std::uint32_t>(2 * number), 2, sizeof ticks,
+                              ticks, sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+        "keep the time");
+    return static_cast<double>(ticks[1] - ticks[0]) * device.tick_seconds();
+  }
+
   // Starts a frame of a word a pixel.
-  void begin(int frame, const Camera& camera, const Parameters& told, bool pairs, bool read_back);
+  void begin(int frame, const Camera& camera, const Parameters& told, bool pairs, bool read_back) {
+    const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(camera.width_px()) *
+                              static_cast<std::size_t>(camera.height_px());
+    const auto number = static_cast<std::size_t>(frame);
+    fit(&slots[number], bytes);
+    start(number, told, pairs, 0, read_back ? bytes : 0);
+  }
+
   // A picture of `part` at once, so many words a pixel.
-  const std::uint32_t* draw(const Camera& part, const Parameters& told, bool pairs, std::size_t words);
-  void release();
+  const std::uint32_t* draw(const Camera& part, const Parameters& told, bool pairs, std::size_t words) {
+    const std::size_t bytes =
+        4 * words * static_cast<std::size_t>(part.width_px()) * static_cast<std::size_t>(part.height_px());
+    fit(slots.data(), bytes);
+    start(0, told, pairs, 0, bytes);
+    finish(0);
+    return slots[0].host.words();
+  }
+
+  void release() {
+    vkDeviceWaitIdle(device.get());
+    for (Slot& slot : slots) {
+      vkDestroyFence(device.get(), slot.fence, nullptr);
+    }
+    for (VkPipeline made : pipelines) {
+      vkDestroyPipeline(device.get(), made, nullptr);
+    }
+    vkDestroyQueryPool(device.get(), queries, nullptr);
+    vkDestroyCommandPool(device.get(), commands, nullptr);
+    vkDestroyDescriptorPool(device.get(), descriptors, nullptr);
+    vkDestroyPipelineLayout(device.get(), layout, nullptr);
+    vkDestroyDescriptorSetLayout(device.get(), set_layout, nullptr);
+    slots.clear();
+    scene = {};
+  }
 
   const Options options;
   Device device;
@@ -98,230 +323,6 @@ struct Renderer::State {
   VkQueryPool queries = VK_NULL_HANDLE;
   VkPipeline pipelines[std::size(kKernels)] = {};
 };
-
-Renderer::State::State(const CompactTree& tree, Span<const Rgb8> palette, const Options& chosen)
-    : options(chosen) {
-  SceneWords words = make_scene_words(tree);
-  set_palette(palette, words.words.data());
-  level = words.level;
-  parameters = words.parameters;
-  try {
-    set_up(words);
-  } catch (const DeviceError&) {
-    release();
-    throw;
-  }
-}
-
-void Renderer::State::set_up(const SceneWords& words) {
-  make_layouts();
-  slots.resize(static_cast<std::size_t>(std::max(options.frames, 1)));
-  for (Slot& slot : slots) {
-    make(&slot);
-  }
-  upload(words.words);
-}
-
-void Renderer::State::make_layouts() {
-  VkDescriptorSetLayoutBinding bindings[3]{};
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    bindings[i].binding = i;
-    bindings[i].descriptorType =
-        i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    bindings[i].descriptorCount = 1;
-    bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-  }
-  auto set = vulkan<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-  set.bindingCount = 3;
-  set.pBindings = bindings;
-  require(vkCreateDescriptorSetLayout(device.get(), &set, nullptr, &set_layout), "take the kernel's layout");
-  auto info = vulkan<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-  info.setLayoutCount = 1;
-  info.pSetLayouts = &set_layout;
-  require(vkCreatePipelineLayout(device.get(), &info, nullptr, &layout), "take the kernel's layout");
-  const auto frames = static_cast<std::uint32_t>(std::max(options.frames, 1));
-  const VkDescriptorPoolSize sizes[2] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, frames},
-                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * frames}};
-  auto pool = vulkan<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-  pool.maxSets = frames;
-  pool.poolSizeCount = 2;
-  pool.pPoolSizes = sizes;
-  require(vkCreateDescriptorPool(device.get(), &pool, nullptr, &descriptors), "take the kernel's layout");
-  auto command_pool = vulkan<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
-  command_pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-  command_pool.queueFamilyIndex = device.family();
-  require(vkCreateCommandPool(device.get(), &command_pool, nullptr, &commands), "take commands");
-  if (device.tick_seconds() > 0) {
-    auto query = vulkan<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    query.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    query.queryCount = 2 * frames;
-    require(vkCreateQueryPool(device.get(), &query, nullptr, &queries), "keep the time");
-  }
-}
-
-// By way of memory that both see, a part at a time.
-void Renderer::State::upload(const std::vector<std::uint32_t>& words) {
-  const std::size_t bytes = 4 * words.size();
-  if (bytes > device.most_bytes()) {
-    throw DeviceError("the scene takes " + std::to_string(bytes) + " bytes, and a kernel of " +
-                      device.info().name + " sees at most " + std::to_string(device.most_bytes()));
-  }
-  try {
-    scene = device.make_buffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                               Memory::kDevice);
-  } catch (const DeviceError&) {
-    throw DeviceError("the scene takes " + std::to_string(bytes) + " bytes, more than " + device.info().name +
-                      " has free");
-  }
-  const std::size_t part = std::min(bytes, kUploadBytes);
-  const Buffer from = device.make_buffer(part, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Memory::kReadBack);
-  VkCommandBuffer copy = slots[0].commands;
-  for (std::size_t first = 0; first < bytes; first += part) {
-    const std::size_t size = std::min(part, bytes - first);
-    std::memcpy(from.words(), words.data() + first / 4, size);
-    begin_once(copy);
-    const VkBufferCopy region{0, first, size};
-    vkCmdCopyBuffer(copy, from.get(), scene.get(), 1, &region);
-    submit(device, copy, VK_NULL_HANDLE, "take the scene");
-    require(vkQueueWaitIdle(device.queue()), "take the scene");
-  }
-}
-
-void Renderer::State::make(Slot* slot) {
-  slot->parameters =
-      device.make_buffer(sizeof(Parameters), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Memory::kWritten);
-  auto set = vulkan<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-  set.descriptorPool = descriptors;
-  set.descriptorSetCount = 1;
-  set.pSetLayouts = &set_layout;
-  require(vkAllocateDescriptorSets(device.get(), &set, &slot->descriptors), "take the kernel's layout");
-  auto info = vulkan<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-  info.commandPool = commands;
-  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  info.commandBufferCount = 1;
-  require(vkAllocateCommandBuffers(device.get(), &info, &slot->commands), "take commands");
-  auto fence = vulkan<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-  require(vkCreateFence(device.get(), &fence, nullptr, &slot->fence), "take commands");
-}
-
-VkPipeline Renderer::State::pipeline(bool lit, bool pairs) {
-  const std::size_t number = (lit ? 2U : 0U) + (pairs ? 1U : 0U);
-  VkPipeline& made = pipelines[number];
-  if (made != VK_NULL_HANDLE) {
-    return made;
-  }
-  auto module = vulkan<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-  module.codeSize = kKernels[number].size_bytes();
-  module.pCode = kKernels[number].data();
-  VkShaderModule shader = VK_NULL_HANDLE;
-  require(vkCreateShaderModule(device.get(), &module, nullptr, &shader), "take the kernel");
-  auto info = vulkan<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  info.stage.module = shader;
-  info.stage.pName = "main";
-  info.layout = layout;
-  const VkResult result = vkCreateComputePipelines(device.get(), VK_NULL_HANDLE, 1, &info, nullptr, &made);
-  vkDestroyShaderModule(device.get(), shader, nullptr);
-  require(result, "compile the kernel");
-  return made;
-}
-
-// Makes the slot's buffers large enough, and tells the kernel where they are.
-void Renderer::State::fit(Slot* slot, std::size_t bytes) {
-  if (slot->output.size() >= bytes) {
-    return;
-  }
-  slot->output = {};
-  slot->host = {};
-  constexpr VkBufferUsageFlags kCopied = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  slot->output = device.make_buffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | kCopied, Memory::kDevice);
-  slot->host = device.make_buffer(bytes, kCopied, Memory::kReadBack);
-  const VkDescriptorBufferInfo buffers[3] = {{slot->parameters.get(), 0, VK_WHOLE_SIZE},
-                                             {scene.get(), 0, VK_WHOLE_SIZE},
-                                             {slot->output.get(), 0, VK_WHOLE_SIZE}};
-  VkWriteDescriptorSet writes[3]{};
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    writes[i].dstSet = slot->descriptors;
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    writes[i].pBufferInfo = &buffers[i];
-  }
-  vkUpdateDescriptorSets(device.get(), 3, writes, 0, nullptr);
-}
-
-void Renderer::State::start(std::size_t number, const Parameters& told, bool pairs, std::size_t in_bytes,
-                            std::size_t out_bytes) {
-  Slot& slot = slots[number];
-  VkPipeline kernel = pipeline(told[kernel::kMode] == kernel::kModeLit, pairs);
-  std::memcpy(slot.parameters.words(), told.words, sizeof told);
-  slot.reads_back = out_bytes != 0;
-  const auto query = static_cast<std::uint32_t>(2 * number);
-  begin_once(slot.commands);
-  if (queries != VK_NULL_HANDLE) {
-    vkCmdResetQueryPool(slot.commands, queries, query, 2);
-  }
-  if (in_bytes != 0) {
-    const VkBufferCopy region{0, 0, in_bytes};
-    vkCmdCopyBuffer(slot.commands, slot.host.get(), slot.output.get(), 1, &region);
-    wait_for(slot.commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
-             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
-  }
-  vkCmdBindPipeline(slot.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel);
-  vkCmdBindDescriptorSets(slot.commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &slot.descriptors, 0,
-                          nullptr);
-  if (queries != VK_NULL_HANDLE) {
-    vkCmdWriteTimestamp(slot.commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, queries, query);
-  }
-  vkCmdDispatch(slot.commands, (told[kernel::kWidth] + kGroupSide - 1) / kGroupSide,
-                (told[kernel::kHeight] + kGroupSide - 1) / kGroupSide, 1);
-  if (queries != VK_NULL_HANDLE) {
-    vkCmdWriteTimestamp(slot.commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, queries, query + 1);
-  }
-  if (out_bytes != 0) {
-    wait_for(slot.commands, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-             VK_ACCESS_TRANSFER_READ_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT);
-    const VkBufferCopy region{0, 0, out_bytes};
-    vkCmdCopyBuffer(slot.commands, slot.output.get(), slot.host.get(), 1, &region);
-    wait_for(slot.commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
-             VK_ACCESS_HOST_READ_BIT, VK_PIPELINE_STAGE_HOST_BIT);
-  }
-  submit(device, slot.commands, slot.fence, "draw");
-}
-
-double Renderer::State::finish(std::size_t number) {
-  Slot& slot = slots[number];
-  require(vkWaitForFences(device.get(), 1, &slot.fence, VK_TRUE, kForever), "draw");
-  require(vkResetFences(device.get(), 1, &slot.fence), "draw");
-  if (queries == VK_NULL_HANDLE) {
-    return 0;
-  }
-  std::uint64_t ticks[2] = {0, 0};
-  require(
-      vkGetQueryPoolResults(device.get(), queries, static_cast<std::uint32_t>(2 * number), 2, sizeof ticks,
-                            ticks, sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-      "keep the time");
-  return static_cast<double>(ticks[1] - ticks[0]) * device.tick_seconds();
-}
-
-void Renderer::State::release() {
-  vkDeviceWaitIdle(device.get());
-  for (Slot& slot : slots) {
-    vkDestroyFence(device.get(), slot.fence, nullptr);
-  }
-  for (VkPipeline made : pipelines) {
-    vkDestroyPipeline(device.get(), made, nullptr);
-  }
-  vkDestroyQueryPool(device.get(), queries, nullptr);
-  vkDestroyCommandPool(device.get(), commands, nullptr);
-  vkDestroyDescriptorPool(device.get(), descriptors, nullptr);
-  vkDestroyPipelineLayout(device.get(), layout, nullptr);
-  vkDestroyDescriptorSetLayout(device.get(), set_layout, nullptr);
-  slots.clear();
-  scene = {};
-}
 
 Renderer::Renderer(const CompactTree& tree, Span<const Rgb8> palette, const Options& options)
     : state_(std::make_unique<State>(tree, palette, options)) {}
@@ -396,25 +397,6 @@ Rgb8 color_of(std::uint32_t word) {
 }
 
 }  // namespace
-
-void Renderer::State::begin(int frame, const Camera& camera, const Parameters& told, bool pairs,
-                            bool read_back) {
-  const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(camera.width_px()) *
-                            static_cast<std::size_t>(camera.height_px());
-  const auto number = static_cast<std::size_t>(frame);
-  fit(&slots[number], bytes);
-  start(number, told, pairs, 0, read_back ? bytes : 0);
-}
-
-const std::uint32_t* Renderer::State::draw(const Camera& part, const Parameters& told, bool pairs,
-                                           std::size_t words) {
-  const std::size_t bytes =
-      4 * words * static_cast<std::size_t>(part.width_px()) * static_cast<std::size_t>(part.height_px());
-  fit(slots.data(), bytes);
-  start(0, told, pairs, 0, bytes);
-  finish(0);
-  return slots[0].host.words();
-}
 
 Status Renderer::draw(const Camera& camera, const Shading& shading, const Band& band, RenderCounts* counts) {
   std::size_t stride = 0;
