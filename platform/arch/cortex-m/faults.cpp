@@ -1,5 +1,3 @@
-#include "cortex-m/faults.h"
-
 #include <stdint.h>
 
 #include "common/layout.h"
@@ -46,7 +44,8 @@ extern "C" [[noreturn, gnu::used]] void thimble_fault_report(uint32_t stack_poin
 // The stack may be what failed, so nothing is pushed before the stack pointer is back at the top. That may
 // overwrite what the exception pushed (r0-r3, r12, lr, pc, xpsr), so its pc is taken first, if the frame lies
 // in the stack.
-extern "C" [[gnu::naked]] void thimble_fault() {
+extern "C" [[gnu::naked]] void thimble_fault();
+void thimble_fault() {
   asm volatile(
       "mov r0, sp\n"
       "mrs r1, ipsr\n"

@@ -3,11 +3,11 @@
 
 #include "common/layout.h"
 #include "common/run.h"
-#include "cortex-m/faults.h"
 
 extern "C" {
 
 [[noreturn]] void thimble_reset();
+void thimble_fault();  // where every exception but SysTick ends (faults.cpp)
 // Only where SysTick is the clock (systick.cpp).
 [[gnu::weak]] void thimble_systick();
 

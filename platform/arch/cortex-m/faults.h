@@ -1,4 +1,0 @@
-/// Where every exception but SysTick ends.
-#pragma once
-
-extern "C" void thimble_fault();
