@@ -58,7 +58,7 @@ std::string entries_of(const CLI::App& app, bool with_help) {
 }
 
 std::string manual(const CLI::App& app) {
-  std::string text = std::string(".TH THIMBLE 1 \"") + version_date() + "\" \"thimble " + version_number() +
+  std::string text = std::string(".TH THIMBLE 1 \"") + kVersionDate + "\" \"thimble " + kVersionNumber +
                      "\" \"User Commands\"\n.ad l\n"
                      ".SH NAME\nthimble \\- draws voxels exactly, in a fixed block of memory\n"
                      ".SH SYNOPSIS\n.B thimble\n.I SUBCOMMAND\n.RI [ OPTIONS ]\n"

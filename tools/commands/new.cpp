@@ -155,7 +155,7 @@ std::map<std::string, std::string> project(const NewCommand& command, const Bake
                                          : concat("an ", command.panel->name, " at a ", board.name)},
       {"BOARD", board.name},
       {"NAME", command.name()},
-      {"VERSION", version_number()},
+      {"VERSION", kVersionNumber},
       {"C_RENDER", has_map ? "thimble_scene_render_fast(&scene, &bricks, &camera, &shading, &band)"
                            : "thimble_scene_render(&scene, &camera, &shading, &band)"}};
   if (const SketchBoard* const sketch = command.sketch()) {

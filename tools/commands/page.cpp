@@ -173,7 +173,7 @@ void render_page(const RenderCommand& command, const SceneSource& source, Output
   const auto [before, behind] = around_scenes(
       page, {{"description", counted(picture.stats.voxels, "voxel") +
                                  ", ray traced by Thimble. Drag to turn, wheel or pinch to come nearer."},
-             {"version", version_number()},
+             {"version", kVersionNumber},
              {"colors", edge_colors(picture.image)},
              {"turn", shortest(static_cast<double>(command.output.turntable) / kFramesASecond)},
              {"background", std::to_string(background_number(command.look.wishes.background))},

@@ -209,7 +209,7 @@ std::size_t write_page(const SheetCommand& command, const std::vector<std::strin
   const auto [before, behind] = around_scenes(
       load_page(),
       {{"description", counted(names.size(), "scene") + ", ray traced by Thimble. Click one to turn it."},
-       {"version", version_number()},
+       {"version", kVersionNumber},
        {"colors", "#202226, #202226"},
        {"turn", "0"},
        {"background", "0"},

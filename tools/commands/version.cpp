@@ -16,7 +16,7 @@ std::string version_text() {
                                  ? "none: there is no Vulkan loader or device"
                                  : "not in this build (-DTHIMBLE_GPU=OFF): the processor draws";
   const char* const windows = host::window_kind();
-  return std::string("thimble ") + version_number() + "\ncommit         " + version_commit() +
+  return std::string("thimble ") + kVersionNumber + "\ncommit         " + kVersionCommit +
          "\nwide renderer  " +
          (sets.empty() ? "not in this build (-DTHIMBLE_WIDE=OFF): the core draws ray by ray"
                        : sets + " on this machine; the first is used") +

@@ -75,16 +75,31 @@ struct Axes {
 constexpr double kHeight = 460;
 constexpr Axes kLogAxes{84, kWidth - 20, 44, kHeight - 112};
 
+// From the least to the greatest of some numbers; of none as it was made.
+struct Range {
+  double low = 0;
+  double high = 1;
+  bool is_empty = true;
+
+  void hold(double value) {
+    low = is_empty ? value : std::min(low, value);
+    high = is_empty ? value : std::max(high, value);
+    is_empty = false;
+  }
+};
+
 // A range of whole decades.
 struct Decades {
   int low = 0;
   int high = 1;
+  bool is_empty = true;
 
-  void hold(double value, bool first) {
+  void hold(double value) {
     const int floor = static_cast<int>(std::floor(std::log10(value)));
     const int ceil = static_cast<int>(std::ceil(std::log10(value)));
-    low = first ? floor : std::min(low, floor);
-    high = first ? std::max(ceil, floor + 1) : std::max(high, ceil);
+    low = is_empty ? floor : std::min(low, floor);
+    high = is_empty ? std::max(ceil, floor + 1) : std::max(high, ceil);
+    is_empty = false;
   }
   double part(double value) const { return (std::log10(value) - low) / (high - low); }
 };
@@ -142,46 +157,38 @@ struct Scales {
   double step = 1;
 
   explicit Scales(const std::vector<std::pair<double, double>>& points) {
-    double x_low = 1;
-    double x_high = 1;
-    double y_low = 0;
-    double y_high = 1;
-    bool first_x = true;
-    bool first_y = true;
+    Range all_x{1, 1};
+    Range all_y;
     for (const auto& [x, y] : points) {
-      x_low = first_x ? x : std::min(x_low, x);
-      x_high = first_x ? x : std::max(x_high, x);
-      first_x = false;
+      all_x.hold(x);
       if (std::isfinite(y)) {
-        y_low = first_y ? y : std::min(y_low, y);
-        y_high = first_y ? y : std::max(y_high, y);
-        first_y = false;
+        all_y.hold(y);
       }
     }
     std::vector<double> marks;
-    const int decade = static_cast<int>(std::floor(std::log10(x_low)));
+    const int decade = static_cast<int>(std::floor(std::log10(all_x.low)));
     for (int power = decade; power <= decade + 12; ++power) {
       for (const double digit : {1.0, 2.0, 5.0}) {
         marks.push_back(digit * std::pow(10.0, power));
       }
     }
     std::size_t begin = 0;
-    while (begin + 2 < marks.size() && marks[begin + 1] <= x_low) {
+    while (begin + 2 < marks.size() && marks[begin + 1] <= all_x.low) {
       ++begin;
     }
     std::size_t end = begin + 1;
-    while (end + 1 < marks.size() && marks[end] < x_high) {
+    while (end + 1 < marks.size() && marks[end] < all_x.high) {
       ++end;
     }
     x_ticks.assign(marks.begin() + static_cast<std::ptrdiff_t>(begin),
                    marks.begin() + static_cast<std::ptrdiff_t>(end) + 1);
-    const double range = std::max(y_high - y_low, 1e-9);
+    const double range = std::max(all_y.high - all_y.low, 1e-9);
     step = std::pow(10.0, std::floor(std::log10(range)));
     while (range / step < 4) {
       step /= 2;
     }
-    low = std::floor(y_low / step) * step;
-    high = (std::floor(y_high / step) + 1) * step;
+    low = std::floor(all_y.low / step) * step;
+    high = (std::floor(all_y.high / step) + 1) * step;
   }
   double x_at(double x) const {
     return kScatterAxes.left +
@@ -237,24 +244,19 @@ class Numbers {
 std::string log_plot_text(const Plot& plot) {
   Decades x_range;
   Decades y_range;
-  bool first = true;
-  // On a linear axis: the whole numbers from the least to the greatest.
-  double least = 0;
-  double greatest = 1;
+  Range whole_x;  // on a linear axis
   for (const Series& series : plot.series) {
     for (const auto& [x, y] : series.points) {
-      x_range.hold(x, first);
-      y_range.hold(y, first);
-      least = first ? x : std::min(least, x);
-      greatest = first ? x : std::max(greatest, x);
-      first = false;
+      x_range.hold(x);
+      y_range.hold(y);
+      whole_x.hold(x);
     }
   }
   for (const Mark& mark : plot.marks) {
-    y_range.hold(mark.y, first);
-    first = false;
+    y_range.hold(mark.y);
   }
-  greatest = std::max(greatest, least + 1);
+  const double least = whole_x.low;
+  const double greatest = std::max(whole_x.high, least + 1);
   const auto x_part = [&](double x) {
     return plot.whole_x ? (x - least) / (greatest - least) : x_range.part(x);
   };

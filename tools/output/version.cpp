@@ -4,16 +4,8 @@
 
 namespace thimble::tools {
 
-const char* version_number() {
-  return THIMBLE_VERSION;
-}
-
-const char* version_commit() {
-  return THIMBLE_COMMIT;
-}
-
-const char* version_date() {
-  return THIMBLE_DATE;
-}
+const char* const kVersionNumber = THIMBLE_VERSION;
+const char* const kVersionCommit = THIMBLE_COMMIT;
+const char* const kVersionDate = THIMBLE_DATE;
 
 }  // namespace thimble::tools

@@ -196,15 +196,10 @@ void Player::press(const InputEvent& event) {
   is_released_ = false;
   ParticleWorld& world = world_->world();
   world.set_pointer(PointerMode::kNone, place_);
-  switch (held_tool()) {
-    case Tool::kDrag:
-      world.set_pointer(PointerMode::kDrag, nearest_ball(world, place_, reach_[index_of(Tool::kDrag)]));
-      break;
-    case Tool::kWall:
-      world.draw_wall(place_, 2 * reach_[index_of(Tool::kWall)] - 1);
-      break;
-    default:
-      break;
+  if (held_tool() == Tool::kDrag) {
+    world.set_pointer(PointerMode::kDrag, nearest_ball(world, place_, reach_[index_of(Tool::kDrag)]));
+  } else if (held_tool() == Tool::kWall) {
+    world.draw_wall(place_, 2 * reach_[index_of(Tool::kWall)] - 1);
   }
 }
 
@@ -253,12 +248,6 @@ void Player::set_count(std::int64_t count) {
     static_cast<void>(world.remove(id - 1));
   }
   settings_.count = world.count();
-}
-
-void Player::begin_again() {
-  world_->begin_again(settings_);
-  held_button_ = 0;
-  is_released_ = false;
 }
 
 // By an eighth each.
@@ -360,7 +349,9 @@ void Player::command(char key) {
       world.erase_box(world.field().bounds());
       break;
     case 'r':
-      begin_again();
+      world_->begin_again(settings_);
+      held_button_ = 0;
+      is_released_ = false;
       break;
     case 'o':
       shows_figures_ = !shows_figures_;

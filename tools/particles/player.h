@@ -101,7 +101,6 @@ class Player {
   void press(const InputEvent& event);
   void set_count(std::int64_t count);
   void set_gravity(Vec2i gravity_q16);
-  void begin_again();
 
   PopulatedWorld* world_;
   WorldOptions settings_;  // as the keys have changed them
