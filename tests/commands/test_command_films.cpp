@@ -229,7 +229,7 @@ TEST_CASE(
   CHECK(film.substr(head + 2 * frame, frame) != film.substr(head + 3 * frame, frame));
 
   constexpr int kFrames = 1000;
-  const CameraPath path = smoothed(keys, read_camera_path(keys, ViewWishes{}), kFrames);
+  const CameraPath path = smoothed(read_camera_path(keys, ViewWishes{}), kFrames);
   REQUIRE(path.cameras.size() == 2 * kFrames + 1);
   for (std::size_t i = 1; i + 1 < path.cameras.size(); ++i) {
     const auto eye = [&](std::size_t at) { return path.cameras[at].view.eye.value(); };

@@ -1,28 +1,13 @@
 // thimble accuracy: what each knob that trades a picture's error for time gives, and what a given time or
 // error calls for.
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
 #include "instruments/accuracy_study.h"
 #include "instruments/hard_cases.h"
 #include "instruments/timed_frames.h"
 #include "output/plot.h"
-#include "output/progress.h"
-#include "output/tables.h"
-#include "output/units.h"
 #include "particles/populated_world.h"
-#include "readers/progress.h"
-#include "readers/source.h"
-#include "scene/built_scene.h"
-#include "scene/scene_source.h"
 #include "thimble/light/water.h"
 
 namespace thimble::tools {

@@ -1,8 +1,11 @@
 /// Command-line options whose errors are sentences, and help that fits a terminal. The subcommands add their
-/// options through these instead of CLI11's typed ones, which accept NaN and print limits with 300 digits.
+/// options through these instead of CLI11's typed ones, which accept NaN and print limits with 300 digits. What a command
+/// says and writes comes with it: words, numbers, files and bars.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -15,6 +18,8 @@
 #include <vector>
 
 #include "output/output_file.h"
+#include "output/progress.h"
+#include "output/units.h"
 #include "readers/input_error.h"
 
 namespace thimble::tools {

@@ -1,20 +1,9 @@
 // thimble bake: a scene as bytes for flash.
-#include <algorithm>
 #include <cctype>
-#include <cstdio>
-#include <string>
-#include <string_view>
 
 #include "commands/bake_command.h"
 #include "commands/commands.h"
-#include "output/output_file.h"
-#include "output/progress.h"
-#include "output/units.h"
-#include "scene/board_fit.h"
-#include "scene/framing.h"
 #include "scene/generators.h"
-#include "thimble/bake/baked_scene.h"
-#include "thimble/light/scene.h"
 
 namespace thimble::tools {
 namespace {

@@ -1,16 +1,9 @@
 /// What `thimble bake` and `thimble image` share: the options of a baked scene, and its baking within a flash.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-#include <string_view>
-
-#include "commands/scene_options.h"
 #include "commands/stats.h"
 #include "scene/baking.h"
-#include "scene/framing.h"
-#include "scene/scene_source.h"
+#include "scene/board_fit.h"
 
 namespace thimble::tools {
 

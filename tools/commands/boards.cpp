@@ -1,24 +1,13 @@
 // thimble boards: what the boards are, and what of a scene fits on each.
-#include <algorithm>
-#include <array>
 #include <cstring>
 #include <map>
 #include <tuple>
 
 #include "boards/frame_costs.h"
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
 #include "counted/counted.h"
-#include "output/progress.h"
-#include "output/tables.h"
-#include "output/units.h"
-#include "readers/oct.h"
 #include "scene/baking.h"
 #include "scene/board_fit.h"
-#include "scene/built_scene.h"
-#include "scene/framing.h"
-#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {

@@ -1,14 +1,5 @@
 #include "commands/render_command.h"
 
-#include <algorithm>
-#include <array>
-#include <string_view>
-
-#include "commands/arguments.h"
-#include "output/output_file.h"
-#include "output/part_file.h"
-#include "output/units.h"
-#include "readers/file_bytes.h"
 #include "readers/text.h"
 
 namespace thimble::tools {
@@ -17,28 +8,14 @@ namespace {
 constexpr std::uint64_t kMostPathBytes = std::uint64_t{64} << 20;
 constexpr std::array<const char*, 10> kNames{"ex", "ey", "ez", "tx", "ty", "tz", "ux", "uy", "uz", "fov"};
 
-template <class... Pieces>
-void fail_in_path_if(bool is_wrong, const std::string& path, std::uint64_t line, const Pieces&... pieces) {
-  if (is_wrong) {
-    throw OutputError(concat(printable(path), ": line ", line, ": ", pieces...));
-  }
-}
-
-bool is_names(const std::vector<std::string_view>& cells) {
-  return std::all_of(cells.begin(), cells.end(), [](std::string_view cell) {
-    double number = 0;
-    return parse_number(cell, number) == NumberKind::kGarbage;
-  });
-}
-
 // The camera that a line's cells are; of nine and more the fourth three are what is up, the last of seven and ten is fov.
-PathCamera camera_of(const std::vector<std::string_view>& cells, const std::string& path, std::uint64_t line,
-                     const ViewWishes& view, bool has_fov) {
+PathCamera camera_of(const std::vector<std::string_view>& cells, std::uint64_t line, const ViewWishes& view,
+                     bool has_fov) {
   std::array<double, 10> numbers{};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::size_t column = has_fov && i + 1 == cells.size() ? 9 : i;
-    fail_in_path_if(parse_number(cells[i], numbers[column]) != NumberKind::kFinite, path, line,
-                    kNames[column], " ", quoted(cells[i]), " is no finite number");
+    fail_at_line_if(parse_number(cells[i], numbers[column]) != NumberKind::kFinite, line, kNames[column], " ",
+                    quoted(cells[i]), " is no finite number");
   }
   PathCamera camera{view, line};
   camera.view.placed = true;
@@ -49,7 +26,7 @@ PathCamera camera_of(const std::vector<std::string_view>& cells, const std::stri
   }
   if (has_fov) {
     camera.view.fov_degrees = numbers[9];
-    fail_in_path_if(!(numbers[9] >= 1 && numbers[9] <= 120), path, line, "fov ", shortest(numbers[9]),
+    fail_at_line_if(!(numbers[9] >= 1 && numbers[9] <= 120), line, "fov ", shortest(numbers[9]),
                     " is not from 1 to 120 degrees");
   }
   return camera;
@@ -64,20 +41,10 @@ double on_spline(const std::array<double, 4>& keys, double t) {
          2;
 }
 
-}  // namespace
-
-const char* const kPathColumns =
-    "ex,ey,ez,tx,ty,tz are where it stands and what it looks at, in voxels; ux,uy,uz for what is up, fov in "
-    "degrees, or both may follow";
-
-CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
-  const SharedBytes bytes = about(printable(path), [&] { return load_file(path, kMostPathBytes); });
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  std::string_view text = bytes.text();
-  text.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+CameraPath cameras_of(std::string_view text, const ViewWishes& view) {
   CameraPath result;
   std::size_t columns = 0;  // of the first line
-  LineReader lines(text);
+  LineReader lines(text.substr(mark_bytes(text)));
   for (std::string_view all; lines.next(all);) {
     if (all.find_first_not_of(" \t") == std::string_view::npos) {
       continue;
@@ -87,38 +54,43 @@ CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
     const bool is_first = columns == 0;
     if (is_first) {
       columns = cells.size();
-      fail_in_path_if(columns < 6 || columns == 8 || columns > 10, path, line, columns,
+      fail_at_line_if(columns < 6 || columns == 8 || columns > 10, line, columns,
                       " columns are none of a camera; ", kPathColumns);
       result.has_fov = columns == 7 || columns == 10;
     }
-    fail_in_path_if(cells.size() != columns, path, line, cells.size(), " columns; the first line has ",
-                    columns);
-    if (is_first && is_names(cells)) {
+    fail_at_line_if(cells.size() != columns, line, cells.size(), " columns; the first line has ", columns);
+    if (is_first && are_names(cells)) {
       std::vector<const char*> names(kNames.begin(), kNames.begin() + static_cast<std::ptrdiff_t>(columns));
       names.back() = result.has_fov ? kNames.back() : names.back();
-      fail_in_path_if(misplaces(cells, names), path, line, "the columns are named in another order; ",
+      fail_at_line_if(misplaces(cells, names), line, "the columns are named in another order; ",
                       kPathColumns);
       continue;
     }
-    const PathCamera camera = camera_of(cells, path, line, view, result.has_fov);
-    fail_in_path_if(result.cameras.size() == kMostFilmFrames, path, line, "a film has at most ",
+    const PathCamera camera = camera_of(cells, line, view, result.has_fov);
+    fail_at_line_if(result.cameras.size() == kMostFilmFrames, line, "a film has at most ",
                     grouped(kMostFilmFrames), " frames");
     result.cameras.push_back(camera);
   }
-  if (result.cameras.empty()) {
-    throw OutputError(printable(path) + ": holds no camera");
-  }
+  fail_if(result.cameras.empty(), "holds no camera");
   return result;
 }
 
-CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames) {
+}  // namespace
+
+const char* const kPathColumns =
+    "ex,ey,ez,tx,ty,tz are where it stands and what it looks at, in voxels; ux,uy,uz for what is up, fov in "
+    "degrees, or both may follow";
+
+CameraPath read_camera_path(const std::string& path, const ViewWishes& view) {
+  return about(printable(path), [&] { return cameras_of(load_file(path, kMostPathBytes).text(), view); });
+}
+
+CameraPath smoothed(const CameraPath& keys, int frames) {
   const std::vector<PathCamera>& cameras = keys.cameras;
   const std::size_t ways = cameras.size() - 1;
   const std::size_t all = ways * static_cast<std::size_t>(frames) + 1;
-  if (all > kMostFilmFrames) {
-    throw OutputError(printable(path) + ": with --seconds this is a film of more than " +
-                      grouped(kMostFilmFrames) + " frames");
-  }
+  fail_if(all > kMostFilmFrames, "with --seconds this is a film of more than ", grouped(kMostFilmFrames),
+          " frames");
   CameraPath result;
   result.has_fov = keys.has_fov;
   result.cameras.reserve(all);
@@ -155,12 +127,9 @@ CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames)
 std::vector<Framing> frame_path(const std::string& path, const CameraPath& cameras, const SceneShape& shape) {
   std::vector<Framing> framings;
   for (const PathCamera& camera : cameras.cameras) {
-    try {
-      framings.push_back(frame_shape(camera.view, shape));
-    } catch (const InputError& error) {
-      fail_in_path_if(true, path, camera.line, camera.is_between ? "on the way from here to the next: " : "",
-                      error.what());
-    }
+    const std::string place = concat(printable(path), ": line ", camera.line,
+                                     camera.is_between ? ": on the way from here to the next" : "");
+    framings.push_back(about(place, [&] { return frame_shape(camera.view, shape); }));
   }
   return framings;
 }

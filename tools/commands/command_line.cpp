@@ -2,23 +2,16 @@
 
 #include <fcntl.h>
 
-#include <algorithm>
-#include <array>
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <new>
-#include <string>
-#include <vector>
 
-#include "commands/arguments.h"
 #include "commands/commands.h"
+#include "host/screen.h"
 #include "output/held_signals.h"
-#include "output/output_file.h"
-#include "output/units.h"
-#include "readers/input_error.h"
-#include "scene/framing.h"
+#include "output/version.h"
+#include "scene/gpu_engine.h"
 #include "scene/named_scenes.h"
 
 namespace thimble::tools {
@@ -42,6 +35,22 @@ bool is_scene(const std::string& word) {
   }
   const std::vector<std::string> names = scene_names();
   return std::find(names.begin(), names.end(), word) != names.end();
+}
+
+// What `thimble --version` prints: version, commit, and what this build and this machine have.
+std::string version_text() {
+  const std::string sets = joined(WideRenderer::instruction_sets(), ", ");
+  const std::string gpus = joined(GpuEngine::devices(), ", ");
+  const char* const no_gpu = GpuEngine::is_in_build()
+                                 ? "none: there is no Vulkan loader or device"
+                                 : "not in this build (-DTHIMBLE_GPU=OFF): the processor draws";
+  const char* const windows = host::window_kind();
+  return std::string("thimble ") + kVersionNumber + "\ncommit         " + kVersionCommit +
+         "\nwide renderer  " +
+         (sets.empty() ? "not in this build (-DTHIMBLE_WIDE=OFF): the core draws ray by ray"
+                       : sets + " on this machine; the first is used") +
+         "\nGPU            " + (gpus.empty() ? no_gpu : gpus) + "\nwindows        " +
+         (windows == nullptr ? "not in this build (-DTHIMBLE_WINDOW=OFF): the terminal and files" : windows);
 }
 
 constexpr const char* kFirstWords =

@@ -1,7 +1,7 @@
 /// The subcommands: one file each, which includes this and with it what all are made of, and its name here.
 #pragma once
 
-#include "commands/arguments.h"
+#include "commands/stats.h"
 
 namespace thimble::tools {
 
@@ -12,9 +12,6 @@ AddCommand add_view_command, add_render, add_join, add_trace, add_table, add_bak
     add_accuracy, add_effects;
 // Not in the help: what shells and scripts ask for.
 AddCommand add_complete, add_manual, add_uart_picture;
-
-/// What `thimble --version` prints: version, commit, and what this build and this machine have.
-std::string version_text();
 
 inline void add_all_commands(CLI::App& app) {
   for (AddCommand* const add :

@@ -3,12 +3,6 @@
 //
 // The argument is the command line up to the cursor, a word a line, the program's name first. A line of the answer
 // is a word, a tab and what it means; the line /files stands for names of files, which the shell knows better.
-#include <algorithm>
-#include <cstdio>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "commands/commands.h"
 #include "scene/generators.h"
 #include "scene/named_scenes.h"

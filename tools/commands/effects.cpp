@@ -4,30 +4,14 @@
 // An effect's figures are those of the scene's whole set of effects less those of the set without it. Since shadows need
 // direct light, direct light is judged between two frames without shadows. What a scene does not call for is not drawn
 // with, and costs 0.
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "boards/effect_flash.h"
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
 #include "instruments/timed_frames.h"
 #include "output/plot.h"
-#include "output/progress.h"
-#include "output/tables.h"
-#include "output/units.h"
-#include "scene/built_scene.h"
-#include "scene/framing.h"
-#include "scene/lit_description.h"
-#include "scene/scene_source.h"
-#include "thimble/light/render.h"
 
 namespace thimble::tools {
 namespace {

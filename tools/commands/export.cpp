@@ -1,15 +1,6 @@
 // thimble export: the voxels of a scene for other programs.
-#include <cstdio>
-#include <string>
-
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "output/output_file.h"
-#include "output/progress.h"
-#include "output/units.h"
 #include "output/voxel_file.h"
-#include "scene/built_scene.h"
-#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {

@@ -1,14 +1,9 @@
 // thimble image: a scene behind a program that is built already.
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
 #include "commands/bake_command.h"
 #include "commands/commands.h"
-#include "output/output_file.h"
-#include "output/units.h"
-#include "readers/file_bytes.h"
-#include "scene/board_fit.h"
 #include "scene/board_images.h"
 #include "scene/named_scenes.h"
 

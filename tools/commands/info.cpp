@@ -1,17 +1,6 @@
 // thimble info: what a scene is, and what it takes.
-#include <algorithm>
-#include <array>
-
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
-#include "output/output_file.h"
-#include "output/units.h"
-#include "readers/oct.h"
 #include "scene/board_fit.h"
-#include "scene/built_scene.h"
-#include "scene/framing.h"
-#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {

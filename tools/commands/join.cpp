@@ -1,15 +1,6 @@
 // thimble join: parts of a picture or of a film, drawn apart, as the file that one process would have written.
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "commands/commands.h"
-#include "output/image.h"
-#include "output/output_file.h"
 #include "output/part_file.h"
-#include "output/progress.h"
-#include "output/units.h"
-#include "readers/input_error.h"
 #include "scene/animation.h"
 
 namespace thimble::tools {

@@ -6,8 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cerrno>
 #include <csignal>
@@ -15,8 +13,6 @@
 #include <new>
 
 #include "commands/render_command.h"
-#include "output/output_file.h"
-#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {

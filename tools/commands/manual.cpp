@@ -1,12 +1,5 @@
 // thimble manual: the man page, from the same description as --help. The build writes it to share/man.
-#include <algorithm>
-#include <array>
-#include <cstdio>
-#include <string>
-#include <utility>
-
 #include "commands/commands.h"
-#include "output/units.h"
 #include "output/version.h"
 #include "scene/named_scenes.h"
 

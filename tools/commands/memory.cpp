@@ -1,16 +1,8 @@
 // thimble memory: what a scene takes at every depth in every structure, which boards hold it, and what a
 // smaller depth or budget does to its picture.
-#include <algorithm>
-#include <array>
-
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
 #include "instruments/memory_study.h"
 #include "output/plot.h"
-#include "output/progress.h"
-#include "output/tables.h"
-#include "output/units.h"
 #include "scene/board_fit.h"
 
 namespace thimble::tools {

@@ -1,6 +1,4 @@
 // thimble new: a project that draws a scene on a board, by templates (tools/new).
-#include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -8,11 +6,7 @@
 
 #include "commands/bake_command.h"
 #include "commands/commands.h"
-#include "output/output_file.h"
-#include "output/units.h"
 #include "output/version.h"
-#include "readers/file_bytes.h"
-#include "scene/board_fit.h"
 #include "scene/named_scenes.h"
 
 namespace thimble::tools {

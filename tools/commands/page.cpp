@@ -2,18 +2,13 @@
 // network.
 #include <zlib.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <new>
 
-#include "commands/arguments.h"
 #include "commands/render_command.h"
-#include "output/image.h"
 #include "output/plot.h"
-#include "output/units.h"
 #include "output/version.h"
-#include "readers/file_bytes.h"
 #include "scene/baking.h"
 #include "scene/named_scenes.h"
 

@@ -1,27 +1,13 @@
 // thimble particles: the paper's particle world in a window, in a terminal, or unseen.
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
 #include <tuple>
-#include <vector>
 
 #include "commands/commands.h"
 #include "host/screen.h"
 #include "host/y4m.h"
-#include "output/image.h"
-#include "output/output_file.h"
-#include "output/progress.h"
-#include "output/units.h"
 #include "particles/player.h"
 #include "particles/world_files.h"
-#include "readers/file_bytes.h"
 #include "readers/text.h"
 
 namespace thimble::tools {

@@ -1,25 +1,11 @@
 // thimble render: a scene as a picture.
-#include <algorithm>
-#include <cstdio>
 #include <limits>
-#include <optional>
 
-#include "boards/board_table.h"
 #include "commands/commands.h"
 #include "commands/render_command.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
 #include "output/hit_rows.h"
-#include "output/image.h"
-#include "output/output_file.h"
-#include "output/progress.h"
-#include "output/units.h"
 #include "scene/animation.h"
-#include "scene/framing.h"
 #include "scene/gpu_engine.h"
-#include "scene/lit_description.h"
-#include "scene/lit_streams.h"
-#include "scene/painter.h"
 #include "thimble/picture/ink.h"
 
 namespace thimble::tools {
@@ -85,19 +71,14 @@ EffectChoice effect_choice(const RenderCommand& command) {
 
 // What a lit picture cannot honour.
 void check_lit(const RenderCommand& command, EffectSet effects) {
-  const auto refuse = [&](const std::string& what) {
-    refuse_usage("a picture with the effects " + effects_text(effects) + " " + what +
-                 " (--effects none draws the scene without)");
+  const auto refuse = [&](bool is_wrong, const char* what) {
+    refuse_if(is_wrong, "a picture with the effects ", effects_text(effects), " ", what,
+              " (--effects none draws the scene without)");
   };
-  if (command.scene.structure != StructureKind::kCompact) {
-    refuse("wants --structure compact");
-  }
-  if (command.engine.name == "wide" || command.engine.name == "ray32") {
-    refuse("takes no --engine but auto, gpu and ray64");
-  }
-  if (command.quality.cuts()) {
-    refuse("takes no --cutoff and no --max-depth");
-  }
+  refuse(command.scene.structure != StructureKind::kCompact, "wants --structure compact");
+  refuse(command.engine.name == "wide" || command.engine.name == "ray32",
+         "takes no --engine but auto, gpu and ray64");
+  refuse(command.quality.cuts(), "takes no --cutoff and no --max-depth");
 }
 
 // What light does in the picture. Before the scene is built at least as much as then comes out.
@@ -297,19 +278,14 @@ PartHeader part_of(const Subject& subject, const SceneSource& source, const Ligh
   const RenderCommand& command = subject.command;
   const Quality& quality = command.quality;
   const bool is_lit = light.effects != Effect::kNone;
-  PartHeader part;
-  part.has_finer_shades = is_lit && quality.across == 1 && subject.format == PixelFormat::kRgb888;
-  part.scene_crc32 = scene_crc32(source, subject.built);
-  CrcSum camera;
-  add_camera(subject.framing.kept, &camera);
-  part.camera_crc32 = camera.value();
   CrcSum options;
   options.add_all(command.look.shade, subject.format, quality.samples_key(), quality.cutoff.raw,
                   quality.max_depth);
   if (is_lit) {
     add_lighting(light.lighting, light.used, light.effects, subject.built.level(), &options);
   }
-  part.options_crc32 = options.value();
+  PartHeader part = part_header(source, subject.built, {subject.framing}, options);
+  part.has_finer_shades = is_lit && quality.across == 1 && subject.format == PixelFormat::kRgb888;
   return part;
 }
 

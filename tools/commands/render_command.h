@@ -1,36 +1,11 @@
 /// The options of `thimble render`, what it writes, and the ways to draw it.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <initializer_list>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
-#include "commands/scene_options.h"
 #include "commands/stats.h"
-#include "output/image.h"
-#include "output/output_file.h"
 #include "output/part_file.h"
-#include "scene/built_scene.h"
 #include "scene/default_look.h"
-#include "scene/framing.h"
-#include "scene/lit_description.h"
-#include "scene/painter.h"
-#include "thimble/picture/shading.h"
-
-namespace CLI {
-class App;
-}
 
 namespace thimble::tools {
-
-class GpuEngine;
-class SceneSource;
 
 // --camera-path: the cameras of a film, a line each.
 
@@ -55,8 +30,8 @@ CameraPath read_camera_path(const std::string& path, const ViewWishes& view);
 
 /// So many frames from each camera of `keys` to the next: eye, target, up and angle go along Catmull-Rom splines, which
 /// pass through the keys at a speed that does not jump (E. Catmull, R. Rom, "A class of local interpolating splines",
-/// 1974), and a frame at the last one. Throws OutputError for more than kMostFilmFrames.
-CameraPath smoothed(const std::string& path, const CameraPath& keys, int frames);
+/// 1974), and a frame at the last one. Throws InputError for more than kMostFilmFrames.
+CameraPath smoothed(const CameraPath& keys, int frames);
 
 /// A camera each, in the world of `shape`. Throws OutputError, which names the line of a camera that cannot be set.
 std::vector<Framing> frame_path(const std::string& path, const CameraPath& cameras, const SceneShape& shape);
@@ -131,11 +106,12 @@ class CrcSum {
 /// Of these bytes alone, as 8 hex digits.
 std::string crc_of(std::span<const std::uint8_t> bytes);
 
-/// Of what was built: its voxels with their materials, the palette, and the light that the scene itself states.
-std::uint32_t scene_crc32(const SceneSource& source, const BuiltScene& built);
+/// The part of a picture or of a film that is drawn, but for what it holds: the checksums of what was built (its voxels with
+/// their materials, the palette, and the light that the scene itself states), of its cameras and of its options.
+PartHeader part_header(const SceneSource& source, const BuiltScene& built,
+                       const std::vector<Framing>& framings, const CrcSum& options);
 
-/// What a picture is drawn with: added to the checksum of a camera or of options.
-void add_camera(const SceneCamera& camera, CrcSum* sum);
+/// What a picture is drawn with: added to the checksum of options.
 void add_lighting(const LitDescription& lit, const UsedMaterials& used, EffectSet effects, int level,
                   CrcSum* sum);
 void add_look(const Look& look, int level, CrcSum* sum);

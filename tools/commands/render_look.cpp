@@ -1,21 +1,7 @@
 // thimble render without a word on how: the scene's own look, as a picture or a film.
-#include <algorithm>
-#include <cstdio>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "commands/arguments.h"
 #include "commands/render_command.h"
-#include "output/image.h"
-#include "output/part_file.h"
-#include "output/progress.h"
-#include "output/units.h"
 #include "scene/animation.h"
-#include "scene/lit_description.h"
 #include "scene/look_picture.h"
-#include "scene/scene_shape.h"
 
 namespace thimble::tools {
 namespace {
@@ -183,19 +169,10 @@ Stats stats_of(const RenderCommand& command, const SceneSource& source, LookStud
 // first picture of the whole.
 PartHeader part_of(const SceneSource& source, LookStudio& studio, const std::vector<Framing>& framings,
                    std::int32_t first_frame = 0) {
-  PartHeader part;
-  part.scene_crc32 = scene_crc32(source, studio.built());
-  CrcSum camera;
-  for (const Framing& framing : framings) {
-    add_camera(framing.kept, &camera);
-  }
-  part.camera_crc32 = camera.value();
   CrcSum options;
   add_look(studio.look(), studio.built().level(), &options);
-  options.add_all(first_frame);
-  options.add_all(studio.measured().exposure_q8);
-  part.options_crc32 = options.value();
-  return part;
+  options.add_all(first_frame, studio.measured().exposure_q8);
+  return part_header(source, studio.built(), framings, options);
 }
 
 void render_picture(const RenderCommand& command, const SceneSource& source, LookStudio& studio,

@@ -1,18 +1,10 @@
 
 #include <zlib.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
-#include <vector>
 
-#include "commands/arguments.h"
 #include "commands/render_command.h"
-#include "output/output_file.h"
-#include "output/units.h"
 #include "scene/animation.h"
-#include "scene/scene_source.h"
 
 namespace thimble::tools {
 namespace {
@@ -89,6 +81,35 @@ void add_pool(const Octree& pool, const SceneSource& source, CrcSum* sum) {
   fail_if(CompactTree::make(pool, {bytes.data(), bytes.size()}, &tree) != Status::kOk,
           "is too large for parts of a picture with --structure pool");
   add_tree(tree, source, sum);
+}
+
+std::uint32_t scene_crc32(const SceneSource& source, const BuiltScene& built) {
+  const Structure& traced = built.traced();
+  CrcSum sum;
+  sum.add_all(built.level(), traced.kind == StructureKind::kDense);
+  for (const Rgb8& color : built.palette()) {
+    sum.add_all(color.r, color.g, color.b);
+  }
+  switch (traced.kind) {
+    case StructureKind::kDense:
+      add_grid(traced.dense, &sum);
+      break;
+    case StructureKind::kPool:
+      add_pool(traced.pool, source, &sum);
+      break;
+    case StructureKind::kCompact:
+      add_tree(traced.compact, source, &sum);
+      break;
+  }
+  return sum.value();
+}
+
+void add_camera(const SceneCamera& camera, CrcSum* sum) {
+  sum->add_all(camera.is_perspective, camera.direction_bits, camera.fov_degrees.raw, camera.span.raw);
+  sum->add_all(camera.eye.x.raw, camera.eye.y.raw, camera.eye.z.raw);
+  sum->add_all(camera.target.x.raw, camera.target.y.raw, camera.target.z.raw);
+  sum->add_all(camera.forward.x, camera.forward.y, camera.forward.z);
+  sum->add_all(camera.up.x, camera.up.y, camera.up.z);
 }
 
 }  // namespace
@@ -179,7 +200,8 @@ void RenderOutput::read_sizes(const ViewWishes& view, bool fov_given) {
   }
   if (seconds) {
     const int rate = FilmTimes(PartKind::kCameraPath, 1).frames;
-    cameras = smoothed(camera_path, cameras, static_cast<int>(std::lround(rate * *seconds)));
+    cameras = about(printable(camera_path),
+                    [&] { return smoothed(cameras, static_cast<int>(std::lround(rate * *seconds))); });
   }
   if (frames) {
     const std::int64_t all = film_frames();
@@ -220,33 +242,17 @@ std::string crc_of(std::span<const std::uint8_t> bytes) {
   return crc_text(sum.value());
 }
 
-std::uint32_t scene_crc32(const SceneSource& source, const BuiltScene& built) {
-  const Structure& traced = built.traced();
-  CrcSum sum;
-  sum.add_all(built.level(), traced.kind == StructureKind::kDense);
-  for (const Rgb8& color : built.palette()) {
-    sum.add_all(color.r, color.g, color.b);
+PartHeader part_header(const SceneSource& source, const BuiltScene& built,
+                       const std::vector<Framing>& framings, const CrcSum& options) {
+  PartHeader part;
+  part.scene_crc32 = scene_crc32(source, built);
+  CrcSum cameras;
+  for (const Framing& framing : framings) {
+    add_camera(framing.kept, &cameras);
   }
-  switch (traced.kind) {
-    case StructureKind::kDense:
-      add_grid(traced.dense, &sum);
-      break;
-    case StructureKind::kPool:
-      add_pool(traced.pool, source, &sum);
-      break;
-    case StructureKind::kCompact:
-      add_tree(traced.compact, source, &sum);
-      break;
-  }
-  return sum.value();
-}
-
-void add_camera(const SceneCamera& camera, CrcSum* sum) {
-  sum->add_all(camera.is_perspective, camera.direction_bits, camera.fov_degrees.raw, camera.span.raw);
-  sum->add_all(camera.eye.x.raw, camera.eye.y.raw, camera.eye.z.raw);
-  sum->add_all(camera.target.x.raw, camera.target.y.raw, camera.target.z.raw);
-  sum->add_all(camera.forward.x, camera.forward.y, camera.forward.z);
-  sum->add_all(camera.up.x, camera.up.y, camera.up.z);
+  part.camera_crc32 = cameras.value();
+  part.options_crc32 = options.value();
+  return part;
 }
 
 void add_lighting(const LitDescription& lit, const UsedMaterials& used, EffectSet effects, int level,

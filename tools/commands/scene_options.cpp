@@ -1,22 +1,11 @@
 #include "commands/scene_options.h"
 
-#include <algorithm>
-#include <array>
 #include <sstream>
 #include <thread>
-#include <vector>
 
-#include "commands/arguments.h"
 #include "commands/stats.h"
-#include "output/progress.h"
-#include "output/units.h"
 #include "scene/board_fit.h"
 #include "scene/gpu_engine.h"
-#include "scene/lit_streams.h"
-#include "scene/scene_source.h"
-#include "scene/wide_renderer.h"
-#include "thimble/light/render.h"
-#include "thimble/trace/ray.h"
 #include "wide/limits.h"
 
 namespace thimble::tools {
@@ -182,21 +171,6 @@ std::string take_effects(const std::string& text, EffectChoice* choice) {
   return "is not auto, none, all or a list such as shadows,sky of " + effect_names() + nearest;
 }
 
-void add_normals(CLI::App& app, EffectChoice* choice) {
-  add_text_option(
-      app, "--normals", "auto|face|smooth",
-      [choice](const std::string& text) {
-        choice->smooth.reset();
-        if (text != "auto") {
-          choice->smooth = text == "smooth";
-        }
-        return text == "auto" || text == "face" || text == "smooth" ? "" : "is not auto, face or smooth";
-      },
-      "what light sees: the faces of the voxels, the slope of the surface (the effect smooth-normals), or "
-      "what the effects say")
-      ->default_str("auto");
-}
-
 // Refuses what this build was made without.
 void choose(const std::string& name, std::string* chosen) {
   refuse_if(name == "wide" && WideRenderer::instruction_sets().empty(),
@@ -227,7 +201,10 @@ void add_effect_list(CLI::App& app, EffectChoice* choice, const std::string& hel
       app, "--effects", value, [choice](const std::string& text) { return take_effects(text, choice); }, help)
       ->default_str(usual)
       ->check(offering(offered()));
-  add_normals(app, choice);
+  add_choice_option(
+      app, "--normals", {{"auto", std::nullopt}, {"face", false}, {"smooth", true}}, &choice->smooth,
+      "what light sees: the faces of the voxels, the slope of the surface (the effect smooth-normals), or "
+      "what the effects say");
 }
 
 void add_effect_options(CLI::App& app, EffectWishes* wishes, const std::string& more,

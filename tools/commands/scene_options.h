@@ -1,34 +1,13 @@
 /// SCENE, what is built of it, what light does in it, how it is seen and what draws, as most subcommands take it.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <string>
-
-#include "scene/built_scene.h"
-#include "scene/lit_description.h"
-#include "scene/scene_arguments.h"
-#include "thimble/light/scene.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
-namespace thimble::platform {
-struct BoardFacts;
-}
-namespace thimble {
-enum class ShadeMode : unsigned char;
-struct TraceOptions;
-}  // namespace thimble
+#include "boards/board_table.h"
+#include "commands/arguments.h"
+#include "scene/framing.h"
+#include "scene/painter.h"
+#include "scene/scene_source.h"
 
 namespace thimble::tools {
-
-class BuiltScene;
-class SceneSource;
-struct Quality;
-struct ViewWishes;
 
 /// SCENE, --depth, --memory, --board and the rest that decides what is built.
 struct SceneOptions {
@@ -80,8 +59,6 @@ int all_cores();
 void add_threads(CLI::App& app, int* threads, const std::string& help);
 
 class GpuEngine;
-class LitStreams;
-class WideRenderer;
 
 struct EngineOptions {
   std::string name = "auto";

@@ -1,30 +1,16 @@
 // thimble sheet: every scene of a folder on one picture, or on one page.
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "commands/commands.h"
 #include "commands/limited_picture.h"
 #include "commands/render_command.h"
-#include "commands/scene_options.h"
 #include "host/canvas.h"
-#include "output/output_file.h"
 #include "output/plot.h"
-#include "output/progress.h"
-#include "output/units.h"
 #include "output/version.h"
-#include "readers/file_bytes.h"
 #include "readers/read_any.h"
 
 namespace thimble::tools {

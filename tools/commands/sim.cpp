@@ -1,6 +1,4 @@
 // thimble sim: the firmware's own application in the host simulator.
-#include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -8,22 +6,10 @@
 #include "commands/bake_command.h"
 #include "commands/commands.h"
 #include "commands/render_command.h"
-#include "commands/scene_options.h"
 #include "commands/sim_session.h"
-#include "output/image.h"
-#include "output/output_file.h"
-#include "output/progress.h"
-#include "output/tables.h"
-#include "output/units.h"
-#include "readers/file_bytes.h"
 #include "readers/picture.h"
-#include "scene/baking.h"
-#include "scene/board_fit.h"
-#include "scene/framing.h"
 #include "scene/named_scenes.h"
 #include "scene/wide_frames.h"
-#include "thimble/bake/baked_scene.h"
-#include "thimble/light/scene.h"
 
 namespace thimble::tools {
 namespace {

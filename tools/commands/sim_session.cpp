@@ -3,12 +3,8 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
-#include <memory>
-#include <optional>
 #include <utility>
 
 #include "host/y4m.h"

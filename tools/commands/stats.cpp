@@ -1,11 +1,5 @@
 #include "commands/stats.h"
 
-#include "boards/board_table.h"
-#include "commands/arguments.h"
-#include "commands/scene_options.h"
-#include "output/tables.h"
-#include "scene/lit_description.h"
-
 namespace thimble::tools {
 
 Stats::Stats(const SceneOptions& options, const SceneSource& source)
@@ -92,9 +86,7 @@ void add_report(CLI::App& app, ReportPaths* paths, bool* quiet, const std::strin
 
 void ReportFiles::write(const nlohmann::ordered_json& rows, const std::string& plot) {
   outputs_.write(0, csv_of(rows));
-  if (outputs_[1] != nullptr) {
-    outputs_[1]->write(rows.dump(2) + "\n");
-  }
+  outputs_.write(1, rows.dump(2) + "\n");
   outputs_.write(2, plot);
   outputs_.commit();
 }

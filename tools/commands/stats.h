@@ -1,25 +1,10 @@
 /// The counts, bytes and times of one run, for people and for programs.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "output/output_file.h"
-#include "scene/built_scene.h"
-#include "scene/painter.h"
-#include "scene/scene_source.h"
-
-namespace CLI {
-class App;
-}
+#include "commands/scene_options.h"
+#include "output/tables.h"
 
 namespace thimble::tools {
-
-struct SceneOptions;
 
 struct Stats {
   std::string scene;

@@ -3,24 +3,14 @@
 // Frames are seen and timed as instruments/timed_frames.h says. Every frame is judged: pixels are drawn at random and their
 // rays handed to the exact reference, which holds voxels in a grid of its own, filled from the generator and not from the
 // tree: those of the cubes that these rays pass until their hits, since a grid of a billion points takes 9 GB.
-#include <algorithm>
-#include <cstdio>
 #include <random>
 
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
 #include "instruments/timed_frames.h"
 #include "output/plot.h"
-#include "output/progress.h"
-#include "output/tables.h"
-#include "output/units.h"
 #include "reference/reference.h"
-#include "scene/built_scene.h"
 #include "scene/generators.h"
 #include "scene/gpu_engine.h"
-#include "scene/scene_source.h"
-#include "scene/wide_renderer.h"
 
 namespace thimble::tools {
 namespace {

@@ -1,10 +1,7 @@
 // thimble thumbnail: a small picture for file managers, within limits that hold for any file.
-#include <string>
-
 #include "commands/commands.h"
 #include "commands/limited_picture.h"
 #include "output/file_place.h"
-#include "output/output_file.h"
 
 namespace thimble::tools {
 namespace {

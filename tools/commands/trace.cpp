@@ -1,33 +1,14 @@
 // thimble trace: rays from a file, hits to a file.
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cstddef>
 #include <limits>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "commands/stats.h"
 #include "instruments/timed_frames.h"
 #include "output/hit_rows.h"
-#include "output/output_file.h"
-#include "output/progress.h"
-#include "output/units.h"
-#include "readers/file_bytes.h"
 #include "readers/formats.h"
 #include "readers/text.h"
-#include "scene/built_scene.h"
 #include "scene/given_ray.h"
 #include "scene/gpu_engine.h"
-#include "scene/scene_source.h"
-#include "scene/wide_renderer.h"
 #include "scene/workers.h"
-#include "thimble/trace/ray.h"
 
 namespace thimble::tools {
 namespace {
@@ -47,16 +28,6 @@ std::optional<std::array<double, 6>> parse_line(std::string_view line) {
     line.remove_prefix(std::min(comma, line.size() - 1) + 1);
   }
   return numbers;
-}
-
-// Whether a line holds names only: a header. A line with a number among its columns is a ray gone wrong.
-bool is_header(const std::vector<std::string_view>& columns) {
-  return std::all_of(columns.begin(), columns.end(), [](std::string_view column) {
-    column.remove_prefix(column.starts_with('+') ? 1 : 0);
-    double number = 0;
-    return std::from_chars(column.data(), column.data() + column.size(), number).ec ==
-           std::errc::invalid_argument;
-  });
 }
 
 // About so many bytes a chunk, some thousand rays.
@@ -130,8 +101,7 @@ class RayFile {
   }
   void find_lines() {
     const std::string_view text = file_.text();
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    begin_ = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+    begin_ = mark_bytes(text);
     // Up to the first ray.
     LineReader lines(text.substr(begin_));
     const std::size_t front = begin_;
@@ -139,7 +109,7 @@ class RayFile {
     for (std::string_view line; lines.next(line); begin_ = front + lines.offset(), ++first_line_) {
       if (!trimmed(line).empty()) {
         const std::vector<std::string_view> columns = comma_columns(line);
-        if (header || parse_line(line) || !is_header(columns)) {
+        if (header || parse_line(line) || !are_names(columns)) {
           break;
         }
         constexpr std::array<const char*, 6> kNames{"ox", "oy", "oz", "dx", "dy", "dz"};

@@ -1,16 +1,6 @@
 // thimble uart-picture: the picture in what a board sent over its UART, among its other lines. `make emulate SHOT=...`
 // asks for it, and it does for the log of a terminal that a real board hangs on.
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <string_view>
-
 #include "commands/commands.h"
-#include "output/image.h"
-#include "output/output_file.h"
-#include "readers/file_bytes.h"
-#include "readers/input_error.h"
-#include "thimble/picture/camera.h"
 
 namespace thimble::tools {
 namespace {

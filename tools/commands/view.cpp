@@ -1,9 +1,5 @@
 // thimble view: a scene to look around in.
-#include <cstdio>
-
 #include "commands/commands.h"
-#include "commands/scene_options.h"
-#include "thimble/picture/shading.h"
 #include "viewer/controls.h"
 #include "viewer/viewer.h"
 

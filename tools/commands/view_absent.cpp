@@ -1,6 +1,4 @@
 // In place of view.cpp and the viewer in a build without the wide renderer.
-#include <string>
-
 #include "commands/commands.h"
 
 namespace thimble::tools {

@@ -1,15 +1,7 @@
 #include "commands/scene_options.h"
 
 #include <cmath>
-#include <cstdio>
 #include <tuple>
-
-#include "boards/board_table.h"
-#include "commands/arguments.h"
-#include "output/units.h"
-#include "scene/framing.h"
-#include "scene/painter.h"
-#include "thimble/picture/shading.h"
 
 namespace thimble::tools {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "instruments/timed_frames.h"
+#include "output/progress.h"
 #include "output/tables.h"
-#include "readers/progress.h"
 #include "scene/built_scene.h"
 #include "scene/framing.h"
 #include "scene/lit_description.h"

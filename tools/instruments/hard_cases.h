@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "output/progress.h"
 #include "output/tables.h"
-#include "readers/progress.h"
 
 namespace thimble::tools {
 

@@ -1,20 +1,10 @@
 // The command's parts behind one object (thimble/files.h).
-#include <CLI/CLI.hpp>
 #include <mutex>
 
-#include "commands/arguments.h"
 #include "commands/bake_command.h"
 #include "commands/render_command.h"
 #include "instruments/memory_study.h"
-#include "output/image.h"
-#include "output/output_file.h"
-#include "output/units.h"
 #include "output/voxel_file.h"
-#include "readers/input_error.h"
-#include "scene/built_scene.h"
-#include "scene/lit_description.h"
-#include "scene/scene_source.h"
-#include "scene/wide_renderer.h"
 #include "thimble/files.h"
 
 namespace thimble::files {

@@ -1,11 +1,22 @@
-/// A progress bar on standard error, when that is a terminal and the work takes long enough to wait for.
+/// How what takes long says how far it is, and a bar that shows it.
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 
 namespace thimble::tools {
 
+/// Called now and then: fraction done, 0..1. May throw to cancel.
+using Progress = std::function<void(double)>;
+/// Calls it, unless it is empty.
+inline void tell(const Progress& progress, double done) {
+  if (progress) {
+    progress(done);
+  }
+}
+
+/// A bar on standard error, when that is a terminal and the work takes long enough to wait for.
 class ProgressBar {
  public:
   /// Shows nothing when `quiet`, when standard error is no terminal, or within the first half second.

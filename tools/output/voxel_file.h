@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "output/output_file.h"
-#include "readers/progress.h"
+#include "output/progress.h"
 #include "readers/source.h"
 #include "thimble/tree/compact_tree.h"
 

@@ -78,6 +78,11 @@ SharedBytes load_shared(const std::string& path, const FirstLook& look, bool is_
 /// @return what is wrong with it ("is empty"), or nothing: a scene is worth having without its pictures
 /// @throws ShortageError, OutputError  as `load_file`
 std::string load_beside(const std::string& path, std::uint64_t limit_bytes, SharedBytes& file);
+/// The same of what a file at `path` calls `name`: from its folder on, with slashes of either kind; where that leads
+/// nowhere, beside it by what is behind the last slash, for names of places on another machine.
+/// @param name  becomes the one that the file was found by, with plain slashes
+std::string load_named(const std::string& path, std::string& name, std::uint64_t limit_bytes,
+                       SharedBytes& file);
 
 /// What `inflate_bytes` takes: deflate with zlib's frame around it, with gzip's, or bare as in a .zip.
 enum class Deflated : std::uint8_t { kZlib, kGzip, kBare };

@@ -640,7 +640,7 @@ bool looks_like_gltf(std::string_view text) {
   if (text.starts_with("glTF")) {
     return true;
   }
-  std::string_view rest = text.substr(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+  std::string_view rest = text.substr(mark_bytes(text));
   rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
   return rest.starts_with('{');
 }

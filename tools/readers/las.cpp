@@ -6,12 +6,10 @@
 // All else (intensity, returns, classes, waves, records of variable length, the coordinate system) is passed
 // over. z is up, as it is in the file.
 //
-// Points that are compressed (laz.h) are unpacked first, what is read of them alone.
+// Points that are compressed (laz.cpp) are unpacked first, what is read of them alone.
 //
 // Source of the format: ASPRS, "LAS Specification 1.4 - R15", and those of the versions before it.
 #include "readers/formats.h"
-
-#include "readers/laz.h"
 
 namespace thimble::tools {
 namespace {

@@ -1,12 +1,6 @@
-#include "readers/laz.h"
-
-#include <algorithm>
-#include <array>
-#include <optional>
-#include <vector>
-
+// `.laz`: the points of a `.las` file, compressed as LASzip does it. What is unpacked is what `las.cpp` reads.
 #include "output/units.h"
-#include "readers/text.h"
+#include "readers/formats.h"
 
 namespace thimble::tools {
 namespace {

@@ -250,20 +250,12 @@ class ObjMaterials {
   void read_libraries(const std::string& path, const std::string& line, Described& described,
                       Notes& notes) const {
     const auto read = [&](const std::string& name) {
-      std::string slashed = name;
-      std::replace(slashed.begin(), slashed.end(), '\\', '/');
-      const std::string folder = path.substr(0, path.rfind('/') + 1);
+      std::string found = name;
       SharedBytes file;
-      std::string fault =
-          load_beside(slashed.starts_with('/') ? slashed : folder + slashed, kFileLimitBytes, file);
-      if (const std::size_t last = slashed.rfind('/') + 1; !fault.empty() && last != 0) {
-        slashed.erase(0, last);  // a place on another machine
-        fault = load_beside(folder + slashed, kFileLimitBytes, file).empty() ? "" : fault;
-      }
-      if (!fault.empty()) {
+      if (const std::string fault = load_named(path, found, kFileLimitBytes, file); !fault.empty()) {
         return "the materials of " + tools::quoted(name) + " beside it are not drawn: it " + fault;
       }
-      read_library(file.text(), slashed.substr(0, slashed.rfind('/') + 1), numbers_, described.materials);
+      read_library(file.text(), found.substr(0, found.rfind('/') + 1), numbers_, described.materials);
       described.is_read = true;
       return std::string();
     };

@@ -27,17 +27,16 @@ class OctomapGrid final : public VoxelGrid {
             "\" or \"", kBinaryMapMagic, "\"");
     read_head();
     std::uint64_t voxels = 0;
-    low_ = Vec3i{1 << kMapLevels, 1 << kMapLevels, 1 << kMapLevels};
-    Vec3i high{0, 0, 0};
+    Extent<std::int32_t> box;
     walk([&](const Vec3i& corner, int level, Rgb) {
       const std::int32_t side = std::int32_t{1} << level;
-      low_ = {std::min(low_.x, corner.x), std::min(low_.y, corner.y), std::min(low_.z, corner.z)};
-      high = {std::max(high.x, corner.x + side), std::max(high.y, corner.y + side),
-              std::max(high.z, corner.z + side)};
+      box.add({corner.x, corner.y, corner.z});
+      box.add({corner.x + side, corner.y + side, corner.z + side});
       voxels += std::uint64_t{1} << 3 * level;
     });
     fail_if(voxels == 0, "the map has no occupied leaf");
-    size_ = {high.x - low_.x, high.y - low_.y, high.z - low_.z};
+    low_ = {box.low[0], box.low[1], box.low[2]};
+    size_ = {box.high[0] - low_.x, box.high[1] - low_.y, box.high[2] - low_.z};
     const std::int32_t longest = *std::max_element(size_.begin(), size_.end());
     fail_if(longest > static_cast<std::int32_t>(kGridSideLimit) || voxels > kMostMapVoxels,
             "the occupied leaves are ", voxels, " voxels and ", longest, " long; the limits are ",

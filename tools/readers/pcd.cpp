@@ -179,7 +179,8 @@ class PcdCloud final : public PointCloud {
     is_text_ = header.encoding == PcdEncoding::kText;
     data_offset_ = header.data_offset;
     data_line_ = header.data_line;
-    count_points(header);
+    fail_if(!header.points && !header.width, "the header has no line 'POINTS' or 'WIDTH'");
+    count_ = header.points.value_or(header.width.value_or(0) * header.height.value_or(1));
     find_columns(header);
     if (header.encoding == PcdEncoding::kCompressed) {
       ByteReader data(file.bytes.subspan(data_offset_), "the compressed data", data_offset_);
@@ -227,11 +228,6 @@ class PcdCloud final : public PointCloud {
 
  private:
   using Components = std::array<double, 3>;
-
-  void count_points(const PcdHeader& header) {
-    fail_if(!header.points && !header.width, "the header has no line 'POINTS' or 'WIDTH'");
-    count_ = header.points.value_or(header.width.value_or(0) * header.height.value_or(1));
-  }
 
   void find_columns(const PcdHeader& header) {
     static constexpr std::array<std::string_view, kUsed> kNames{"x", "y", "z", "rgb", "r", "g", "b"};

@@ -189,18 +189,26 @@ void skip_property(Body& body, const PlyProperty& property) {
   body.skip(property.type, property.is_list ? list_length(body, property) : 1);
 }
 
-template <class Body>
-void skip_element(Body& body, const PlyElement& element, ProgressMeter& meter) {
+/// Walks the records of an element, each by `read(number)`.
+template <class Body, class Read>
+void read_records(Body& body, const PlyElement& element, ProgressMeter& meter, const Read& read) {
   begin_element(body, element);
   // Records without properties take no bytes, whatever their count.
   const std::uint64_t count = element.properties.empty() ? 0 : element.count;
   for (std::uint64_t record = 0; record < count; ++record) {
-    for (const PlyProperty& property : element.properties) {
-      skip_property(body, property);
-    }
+    read(record);
     body.end_record();
     meter.at(body.offset());
   }
+}
+
+template <class Body>
+void skip_element(Body& body, const PlyElement& element, ProgressMeter& meter) {
+  read_records(body, element, meter, [&](std::uint64_t) {
+    for (const PlyProperty& property : element.properties) {
+      skip_property(body, property);
+    }
+  });
 }
 
 /// One vertex as it is written; a splat's colour from 0 to 1.
@@ -260,9 +268,8 @@ template <class Body, class VisitVertex>
 void read_vertices(Body& body, const PlyElement& element, ProgressMeter& meter, const VisitVertex& visit) {
   // A splat's colour is half and this part of the first of its harmonics, 1 / (2 sqrt(pi)).
   constexpr double kHarmonic = 0.28209479177387814;
-  begin_element(body, element);
   PlyVertex vertex;
-  for (std::uint64_t record = 0; record < element.count; ++record) {
+  read_records(body, element, meter, [&](std::uint64_t) {
     for (const PlyProperty& property : element.properties) {
       if (property.role > PlyRole::kV) {
         skip_property(body, property);
@@ -273,10 +280,8 @@ void read_vertices(Body& body, const PlyElement& element, ProgressMeter& meter, 
           property.is_harmonic ? std::fmin(1, std::fmax(0, 0.5 + kHarmonic * value)) : value;
     }
     vertex.line = body.line();
-    body.end_record();
     visit(vertex);
-    meter.at(body.offset());
-  }
+  });
 }
 
 /// A place on a picture, v downwards; in a file v runs up.
@@ -332,14 +337,12 @@ void read_face(Body& body, const PlyElement& element, std::uint64_t record, std:
       skip_property(body, property);
     }
   }
-  body.end_record();
 }
 
 template <class Body>
 void read_strips(Body& body, const PlyElement& element, std::uint64_t vertex_count, TriangleMesh& mesh,
                  ProgressMeter& meter) {
-  begin_element(body, element);
-  for (std::uint64_t record = 0; record < element.count; ++record) {
+  read_records(body, element, meter, [&](std::uint64_t record) {
     for (const PlyProperty& property : element.properties) {
       if (property.role != PlyRole::kIndices) {
         skip_property(body, property);
@@ -356,9 +359,7 @@ void read_strips(Body& body, const PlyElement& element, std::uint64_t vertex_cou
         }
       }
     }
-    body.end_record();
-    meter.at(body.offset());
-  }
+  });
 }
 
 /// @param pictures  that the file names
@@ -370,7 +371,7 @@ void read_faces(Body& body, const PlyElement& element, std::uint64_t vertex_coun
   // Most files hold triangles only; the check above makes this at most a few times the file's size.
   mesh.triangles.reserve(mesh.triangles.size() + static_cast<std::size_t>(element.count));
   PlyFace face;
-  for (std::uint64_t record = 0; record < element.count; ++record) {
+  read_records(body, element, meter, [&](std::uint64_t record) {
     read_face(body, element, record, vertex_count, pictures != 0, face);
     const bool has_place = !face.texcoords.empty() && face.texcoords.size() == face.corners.size() &&
                            mesh.texcoords.size() + face.corners.size() < kNoTexcoord;
@@ -388,8 +389,7 @@ void read_faces(Body& body, const PlyElement& element, std::uint64_t vertex_coun
     if (parts != nullptr) {
       mesh.face_colors.resize(mesh.triangles.size(), parts->color(face.color));
     }
-    meter.at(body.offset());
-  }
+  });
 }
 
 bool holds_polygons(const PlyElement& element) {
@@ -432,11 +432,11 @@ void add_faces(Body& body, const PlyElement& element, const PlyHeader& header, c
   if (is_colored) {
     Body ahead = body;  // what full is shows at their end
     PlyFace face;
-    begin_element(ahead, element);
-    for (std::uint64_t record = 0; record < element.count; ++record) {
+    ProgressMeter unseen;
+    read_records(ahead, element, unseen, [&](std::uint64_t record) {
       read_face(ahead, element, record, vertices.count, false, face);
       parts.see(face.color);
-    }
+    });
     parts.add_note(mesh.notes);
   } else if (has_color(element)) {
     mesh.notes.push_back(std::string("the colors of its faces are not drawn, but those of its ") +

@@ -1,11 +1,227 @@
-// Statements of a `.scene` file (src/FORMAT.md). Of each, the line stands behind its word, which stands at `place`; it reads
+// `.scene` files (src/FORMAT.md). Of each statement, the line stands behind its word, which stands at `place`; it reads
 // what belongs to it and throws as `read_scene_text` does.
+#include "readers/scene_text.h"
+
 #include "output/units.h"
 #include "readers/formats.h"
-#include "readers/text_line.h"
+#include "readers/real3.h"
 #include "thimble/trace/ray.h"
 
 namespace thimble::tools {
+namespace {
+
+// The language that statements are written in: words, numbers and clauses of one line, each with the place where it stands.
+
+/// A word or a number, and where it stands.
+struct Word {
+  std::string_view text;
+  TextPlace place;
+  bool is_quoted = false;
+  bool empty() const { return text.empty() && !is_quoted; }
+};
+
+/// One line, read word by word. Its comment is no part of it.
+class TextLine {
+ public:
+  TextLine(std::string_view text, std::uint32_t number) : text_(text), number_(number) {}
+
+  /// Where reading continues.
+  TextPlace place() const {
+    const auto before = text_.substr(0, next_);
+    const auto characters = std::count_if(before.begin(), before.end(), [](char c) {
+      return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // all but continuations
+    });
+    return {number_, static_cast<std::uint32_t>(characters) + 1};
+  }
+  /// The next word, empty at the end of the line or before a comment.
+  Word word() {
+    skip_blanks();
+    Word result;
+    result.place = place();
+    if (next_ == text_.size() || text_[next_] != '"') {
+      result.text = run_until(kSpaces);
+      return result;
+    }
+    const std::size_t end = text_.find('"', next_ + 1);
+    fail_if(end == std::string_view::npos, result.place, "the quotation mark is not closed on this line");
+    result.text = text_.substr(next_ + 1, end - next_ - 1);
+    result.is_quoted = true;
+    next_ = end + 1;
+    fail_if(next_ < text_.size() && !is_space(text_[next_]), place(),
+            "a blank must follow the quotation mark");
+    return result;
+  }
+  /// The next number: a comma may stand before it unless it is the first of several.
+  Word number(bool is_first) {
+    skip_blanks();
+    if (!is_first && next_ < text_.size() && text_[next_] == ',') {
+      ++next_;
+      skip_blanks();
+    }
+    Word result;
+    result.place = place();
+    result.text = run_until(kSpacesAndComma);
+    return result;
+  }
+  /// Whether nothing but a comment is left.
+  bool at_end() {
+    skip_blanks();
+    return next_ == text_.size();
+  }
+
+  // Values, each by its name in an error's sentence and with both ends of its range.
+
+  double real(const std::string& what, double low, double high, bool is_first = true) {
+    const Word word = number(is_first);
+    const std::string range = shortest(low) + " to " + shortest(high);
+    fail_if(word.text.empty(), word.place, what, " is missing: a number from ", range, " is expected here");
+    double value = 0;
+    const NumberKind kind = parse_number(word.text, value);
+    fail_if(kind != NumberKind::kFinite || !(value >= low && value <= high), word.place, what, " is ",
+            quoted(word.text),
+            kind == NumberKind::kFinite      ? ", it must be " + range
+            : kind == NumberKind::kNotFinite ? ", which is not finite"
+                                             : ", which is not a number");
+    return value;
+  }
+  std::int32_t whole(const std::string& what, std::int32_t low, std::int32_t high, bool is_first = true) {
+    const Word word = number(is_first);
+    const std::string range = concat(low, " to ", high);
+    fail_if(word.text.empty(), word.place, what, " is missing: a whole number from ", range,
+            " is expected here");
+    std::int64_t value = 0;
+    const bool is_whole = parse_integer(word.text, value);
+    if (!is_whole || value < low || value > high) {
+      double large = 0;  // beyond 64 bits
+      const bool is_number =
+          is_whole || (parse_number(word.text, large) == NumberKind::kFinite && std::abs(large) >= 9e18);
+      fail_at(word.place, what, " is ", quoted(word.text),
+              is_number ? ", it must be " + range : ", which is not a whole number");
+    }
+    return static_cast<std::int32_t>(value);
+  }
+  std::array<double, 3> three_reals(const std::string& what, double low, double high) {
+    return {real("x of " + what, low, high), real("y of " + what, low, high, false),
+            real("z of " + what, low, high, false)};
+  }
+  Vec3i three_wholes(const std::string& what, std::int32_t low, std::int32_t high) {
+    return {whole("x of " + what, low, high), whole("y of " + what, low, high, false),
+            whole("z of " + what, low, high, false)};
+  }
+  /// Red, green and blue, 0 to 255 each.
+  Rgb8 color() {
+    const auto channel = [this](const char* name, bool is_first) {
+      return static_cast<std::uint8_t>(whole(name, 0, 255, is_first));
+    };
+    return {channel("red", true), channel("green", false), channel("blue", false)};
+  }
+  /// 0 to 1, as 0 to 255.
+  std::uint8_t share(const char* what) { return static_cast<std::uint8_t>(to_fixed(real(what, 0, 1), 255)); }
+  /// In 1/256; a number that is above 0 stays above 0.
+  std::uint16_t fixed_q8(const char* what, double high) {
+    const double value = real(what, 0, high);
+    return static_cast<std::uint16_t>(std::clamp(to_fixed(value, 256), value > 0 ? 1 : 0, 65535));
+  }
+  /// x, y or z, as 0 to 2.
+  std::size_t axis(const char* what) {
+    const Word name = word();
+    const std::size_t found = std::string_view("xyz").find(name.text);
+    fail_if(name.text.size() != 1 || found == std::string_view::npos, name.place, what,
+            " needs an axis: x, y or z", name.empty() ? "" : ", not " + quoted(name.text));
+    return found;
+  }
+
+ private:
+  void skip_blanks() {
+    const std::size_t before = next_;
+    while (next_ < text_.size() && is_space(text_[next_])) {
+      ++next_;
+    }
+    if (next_ < text_.size() && text_[next_] == '#' &&
+        (next_ == 0 || next_ != before || is_space(text_[next_ - 1]))) {
+      text_ = text_.substr(0, next_);
+    }
+  }
+  /// What stands before the next one of `ends`.
+  std::string_view run_until(std::string_view ends) {
+    const std::size_t begin = std::exchange(next_, std::min(text_.find_first_of(ends, next_), text_.size()));
+    return text_.substr(begin, next_ - begin);
+  }
+
+  static constexpr std::string_view kSpacesAndComma = ", \t\n\v\f\r";
+  std::string_view text_;
+  std::uint32_t number_;
+  std::size_t next_ = 0;
+};
+
+/// A clause of a statement: its word, and what reads all that follows it.
+struct Clause {
+  std::string_view word;
+  std::function<void(const Word&)> read;
+  bool repeats = false;  ///< otherwise it stands once in a statement
+};
+
+/// The clauses of one statement, in any order.
+class Clauses {
+ public:
+  /// @param needed  those that must be said by the end of the line
+  Clauses(std::string_view statement, TextLine* line, std::vector<std::string_view> needed = {})
+      : statement_(statement), line_(line), needed_(std::move(needed)) {}
+
+  /// Reads to the end of the line.
+  void read(const std::vector<Clause>& known) {
+    while (!line_->at_end()) {
+      const Word word = line_->word();
+      const auto clause = std::find_if(known.begin(), known.end(), [&](const Clause& each) {
+        return !word.is_quoted && each.word == word.text;
+      });
+      if (clause == known.end()) {
+        std::string names(known.front().word);
+        for (std::size_t i = 1; i < known.size(); ++i) {
+          names += (i + 1 < known.size() ? ", " : " and ") + std::string(known[i].word);
+        }
+        fail_at(word.place, quoted(word.text), " is not known in ", statement_, "; there are ", names);
+      }
+      fail_if(!clause->repeats && has(word.text), word.place, word.text, " is said twice in this ",
+              statement_);
+      said_.push_back(word.text);
+      clause->read(word);
+    }
+    std::for_each(needed_.begin(), needed_.end(), [this](std::string_view word) { need(word); });
+  }
+  bool has(std::string_view word) const { return std::find(said_.begin(), said_.end(), word) != said_.end(); }
+  /// Fails at the end of the line where `word` was not said.
+  void need(std::string_view word) const {
+    if (!has(word)) {
+      line_->at_end();
+      fail_at(line_->place(), statement_, " needs ", word);
+    }
+  }
+
+ private:
+  std::string_view statement_;
+  TextLine* line_;
+  std::vector<std::string_view> needed_, said_{};
+};
+
+/// Fails where the bytes are not UTF-8 text, or hold control characters.
+void check_characters(std::string_view text) {
+  TextPlace place{1, 1};
+  for (std::size_t at = 0; at < text.size();) {
+    unsigned code = 0;
+    const std::size_t length = character_bytes(text.substr(at), &code);
+    const auto byte = static_cast<unsigned char>(text[at]);
+    fail_if(length == 0, place, "the bytes here are not UTF-8 text");
+    const bool ends_line = byte == '\n' || byte == '\r';
+    fail_if((byte < ' ' && byte != '\t' && !ends_line) || byte == 0x7F, place, "byte ", byte,
+            " is a control character, not text");
+    at += text.substr(at).starts_with("\r\n") ? 2 : length;
+    place = ends_line ? TextPlace{place.line + 1, 1} : TextPlace{place.line, place.column + 1};
+  }
+}
+
+}  // namespace
+
 namespace statements {
 namespace {
 
@@ -93,7 +309,7 @@ void replace(TextLine& line, const SceneText& scene, SceneText::Part* part, Repl
 }
 
 void water(TextLine& line, TextPlace place, SceneText* scene) {
-  Clauses clauses("water", &line);
+  Clauses clauses("water", &line, {"level"});
   SceneText::WaterArea area;
   area.place = place;
   double level = 0;
@@ -115,7 +331,6 @@ void water(TextLine& line, TextPlace place, SceneText* scene) {
                 color_clause(line, surface),
                 index_clause(line, surface),
                 density_clause(line, surface)});
-  clauses.need("level");
   if (clauses.has("from") || clauses.has("to")) {
     clauses.need("to");
     clauses.need("from");
@@ -170,14 +385,12 @@ void material(TextLine& line, TextPlace place, SceneText* scene) {
 void box(TextLine& line, TextPlace place, SceneText* scene) {
   SceneText::Part& part = add_part(scene, SceneText::PartKind::kBox, place);
   part.material = named_material(line, *scene, "box");
-  Clauses clauses("box", &line);
   const auto corner = [&](const Word& word) {
     return line.three_wholes(std::string(word.text), -kSceneTextReach, kSceneTextReach);
   };
-  clauses.read({{"from", [&](const Word& word) { part.low = corner(word); }},
-                {"to", [&](const Word& word) { part.high = corner(word); }}});
-  clauses.need("from");
-  clauses.need("to");
+  Clauses("box", &line, {"from", "to"})
+      .read({{"from", [&](const Word& word) { part.low = corner(word); }},
+             {"to", [&](const Word& word) { part.high = corner(word); }}});
   fail_if(VoxelBox{part.low, part.high}.empty(), place,
           "this box holds no voxel: each number after to must be above the one after from");
 }
@@ -185,13 +398,11 @@ void box(TextLine& line, TextPlace place, SceneText* scene) {
 void ball(TextLine& line, TextPlace place, SceneText* scene) {
   SceneText::Part& part = add_part(scene, SceneText::PartKind::kBall, place);
   part.material = named_material(line, *scene, "ball");
-  Clauses clauses("ball", &line);
+  Clauses clauses("ball", &line, {"at", "radius"});
   clauses.read(
       {{"at",
         [&](const Word&) { part.center = to_q8(line.three_reals("at", -kSceneTextReach, kSceneTextReach)); }},
        {"radius", [&](const Word&) { part.radius_q8 = to_fixed(line.real("radius", 1, 4096), Q8::kOne); }}});
-  clauses.need("at");
-  clauses.need("radius");
 }
 
 void model(TextLine& line, TextPlace place, SceneText* scene) {
@@ -262,7 +473,7 @@ std::array<double, 3> direction(TextLine& line, const Word& word) {
 template <bool is_point>
 void read_light(TextLine& line, TextPlace place, SceneText* scene) {
   fail_if(scene->lights.size() == kMaxLights, place, "there are more lights than the limit of ", kMaxLights);
-  Clauses clauses(is_point ? "lamp" : "sun", &line);
+  Clauses clauses(is_point ? "lamp" : "sun", &line, {is_point ? "at" : "toward"});
   Light light;
   light.is_point = is_point;
   Tinted tinted{{255, 255, 255}, 1};
@@ -283,14 +494,13 @@ void read_light(TextLine& line, TextPlace place, SceneText* scene) {
   known.push_back(tinted.color(line));
   known.push_back(tinted.brightness_of(line));
   clauses.read(known);
-  clauses.need(known.front().word);
   const auto color_q8 = tinted.color_q8();
   std::copy(color_q8.begin(), color_q8.end(), light.color_q8);
   scene->lights.push_back({light, place});
 }
 
 void camera(TextLine& line, TextPlace place, SceneText* scene) {
-  Clauses clauses("camera", &line);
+  Clauses clauses("camera", &line, {"eye", "target"});
   SceneCamera result;
   std::array<double, 3> eye{};
   std::array<double, 3> target{};
@@ -315,8 +525,6 @@ void camera(TextLine& line, TextPlace place, SceneText* scene) {
          check_projection(word);
        }},
   });
-  clauses.need("eye");
-  clauses.need("target");
   const Real3 forward = minus(target, eye);
   result.eye = to_q8(eye);
   result.target = to_q8(target);
@@ -346,14 +554,13 @@ void sky(TextLine& line, TextPlace, SceneText* scene) {
 
 void fog(TextLine& line, TextPlace, SceneText* scene) {
   Fog& fog = scene->rest.fog;
-  Clauses clauses("fog", &line);
+  Clauses clauses("fog", &line, {"density"});
   clauses.read({{"color", [&](const Word&) { fog.color = line.color(); }},
                 {"density", [&](const Word&) {
                    const double density = line.real("density", 0, kMostDensity);
                    fog.density_q16 =
                        static_cast<std::uint32_t>(std::max(to_fixed(density, 65536), density > 0 ? 1 : 0));
                  }}});
-  clauses.need("density");
 }
 
 void occlusion(TextLine& line, TextPlace, SceneText* scene) {
@@ -469,11 +676,7 @@ void read_statement(TextLine line, FirstLines* first, SceneText* scene) {
 ///   is none, not finite or out of its range, something said twice, a name that is not defined, more than a
 ///   limit above, bytes that are not UTF-8; and a file that shows nothing
 Source read_scene_text(const SharedBytes& file, const ReadOptions&, const Progress&) {
-  std::string_view text = file.text();
-  constexpr std::string_view kMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kMark)) {
-    text.remove_prefix(kMark.size());
-  }
+  const std::string_view text = file.text().substr(mark_bytes(file.text()));
   fail_if(text.size() > kSceneTextBytes, "holds ", grouped(text.size()),
           " bytes, the limit of a .scene file is ", grouped(kSceneTextBytes));
   check_characters(text);

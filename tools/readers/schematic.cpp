@@ -377,22 +377,16 @@ class SchematicGrid final : public VoxelGrid {
     } else {
       code_ = BlockCode::kWords;
     }
-    low_ = boxes_[0].corner;
+    Extent<std::int64_t> all;
     for (const BlockBox& box : boxes_) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low_[axis] = std::min(low_[axis], box.corner[axis]);
-      }
+      all.add(box.corner);
+      all.add({box.corner[0] + box.size[0], box.corner[1] + box.size[1], box.corner[2] + box.size[2]});
     }
-    // Here z is up.
-    constexpr std::array<std::size_t, 3> kAxes{0, 2, 1};
-    for (const BlockBox& box : boxes_) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t theirs = kAxes[axis];
-        const std::int64_t end = box.corner[theirs] + box.size[theirs] - low_[theirs];
-        size_[axis] =
-            std::max(size_[axis], static_cast<std::int32_t>(checked_side("a side of all regions", end)));
-      }
-    }
+    low_ = all.low;
+    const auto side = [&](std::size_t axis) {
+      return checked_side("a side of all regions", all.high[axis] - low_[axis]);
+    };
+    set_size(side(0), side(2), side(1));  // here z is up
     check_solid("the schematic holds nothing but air");
   }
 

@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "output/progress.h"
 #include "readers/file_bytes.h"
-#include "readers/progress.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
 

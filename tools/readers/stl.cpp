@@ -19,8 +19,7 @@ constexpr std::size_t kStlHeaderBytes = 80;
 constexpr std::size_t kTriangleBytes = 50;
 
 bool begins_with_solid(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  std::string_view line = text.substr(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0, 64);
+  std::string_view line = text.substr(mark_bytes(text), 64);
   return equals_ignoring_case(take_word(line), "solid");
 }
 

@@ -110,13 +110,8 @@ std::string_view take_word(std::string_view& line) {
 }
 
 std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && is_space(text.back())) {
-    text.remove_suffix(1);
-  }
-  return text;
+  text.remove_prefix(std::min(text.find_first_not_of(kSpaces), text.size()));
+  return text.substr(0, text.find_last_not_of(kSpaces) + 1);
 }
 
 std::string_view without_comment(std::string_view line) {
@@ -151,6 +146,15 @@ std::vector<std::string_view> comma_columns(std::string_view line) {
     }
     line.remove_prefix(comma + 1);
   }
+}
+
+bool are_names(const std::vector<std::string_view>& columns) {
+  return std::all_of(columns.begin(), columns.end(), [](std::string_view column) {
+    column.remove_prefix(column.starts_with('+') ? 1 : 0);
+    double number = 0;
+    return std::from_chars(column.data(), column.data() + column.size(), number).ec ==
+           std::errc::invalid_argument;
+  });
 }
 
 bool misplaces(const std::vector<std::string_view>& header, std::span<const char* const> names) {

@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "output/progress.h"
 #include "readers/input_error.h"
-#include "readers/progress.h"
 
 namespace thimble::tools {
 
@@ -60,8 +60,14 @@ double number_or_nan(std::string_view word, std::uint64_t line);
 bool parse_integer(std::string_view word, std::int64_t& value);
 
 /// Blank, tab, line end, vertical tab and form feed.
+inline constexpr std::string_view kSpaces = " \t\n\v\f\r";
 constexpr bool is_space(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+/// Bytes of the byte order mark that `text` begins with: 3, or none.
+constexpr std::size_t mark_bytes(std::string_view text) {
+  return text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
 }
 
 /// Takes the first word (a run without spaces) off the front of `line`; empty when there is none.
@@ -79,6 +85,8 @@ bool equals_ignoring_case(std::string_view word, std::string_view lower_case);
 
 /// The columns of a line between commas, without the spaces around them.
 std::vector<std::string_view> comma_columns(std::string_view line);
+/// Whether they may be a header: none begins as a number does, which would be one gone wrong.
+bool are_names(const std::vector<std::string_view>& columns);
 /// Whether a header, with quotes or without, has one of `names` in the place of another. Other words say nothing.
 bool misplaces(const std::vector<std::string_view>& header, std::span<const char* const> names);
 

@@ -205,21 +205,14 @@ std::shared_ptr<const Texture> Textures::beside(const std::string& name, bool is
     return nullptr;
   }
   constexpr std::uint64_t kMostFileBytes = std::uint64_t{256} << 20;
-  std::string slashed = name;
-  std::replace(slashed.begin(), slashed.end(), '\\', '/');
-  const std::string folder = path_.substr(0, path_.rfind('/') + 1);
-  const std::string full = slashed.starts_with('/') ? slashed : folder + slashed;
-  std::string reason;
-  for (const std::string& place : {full, folder + slashed.substr(slashed.rfind('/') + 1)}) {
-    SharedBytes file;
-    const std::string fault = load_beside(place, kMostFileBytes, file);
-    if (fault.empty()) {
-      return inside(name, file.bytes, is_opacity);
-    }
-    reason = reason.empty() ? fault : reason;
+  std::string found = name;
+  SharedBytes file;
+  const std::string fault = load_named(path_, found, kMostFileBytes, file);
+  if (fault.empty()) {
+    return inside(name, file.bytes, is_opacity);
   }
   known_[{name, is_opacity}] = nullptr;
-  miss(name, reason);
+  miss(name, fault);
   return nullptr;
 }
 

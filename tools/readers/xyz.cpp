@@ -409,8 +409,7 @@ bool is_atom(std::string_view line) {
 
 /// Reads what stands before the points.
 void read_preamble(std::string_view text, Layout& layout) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  const std::size_t begin = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  const std::size_t begin = mark_bytes(text);
   layout.first_point_offset = begin;
   LineReader lines(text.substr(begin));
   std::string_view line;

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "readers/progress.h"
+#include "output/progress.h"
 #include "thimble/base/memory.h"
 
 namespace thimble::tools {

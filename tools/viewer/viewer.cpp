@@ -323,8 +323,8 @@ class Viewer {
 
   // Of a picture that measures its exposure, as `thimble render` does: the one that is shown may have that of a frame before.
   void begin_refinement() {
-    refinement_ =
-        std::make_unique<Refinement>(std::make_shared<FinishedPicture>(look_, wishes_), options_.threads);
+    refinement_ = std::make_unique<Refinement>(std::make_shared<FinishedPicture>(look_, picture_->wishes()),
+                                               options_.threads);
     refining_since_ = now();
   }
 
