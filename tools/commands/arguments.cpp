@@ -275,6 +275,9 @@ std::vector<std::string> words_offered(CLI::Option* option) {
     // None were given.
   }
   std::vector<std::string> words;
+  if (text.starts_with("FILE")) {
+    return words;  // FILE.csv|.npy
+  }
   for (const std::string& word : CLI::detail::split(text, '|')) {
     const bool is_name = std::none_of(word.begin(), word.end(), [](char c) { return c >= 'a' && c <= 'z'; });
     if (text.find('|') != std::string::npos && !(is_name && CLI::detail::to_lower(word) != word)) {

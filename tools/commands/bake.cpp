@@ -20,7 +20,7 @@ constexpr std::string_view kTaken =
     "template this throw true try typedef typeid typename typeof union unsigned using virtual void "
     "volatile while xor bitand bitor compl and_eq or_eq xor_eq not_eq int8_t int16_t int32_t int64_t "
     "uint8_t uint16_t uint32_t uint64_t size_t wchar_t char8_t char16_t char32_t co_await co_return "
-    "co_yield thread_local main intptr_t ";
+    "co_yield thread_local main intptr_t std thimble NULL ";
 
 std::string capitals(std::string_view text) {
   std::string out(text);
@@ -132,7 +132,8 @@ std::string c_header_text(const BakedScene& scene, std::string_view identifier) 
   if (const ConstBytes made_from = scene.section(SectionKind::kName); !made_from.empty()) {
     text += " from " + for_comment(made_from);
   }
-  text += ". Do not edit. */\n#ifndef " + prefix + "H\n#define " + prefix + "H\n\n#include <stdint.h>\n\n";
+  text += ". Do not edit. */\n#ifndef " + prefix + "BAKED_H\n#define " + prefix +
+          "BAKED_H\n\n#include <stdint.h>\n\n";
   const auto define = [&](const char* fact, const std::string& value) {
     text += "#define " + prefix + fact + " " + value + "\n";
   };

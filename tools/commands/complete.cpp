@@ -58,8 +58,8 @@ void offer_values(CLI::Option* option, const std::string& before, const std::str
   }
   if (type == "SCENE") {
     offer_scenes(before, word);
-  } else if (words.empty() &&
-             (type.find("FILE") != std::string::npos || type == "SCRIPT" || type == "REF" || type == "LOG")) {
+  } else if (words.empty() && (type.find("FILE") != std::string::npos || type == "SCRIPT" || type == "REF" ||
+                               type == "LOG" || type == "DIR" || type == "FOLDER")) {
     std::puts(kFiles);
   }
 }

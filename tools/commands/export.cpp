@@ -25,6 +25,12 @@ void run(const ExportCommand& command) {
     const VoxelBox box = built.bounds();
     std::fprintf(stderr, "%s, from %d,%d,%d to %d,%d,%d\n", counted(built.voxels(), "voxel").c_str(),
                  box.low.x, box.low.y, box.low.z, box.high.x - 1, box.high.y - 1, box.high.z - 1);
+    const Vec3i moved{box.low.x & ~255, box.low.y & ~255, box.low.z & ~255};
+    if (command.format == VoxelFormat::kVox && (moved.x | moved.y | moved.z) != 0) {
+      std::fprintf(stderr,
+                   "note: who reads this .vox puts its lowest model to 0, which moves all by %d,%d,%d\n",
+                   -moved.x, -moved.y, -moved.z);
+    }
   }
 }
 

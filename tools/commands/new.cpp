@@ -118,7 +118,9 @@ void check(const NewCommand& command) {
   std::string name = command.name();
   std::replace(name.begin(), name.end(), '-', command.panel == nullptr ? '-' : '_');
   refuse_if(!is_identifier(name), "DIR: \"", command.name(),
-            "\" is no name of a project: letters, digits and _ (- with --panel), a letter first");
+            "\" is no name of a project: letters, digits and _ (- with --panel), a letter first, and no word "
+            "of C or "
+            "C++");
   const std::string board = command.scene.board->name;
   const bool is_cmake = command.build == "cmake";
   const bool has_sketch = command.sketch() != nullptr;
@@ -209,6 +211,9 @@ void run(const NewCommand& given) {
   for (const auto& [name, text] : files) {
     paths.push_back(command.folder + "/" + name);
     fs::create_directories(fs::path(paths.back()).parent_path(), error);
+    if (error) {
+      throw OutputError(command.folder + ": cannot be made: " + error.message());
+    }
     names.push_back(name);
   }
   try {

@@ -77,7 +77,7 @@ class PixelJudge {
       const Ray ray = camera.ray(x, y);
       Hit hit;
       fail_if(built.closest_hit(ray, &hit, options) != Status::kOk,
-              "--engine does not take the rays of this view");
+              "this engine does not take the rays of this view");
       Judged& judged = judged_.emplace_back();
       for (std::size_t axis = 0; axis < 3; ++axis) {
         judged.ray.origin_q8[axis] = ray.origin[static_cast<int>(axis)].raw;
@@ -155,7 +155,7 @@ Row measure(const TableCommand& command, const BuiltScene& built, PixelJudge* ju
     if (status == Status::kTooFine && command.engine.name != "wide") {
       status = built.render_band(camera, shading, band, &counts, options);
     }
-    fail_if(status != Status::kOk, "--engine does not take the rays of this view");
+    fail_if(status != Status::kOk, "--engine ", command.engine.name, " does not take the rays of this view");
     const double taken = watch.seconds();
     if (frame < 0) {
       continue;  // its memory was never touched before

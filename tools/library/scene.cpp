@@ -14,11 +14,11 @@ using namespace thimble::tools;
 
 // What is thrown inside, as the one thing that comes out.
 template <class Run>
-auto with_error(const Run& run) {
+auto with_error(const Run& run, const std::string& subject = {}) {
   try {
     return run();
   } catch (const InputError& error) {
-    throw Error(error.what());
+    throw Error((subject.empty() ? "" : subject + ": ") + error.what());
   } catch (const OutputError& error) {
     throw Error(error.what());
   } catch (const CLI::ParseError& error) {  // options that make no sense together
@@ -122,16 +122,18 @@ struct Scene::Parts {
 };
 
 Scene::Scene(const std::string& scene, const Options& options) {
-  parts_ = with_error([&] { return std::make_unique<const Parts>(opening(scene, options)); });
+  parts_ = with_error([&] { return std::make_unique<const Parts>(opening(scene, options)); }, scene);
 }
 
 Scene::Scene(ConstBytes bytes, const std::string& name, const Options& options) {
-  parts_ = with_error([&] {
-    SceneOptions opened = opening(name, options);
-    opened.arguments.content =
-        SharedBytes::own(std::string(reinterpret_cast<const char*>(bytes.data), bytes.size));
-    return std::make_unique<const Parts>(opened);
-  });
+  parts_ = with_error(
+      [&] {
+        SceneOptions opened = opening(name, options);
+        opened.arguments.content =
+            SharedBytes::own(std::string(reinterpret_cast<const char*>(bytes.data), bytes.size));
+        return std::make_unique<const Parts>(opened);
+      },
+      name);
 }
 
 Scene::~Scene() = default;
@@ -227,6 +229,7 @@ std::vector<std::uint8_t> Scene::bake(const Options& options) const {
 
 std::string Scene::memory(int frames) const {
   return with_error([&] {
+    fail_if(frames < 0 || frames > 99, "frames is 0 to 99, not ", frames);
     StudyOptions options;
     options.frames = frames;
     return memory_json(study_memory(*parts_->source, parts_->arguments.scene, options, [](double) {}));

@@ -67,7 +67,8 @@ std::string quoted_for_shell(std::string_view word) {
 
 std::string render_command(const SceneArguments& scene, const ViewWishes& view,
                            const std::vector<std::string>& look, const std::string& output) {
-  std::vector<std::string> words{"thimble", "render", scene.scene};
+  const bool is_like_option = scene.scene.size() > 1 && scene.scene.starts_with("-");
+  std::vector<std::string> words{"thimble", "render", (is_like_option ? "./" : "") + scene.scene};
   const auto add = [&](const std::string& name, const std::string& value, bool is_given = true) {
     if (is_given) {
       words.insert(words.end(), {name, value});
