@@ -16,15 +16,12 @@ extern "C" int32_t thimble_frame_make(thimble_frame_t* frame, const thimble_tree
   const CompactTree* const from = held<CompactTree>(tree);
   const Camera* const view = held<Camera>(camera);
   Shading look;
-  Bytes memory;
-  if (!stands(frame) || from == nullptr || view == nullptr || !take_shading(shading, &look) ||
-      !is_format(format) || !take_bytes(bytes, size_bytes, &memory)) {
+  if (from == nullptr || view == nullptr || !take_shading(shading, &look) || !is_format(format)) {
     return number(Status::kBadArgument);
   }
-  AnytimeFrame begun;
-  const Status status =
-      AnytimeFrame::make(*from, *view, look, static_cast<PixelFormat>(format), memory, &begun);
-  return hold(status, begun, frame);
+  return make_held<AnytimeFrame>(frame, bytes, size_bytes, [&](Bytes memory, AnytimeFrame* begun) {
+    return AnytimeFrame::make(*from, *view, look, static_cast<PixelFormat>(format), memory, begun);
+  });
 }
 
 extern "C" int32_t thimble_frame_refine(thimble_frame_t* frame, const thimble_tree_t* tree,

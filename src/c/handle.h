@@ -1,5 +1,5 @@
-// What a handle of the C face holds: a mark that tells it from bytes that hold nothing, and an object of the
-// core. Internal to src/c.
+// What a handle of the C face holds: a mark that tells it from bytes that hold nothing and from handles of other kinds,
+// and an object of the core. Internal to src/c.
 #pragma once
 
 #include <stddef.h>
@@ -16,11 +16,36 @@
 #pragma GCC diagnostic ignored "-Wmissing-declarations"
 #endif
 
-namespace thimble::c_face {
+namespace thimble {
 
-/// Which kind of object: what a handle's first word says. A handle of another kind holds nothing. 0: of none.
+class AnytimeFrame;
+class BakedScene;
+struct BakedLighting;
+class BrickMap;
+class Camera;
+class CompactTree;
+class EditJournal;
+class EditedWorld;
+class Octree;
+class ParticleWorld;
+
+namespace c_face {
+
+/// Which kind of object: what a handle's first word says, four letters each. A handle of another kind holds nothing.
+struct Marks {
+  static constexpr uint32_t of(const BakedScene*) { return 0x4E435354; }     // TSCN
+  static constexpr uint32_t of(const CompactTree*) { return 0x45525454; }    // TTRE
+  static constexpr uint32_t of(const Octree*) { return 0x54434F54; }         // TOCT
+  static constexpr uint32_t of(const Camera*) { return 0x4D414354; }         // TCAM
+  static constexpr uint32_t of(const BrickMap*) { return 0x4B524254; }       // TBRK
+  static constexpr uint32_t of(const BakedLighting*) { return 0x54474C54; }  // TLGT
+  static constexpr uint32_t of(const AnytimeFrame*) { return 0x4D524654; }   // TFRM
+  static constexpr uint32_t of(const ParticleWorld*) { return 0x54525054; }  // TPRT
+  static constexpr uint32_t of(const EditedWorld*) { return 0x444C5754; }    // TWLD
+  static constexpr uint32_t of(const EditJournal*) { return 0x4E524A54; }    // TJRN
+};
 template <class Object>
-inline constexpr uint32_t kMark = 0;
+inline constexpr uint32_t kMark = Marks::of(static_cast<const Object*>(nullptr));
 
 template <class Object>
 struct Held {
@@ -30,7 +55,6 @@ struct Held {
 
 template <class Object, class Handle>
 constexpr bool fits() {
-  static_assert(kMark<Object> != 0, "kinds.h has no mark for this object");
   static_assert(__is_trivially_copyable(Object), "C copies handles as bytes");
   static_assert(sizeof(Held<Object>) <= sizeof(Handle),
                 "enum thimble_sizes has too few words for this handle");
@@ -83,11 +107,35 @@ int32_t with(Handle* handle, const Call& call) {
   return number(object == nullptr ? Status::kBadArgument : call(*object));
 }
 
+/// Has `say(object)` fill `to`, which may not be null, from the object that a handle holds.
+template <class Object, class Handle, class To, class Say>
+int32_t tell(const Handle* handle, const To* to, const Say& say) {
+  return with<Object>(handle, [&](const Object& object) {
+    if (to == nullptr) {
+      return Status::kBadArgument;
+    }
+    say(object);
+    return Status::kOk;
+  });
+}
+
 /// Bytes as C gives them. False for a null pointer with a size.
 template <class Byte, class Void>
 bool take_bytes(Void* bytes, size_t size, Span<Byte>* span) {
   *span = {static_cast<Byte*>(bytes), size};
   return bytes != nullptr || size == 0;
+}
+
+/// Lets a handle hold what `make(bytes, &object)` makes in bytes as C gives them.
+template <class Object, class Byte = uint8_t, class Handle, class Void, class Make>
+int32_t make_held(Handle* handle, Void* bytes, size_t size, const Make& make) {
+  Span<Byte> memory;
+  if (!stands(handle) || !take_bytes(bytes, size, &memory)) {
+    return number(Status::kBadArgument);
+  }
+  Object made;
+  const Status status = make(memory, &made);
+  return hold(status, made, handle);
 }
 
 constexpr Vec3i vector_of(const thimble_vec3_t& from) {
@@ -106,4 +154,5 @@ constexpr thimble_box_t to_c(const VoxelBox& from) {
   return {to_c(from.low), to_c(from.high)};
 }
 
-}  // namespace thimble::c_face
+}  // namespace c_face
+}  // namespace thimble

@@ -1,6 +1,6 @@
 #include "thimble/tree/octree.h"
 
-#include "kinds.h"
+#include "handle.h"
 
 namespace thimble::c_face {
 namespace {
@@ -17,12 +17,8 @@ extern "C" size_t thimble_octree_bytes(uint32_t nodes) {
 
 extern "C" int32_t thimble_octree_make(thimble_octree_t* octree, int32_t level, void* bytes,
                                        size_t size_bytes) {
-  Bytes pool;
-  if (!stands(octree) || !take_bytes(bytes, size_bytes, &pool)) {
-    return number(Status::kBadArgument);
-  }
-  Octree made;
-  return hold(Octree::make(level, pool, &made), made, octree);
+  return make_held<Octree>(octree, bytes, size_bytes,
+                           [=](Bytes pool, Octree* made) { return Octree::make(level, pool, made); });
 }
 
 extern "C" int32_t thimble_octree_clear(thimble_octree_t* octree) {
@@ -72,18 +68,15 @@ extern "C" int32_t thimble_octree_material(const thimble_octree_t* octree, int32
 }
 
 extern "C" int32_t thimble_octree_get_info(const thimble_octree_t* octree, thimble_octree_info_t* info) {
-  const Octree* const tree = held<Octree>(octree);
-  if (tree == nullptr || info == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  info->voxels = tree->voxels();
-  info->solid_added = tree->solid_added();
-  info->bounds = to_c(tree->bounds());
-  info->level = tree->level();
-  info->nodes = tree->nodes_used();
-  info->nodes_free = tree->nodes_free();
-  info->nodes_high_water = tree->nodes_high_water();
-  return number(Status::kOk);
+  return tell<Octree>(octree, info, [=](const Octree& tree) {
+    info->voxels = tree.voxels();
+    info->solid_added = tree.solid_added();
+    info->bounds = to_c(tree.bounds());
+    info->level = tree.level();
+    info->nodes = tree.nodes_used();
+    info->nodes_free = tree.nodes_free();
+    info->nodes_high_water = tree.nodes_high_water();
+  });
 }
 
 }  // namespace thimble::c_face

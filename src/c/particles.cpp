@@ -1,6 +1,6 @@
 #include "thimble/plane/particles.h"
 
-#include "kinds.h"
+#include "handle.h"
 
 namespace thimble::c_face {
 namespace {
@@ -33,14 +33,14 @@ int32_t end_of(int32_t at, int32_t size) {
   return at > INT32_MAX - size ? INT32_MAX : at + size;
 }
 
-// Draws or erases a box, as `change(world, box)` does.
-template <class Change>
-int32_t change_box(thimble_particles_t* world, Vec2i from, Vec2i size, const Change& change) {
+// Draws or erases a box.
+int32_t change_box(thimble_particles_t* world, Vec2i from, Vec2i size,
+                   void (ParticleWorld::*change)(const CellBox& box)) {
   return with<ParticleWorld>(world, [&](ParticleWorld& balls) {
     if (size.x < 0 || size.y < 0) {
       return Status::kOutOfRange;
     }
-    change(balls, CellBox{from, {end_of(from.x, size.x), end_of(from.y, size.y)}});
+    (balls.*change)(CellBox{from, {end_of(from.x, size.x), end_of(from.y, size.y)}});
     return Status::kOk;
   });
 }
@@ -76,12 +76,11 @@ extern "C" size_t thimble_particles_bytes(const thimble_particle_config_t* confi
 
 extern "C" int32_t thimble_particles_make(thimble_particles_t* world, const thimble_particle_config_t* config,
                                           void* bytes, size_t size_bytes) {
-  Bytes memory;
-  if (!stands(world) || config == nullptr || !take_bytes(bytes, size_bytes, &memory)) {
-    return number(Status::kBadArgument);
-  }
-  ParticleWorld made;
-  return hold(ParticleWorld::make(config_of(*config), memory, &made), made, world);
+  return config == nullptr
+             ? number(Status::kBadArgument)
+             : make_held<ParticleWorld>(world, bytes, size_bytes, [=](Bytes memory, ParticleWorld* made) {
+                 return ParticleWorld::make(config_of(*config), memory, made);
+               });
 }
 
 extern "C" int32_t thimble_particles_add(thimble_particles_t* world, int32_t x_q16, int32_t y_q16,
@@ -115,14 +114,12 @@ extern "C" int32_t thimble_particles_set_gravity(thimble_particles_t* world, int
 
 extern "C" int32_t thimble_particles_draw_box(thimble_particles_t* world, int32_t x, int32_t y, int32_t width,
                                               int32_t height) {
-  return change_box(world, {x, y}, {width, height},
-                    [](ParticleWorld& balls, const CellBox& box) { balls.draw_box(box); });
+  return change_box(world, {x, y}, {width, height}, &ParticleWorld::draw_box);
 }
 
 extern "C" int32_t thimble_particles_erase_box(thimble_particles_t* world, int32_t x, int32_t y,
                                                int32_t width, int32_t height) {
-  return change_box(world, {x, y}, {width, height},
-                    [](ParticleWorld& balls, const CellBox& box) { balls.erase_box(box); });
+  return change_box(world, {x, y}, {width, height}, &ParticleWorld::erase_box);
 }
 
 extern "C" int32_t thimble_particles_step(thimble_particles_t* world) {
@@ -134,17 +131,14 @@ extern "C" int32_t thimble_particles_step(thimble_particles_t* world) {
 
 extern "C" int32_t thimble_particles_get_info(const thimble_particles_t* world,
                                               thimble_particles_info_t* info) {
-  const ParticleWorld* const balls = held<ParticleWorld>(world);
-  if (balls == nullptr || info == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  info->width = balls->field().width();
-  info->height = balls->field().height();
-  info->count = balls->count();
-  info->asleep = balls->asleep();
-  info->id_limit = balls->id_limit();
-  info->steps = balls->steps();
-  return number(Status::kOk);
+  return tell<ParticleWorld>(world, info, [=](const ParticleWorld& balls) {
+    info->width = balls.field().width();
+    info->height = balls.field().height();
+    info->count = balls.count();
+    info->asleep = balls.asleep();
+    info->id_limit = balls.id_limit();
+    info->steps = balls.steps();
+  });
 }
 
 extern "C" int32_t thimble_particles_get(const thimble_particles_t* world, int32_t id,

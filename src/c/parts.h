@@ -1,7 +1,7 @@
 // What a scene, a tree and a camera tell C of themselves, each by the file of its name. Internal to src/c.
 #pragma once
 
-#include "kinds.h"
+#include "handle.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/picture/shading.h"
 #include "thimble/tree/compact_tree.h"

@@ -1,7 +1,7 @@
 // Rays, hits, shading and bands between C and the core. Internal to src/c.
 #pragma once
 
-#include "kinds.h"
+#include "handle.h"
 #include "thimble/picture/camera.h"
 #include "thimble/picture/render.h"
 #include "thimble/picture/shading.h"

@@ -7,12 +7,8 @@ namespace thimble::c_face {
 static_assert(THIMBLE_BAKED_VERSION == kBakedVersion);
 
 extern "C" int32_t thimble_scene_open(thimble_scene_t* scene, const void* bytes, size_t size_bytes) {
-  ConstBytes from;
-  if (!stands(scene) || bytes == nullptr || !take_bytes(bytes, size_bytes, &from)) {
-    return number(Status::kBadArgument);
-  }
-  BakedScene opened;
-  return hold(BakedScene::open(from, &opened), opened, scene);
+  return bytes == nullptr ? number(Status::kBadArgument)
+                          : make_held<BakedScene, const uint8_t>(scene, bytes, size_bytes, BakedScene::open);
 }
 
 extern "C" const char* thimble_scene_validate(const void* bytes, size_t size_bytes, uint32_t* place) {
@@ -24,21 +20,18 @@ extern "C" const char* thimble_scene_validate(const void* bytes, size_t size_byt
 }
 
 extern "C" int32_t thimble_scene_get_info(const thimble_scene_t* scene, thimble_scene_info_t* info) {
-  const BakedScene* const from = held<BakedScene>(scene);
-  if (from == nullptr || info == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  const ConstBytes name = from->section(SectionKind::kName);
-  tell_tree(from->tree(), &info->tree);
-  info->palette_rgb = reinterpret_cast<const uint8_t*>(from->palette().data);
-  info->palette_colors = static_cast<uint32_t>(from->palette().size);
-  info->crc32 = from->crc32();
-  info->name = name.empty() ? nullptr : reinterpret_cast<const char*>(name.data);
-  info->name_bytes = static_cast<uint32_t>(name.size);
-  info->has_view = from->has_camera() ? 1 : 0;
-  info->has_light = from->section(SectionKind::kLighting).empty() ? 0 : 1;
-  info->has_bricks = from->section(SectionKind::kBrickMap).empty() ? 0 : 1;
-  return number(Status::kOk);
+  return tell<BakedScene>(scene, info, [=](const BakedScene& from) {
+    const ConstBytes name = from.section(SectionKind::kName);
+    tell_tree(from.tree(), &info->tree);
+    info->palette_rgb = reinterpret_cast<const uint8_t*>(from.palette().data);
+    info->palette_colors = static_cast<uint32_t>(from.palette().size);
+    info->crc32 = from.crc32();
+    info->name = name.empty() ? nullptr : reinterpret_cast<const char*>(name.data);
+    info->name_bytes = static_cast<uint32_t>(name.size);
+    info->has_view = from.has_camera() ? 1 : 0;
+    info->has_light = from.section(SectionKind::kLighting).empty() ? 0 : 1;
+    info->has_bricks = from.section(SectionKind::kBrickMap).empty() ? 0 : 1;
+  });
 }
 
 extern "C" int32_t thimble_scene_tree(const thimble_scene_t* scene, thimble_tree_t* tree) {
@@ -68,12 +61,9 @@ extern "C" int32_t thimble_scene_camera(const thimble_scene_t* scene, const thim
 }
 
 extern "C" int32_t thimble_scene_shading(const thimble_scene_t* scene, thimble_shading_t* shading) {
-  const BakedScene* const from = held<BakedScene>(scene);
-  if (from == nullptr || shading == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  tell_default_shading(ShadeMode::kColor, from->palette(), shading);
-  return number(Status::kOk);
+  return tell<BakedScene>(scene, shading, [=](const BakedScene& from) {
+    tell_default_shading(ShadeMode::kColor, from.palette(), shading);
+  });
 }
 
 }  // namespace thimble::c_face

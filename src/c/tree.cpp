@@ -22,30 +22,19 @@ extern "C" size_t thimble_tree_bytes(const thimble_octree_t* octree) {
 extern "C" int32_t thimble_tree_make(thimble_tree_t* tree, const thimble_octree_t* octree, void* bytes,
                                      size_t size_bytes) {
   const Octree* const from = held<Octree>(octree);
-  Bytes out;
-  if (from == nullptr || !stands(tree) || !take_bytes(bytes, size_bytes, &out)) {
-    return number(Status::kBadArgument);
-  }
-  CompactTree made;
-  return hold(CompactTree::make(*from, out, &made), made, tree);
+  return from == nullptr ? number(Status::kBadArgument)
+                         : make_held<CompactTree>(tree, bytes, size_bytes, [=](Bytes out, CompactTree* made) {
+                             return CompactTree::make(*from, out, made);
+                           });
 }
 
 extern "C" int32_t thimble_tree_open(thimble_tree_t* tree, const void* bytes, size_t size_bytes) {
-  ConstBytes from;
-  if (!stands(tree) || bytes == nullptr || !take_bytes(bytes, size_bytes, &from)) {
-    return number(Status::kBadArgument);
-  }
-  CompactTree opened;
-  return hold(CompactTree::open(from, &opened), opened, tree);
+  return bytes == nullptr ? number(Status::kBadArgument)
+                          : make_held<CompactTree, const uint8_t>(tree, bytes, size_bytes, CompactTree::open);
 }
 
 extern "C" int32_t thimble_tree_get_info(const thimble_tree_t* tree, thimble_tree_info_t* info) {
-  const CompactTree* const from = held<CompactTree>(tree);
-  if (from == nullptr || info == nullptr) {
-    return number(Status::kBadArgument);
-  }
-  tell_tree(*from, info);
-  return number(Status::kOk);
+  return tell<CompactTree>(tree, info, [=](const CompactTree& from) { tell_tree(from, info); });
 }
 
 }  // namespace thimble::c_face

@@ -1,4 +1,4 @@
-#include "kinds.h"
+#include "handle.h"
 #include "thimble/tree/edited_world.h"
 
 namespace thimble::c_face {
@@ -18,14 +18,11 @@ extern "C" size_t thimble_world_bytes(const thimble_tree_t* tree) {
 extern "C" int32_t thimble_world_make(thimble_world_t* world, const thimble_tree_t* tree, void* bytes,
                                       size_t size_bytes) {
   const CompactTree* const from = held<CompactTree>(tree);
-  Bytes room;
-  if (from == nullptr || !stands(world) || !take_bytes(bytes, size_bytes, &room)) {
-    return number(Status::kBadArgument);
-  }
-  EditedWorld made;
-  const EditRoom most = EditedWorld::room_in(*from, size_bytes);
-  const Status status = EditedWorld::make(*from, most, room, &made);
-  return hold(status, made, world);
+  return from == nullptr
+             ? number(Status::kBadArgument)
+             : make_held<EditedWorld>(world, bytes, size_bytes, [=](Bytes room, EditedWorld* made) {
+                 return EditedWorld::make(*from, EditedWorld::room_in(*from, room.size), room, made);
+               });
 }
 
 extern "C" int32_t thimble_world_tree(const thimble_world_t* world, thimble_tree_t* tree) {
@@ -55,11 +52,10 @@ extern "C" int32_t thimble_world_material(const thimble_world_t* world, int32_t 
 }
 
 extern "C" int32_t thimble_journal_make(thimble_journal_t* journal, void* bytes, size_t size_bytes) {
-  Bytes entries;
-  if (!stands(journal) || !take_bytes(bytes, size_bytes, &entries)) {
-    return number(Status::kBadArgument);
-  }
-  return hold(Status::kOk, EditJournal(entries), journal);
+  return make_held<EditJournal>(journal, bytes, size_bytes, [](Bytes entries, EditJournal* made) {
+    *made = EditJournal(entries);
+    return Status::kOk;
+  });
 }
 
 extern "C" int32_t thimble_world_edit(thimble_world_t* world, thimble_journal_t* journal,

@@ -1,6 +1,6 @@
 // The handles of the C face hold their objects, and have no word to spare where uint64_t is aligned to 8
 // bytes. Compiled, not run, for each width (tests/checks/c_header.sh).
-#include "src/c/kinds.h"
+#include "src/c/handle.h"
 #include "thimble/bake/baked_scene.h"
 #include "thimble/light/scene.h"
 #include "thimble/picture/anytime.h"
