@@ -154,7 +154,7 @@ bool invert(const Camera& camera, Map map, Projection* to) {
 
 }  // namespace
 
-bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame) {
+bool make_frame(const Camera& camera, const Rectangle& tile, WideFrame* frame) {
   frame->tile = tile;
   frame->camera = &camera;
   for (int axis = 0; axis < 3; ++axis) {

@@ -36,17 +36,14 @@ class CompactTree;
 
 namespace thimble::wide {
 
-/// Pixels x0 .. x1 - 1, y0 .. y1 - 1.
-struct Tile {
-  int32_t x0 = 0;
-  int32_t y0 = 0;
-  int32_t x1 = 0;
-  int32_t y1 = 0;
+/// The pixels x0 .. x1 - 1, y0 .. y1 - 1; none when x0 >= x1.
+struct Rectangle {
+  int32_t x0, y0, x1, y1;
 };
 
 /// Plain data, made once for each frame and tile.
 struct WideFrame {
-  Tile tile;
+  Rectangle tile;
   bool perspective = false;
 
   // Projection of the point p, in voxels: column = (u.p + u[3]) / (w.p + w[3]).
@@ -102,6 +99,6 @@ struct WideFrame {
 
 /// Returns false for cameras so narrow or so far off that floats cannot tell their pixels apart, or whose map has no
 /// inverse; such frames are drawn ray by ray.
-bool make_frame(const Camera& camera, const Tile& tile, WideFrame* frame);
+bool make_frame(const Camera& camera, const Rectangle& tile, WideFrame* frame);
 
 }  // namespace thimble::wide

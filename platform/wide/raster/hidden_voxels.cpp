@@ -91,7 +91,7 @@ SolidStarts find_solid_starts(const CompactTree& tree, const WideFrame& frame) {
       first += step * 256 * (step < 0 ? bounds.high[axis] : bounds.low[axis]);
     }
     double last = -HUGE_VAL;  // the last place at which rays begin
-    const Tile& tile = frame.tile;
+    const Rectangle& tile = frame.tile;
     for (int corner = 0; corner < 4; ++corner) {
       const Ray ray =
           camera.ray((corner & 1) != 0 ? tile.x1 - 1 : tile.x0, (corner & 2) != 0 ? tile.y1 - 1 : tile.y0);

@@ -159,11 +159,6 @@ struct Batch {
 };
 static_assert(sizeof(Batch) < 32 * 1024);
 
-/// The pixels x0 .. x1 - 1, y0 .. y1 - 1; none when x0 >= x1.
-struct Rectangle {
-  int32_t x0, y0, x1, y1;
-};
-
 /// Where a block may be seen, and its centre.
 struct Place {
   Rectangle where;  ///< within the tile

@@ -72,7 +72,7 @@ Status check(const VoxelLists& lists, const Camera& camera, const Band& band, By
 uint64_t draw_tiles(Threads* threads, const TileDrawer::Task& task, const TilePainter& painter,
                     const Workspace& workspace, Stats* stats) {
   const int count = threads == nullptr ? 1 : threads->count();
-  const Tile& all = task.frame.tile;
+  const Rectangle& all = task.frame.tile;
   const int32_t rows = all.y1 - all.y0;
   // Threads that draw side by side share no patch of coverage.
   const int32_t patches = (rows + kPatchRows - 1) / kPatchRows;

@@ -37,7 +37,7 @@ int32_t width_of(const Rectangle& where) {
   return std::max(where.x1 - where.x0, where.y1 - where.y0);
 }
 
-bool touches_edge(const Rectangle& where, const Tile& tile) {
+bool touches_edge(const Rectangle& where, const Rectangle& tile) {
   return where.x0 == tile.x0 || where.y0 == tile.y0 || where.x1 == tile.x1 || where.y1 == tile.y1;
 }
 

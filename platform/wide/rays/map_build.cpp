@@ -21,11 +21,7 @@ struct MapShape {
   uint64_t words = 0;                   // of chunks
 };
 
-struct Corner {
-  uint32_t x;
-  uint32_t y;
-  uint32_t z;
-};
+using Corner = Vec3<uint32_t>;
 
 // One numbering of a map's cubes, 2^bits a side.
 struct Cubes {
