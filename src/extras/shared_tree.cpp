@@ -182,9 +182,7 @@ uint64_t SharedTree::bytes_with_materials() const {
 }
 
 uint8_t SharedTree::material(const Vec3i& voxel) const {
-  const uint32_t side = uint32_t{1} << level_;
-  if (static_cast<uint32_t>(voxel.x) >= side || static_cast<uint32_t>(voxel.y) >= side ||
-      static_cast<uint32_t>(voxel.z) >= side) {
+  if (!is_in_world(voxel, level_)) {
     return 0;
   }
   uint32_t number = 0;  // leaves before the one looked for

@@ -33,8 +33,7 @@ using brick_parts::kOriginBytes;
 
 struct MapHeader {
   int level;
-  Vec3i low;
-  Vec3i size;
+  VoxelBox box;
   uint32_t cells;
   uint32_t bricks;
   uint32_t mixed;
@@ -64,12 +63,13 @@ const char* read_map_header(ConstBytes bytes, MapHeader* header) {
   const int32_t side = int32_t{1} << (header->level - 2);
   header->cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    header->low[axis] = base[kBoxMinOffset + static_cast<uint32_t>(axis)];
-    header->size[axis] = base[kBoxSizeOffset + static_cast<uint32_t>(axis)];
-    if (header->low[axis] + header->size[axis] > side) {
+    const uint32_t size = base[kBoxSizeOffset + static_cast<uint32_t>(axis)];
+    header->box.low[axis] = base[kBoxMinOffset + static_cast<uint32_t>(axis)];
+    header->box.high[axis] = header->box.low[axis] + static_cast<int32_t>(size);
+    if (header->box.high[axis] > side) {
       return "box outside the world";
     }
-    header->cells *= static_cast<uint32_t>(header->size[axis]);
+    header->cells *= size;
   }
   header->bricks = bits::load16(base + kBricksOffset);
   const uint32_t size = bits::load32(base + kMapSizeOffset);
@@ -79,6 +79,16 @@ const char* read_map_header(ConstBytes bytes, MapHeader* header) {
     return "size does not match the counts";
   }
   return size > bytes.size ? "truncated" : nullptr;
+}
+
+// Whether cells name bricks that are there. Number 0 is met in space only, and has no origin.
+[[gnu::always_inline]] inline const char* check_numbers(const uint8_t* base, const MapHeader& header) {
+  for (uint32_t cell = 0; cell < header.cells; ++cell) {
+    if (bits::load16(base + kBrickMapHeaderBytes + 2 * size_t{cell}) >= header.bricks) {
+      return "a cell names a brick that is not there";
+    }
+  }
+  return bits::load64(base + bricks_at(header.cells)) != 0 ? "brick 0 is not empty" : nullptr;
 }
 
 bool is_aligned(const uint8_t* data) {
@@ -205,8 +215,7 @@ class MapBuilder {
     }
     const uint32_t number =
         bits::load16(cell(static_cast<uint32_t>((at.z * size_.y + at.y) * size_.x + at.x)));
-    const int bit = (voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3);
-    return (brick(number)[bit >> 3] >> (bit & 7) & 1) != 0;
+    return brick_parts::has_voxel(brick(number), voxel);
   }
 
   // Where all that can be seen of a brick has one material, its source says so; where such a brick is solid
@@ -356,26 +365,15 @@ Status BrickMap::open(ConstBytes bytes, BrickMap* map) {
     }
   }
   MapHeader header{};
-  if (read_map_header(bytes, &header) != nullptr) {
+  if (read_map_header(bytes, &header) != nullptr || check_numbers(bytes.data, header) != nullptr) {
     return Status::kDamaged;
   }
   BrickMap result;
   result.directory_ = bytes.data + kBrickMapHeaderBytes;
-  for (uint32_t cell = 0; cell < header.cells; ++cell) {
-    if (bits::load16(result.directory_ + 2 * size_t{cell}) >= header.bricks) {
-      return Status::kDamaged;
-    }
-  }
   result.bricks_ = bytes.data + bricks_at(header.cells);
-  if (bits::load64(result.bricks_) != 0) {
-    return Status::kDamaged;  // number 0 is met in space only, and has no origin
-  }
   result.origins_ = bytes.data + origins_at(header.cells, header.bricks);
   result.materials_ = bytes.data + materials_at(header.cells, header.bricks, header.mixed);
-  result.box_.low = header.low;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.box_.high[axis] = header.low[axis] + header.size[axis];
-  }
+  result.box_ = header.box;
   result.size_bytes_ = bits::load32(bytes.data + kMapSizeOffset);
   result.cells_ = header.cells;
   result.brick_count_ = header.bricks;
@@ -401,12 +399,7 @@ const char* BrickMap::validate(ConstBytes bytes) {
   if (checksum_around(base, size, kMapChecksumOffset) != bits::load32(base + kMapChecksumOffset)) {
     return "checksum does not match";
   }
-  for (uint32_t cell = 0; cell < header.cells; ++cell) {
-    if (bits::load16(base + kBrickMapHeaderBytes + 2 * size_t{cell}) >= header.bricks) {
-      return "a cell names a brick that is not there";
-    }
-  }
-  return bits::load64(base + bricks_at(header.cells)) != 0 ? "brick 0 is not empty" : nullptr;
+  return check_numbers(base, header);
 }
 
 Status BrickMap::make(const CompactTree& tree, Bytes out, BrickMap* map, size_t* size) {

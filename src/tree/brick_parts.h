@@ -58,6 +58,12 @@ inline uint64_t spread(unsigned octant, unsigned mask) {
   bits::store32(origin + 8, known ? tree.blocks_before(child) : 0);
 }
 
+// Whether one of a brick's 64 bits, that of the voxel, is set.
+inline bool has_voxel(const uint8_t* brick, const Vec3i& voxel) {
+  const int bit = (voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3);
+  return (brick[bit >> 3] >> (bit & 7) & 1) != 0;
+}
+
 // The material of voxel `bit` of the brick whose node of level 2 is `node`.
 [[gnu::always_inline]] inline uint8_t material_in_node(const CompactTree& tree, uint32_t node, unsigned bit) {
   const unsigned octant = (bit >> 1 & 1U) | (bit >> 3 & 1U) << 1 | (bit >> 5 & 1U) << 2;

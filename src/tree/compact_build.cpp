@@ -298,109 +298,7 @@ template <class Key>
   }
 }
 
-// The nodes of either tree, as the walk below reads them.
-struct PoolReader {
-  const Octree& octree;
-
-  int level() const { return octree.level(); }
-  uint32_t root() const { return octree.root(); }
-  Octree::NodeView node(uint32_t index) const { return octree.node(index); }
-  uint32_t next(uint32_t index) const { return octree.node(index).next; }
-  // Of the voxels in a node of level 1.
-  void materials(uint32_t, const Octree::NodeView& node, uint8_t (&materials)[8]) const {
-    uint32_t voxel = node.first_child;
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      if (((node.mask >> octant) & 1U) == 0) {
-        continue;
-      }
-      materials[octant] = node.material;
-      if (node.has_children && voxel != Octree::kNone) {
-        const Octree::NodeView view = octree.node(voxel);
-        materials[octant] = view.material;
-        voxel = view.next;
-      }
-    }
-  }
-};
-struct CompactReader {
-  const CompactTree& tree;
-
-  int level() const { return tree.level(); }
-  uint32_t root() const { return tree.empty() ? Octree::kNone : 0; }
-  Octree::NodeView node(uint32_t index) const {
-    Octree::NodeView view;
-    if (index >= tree.node_count()) {
-      return view;
-    }  // a damaged tree; "solid" ends the walk there
-    view.mask = tree.mask(index);
-    view.merged = tree.is_merged(index);
-    if (view.mask == 0) {
-      view.material = tree.block_material(index);
-    }
-    view.first_child = tree.first_child(index);
-    return view;
-  }
-  uint32_t next(uint32_t index) const { return index + 1; }
-  void materials(uint32_t, const Octree::NodeView& node, uint8_t (&materials)[8]) const {
-    uint32_t number = node.first_child;
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      if (((node.mask >> octant) & 1U) != 0) {
-        materials[octant] = tree.voxel_material(number++);
-      }
-    }
-  }
-};
-
-// Shows `sink` the nodes of `level`, in Morton order, which is that level's breadth-first order. `origin` is
-// where the tree's lowest corner lies.
-template <class Nodes, class Sink>
-void walk_tree(const Nodes& nodes, const Vec3i& origin, int level, Sink* sink) {
-  // stack[k]: of the node of level k on the path, the children not yet visited.
-  struct OpenNode {
-    uint32_t next_child;
-    uint8_t octants;
-  } stack[kMaxLevel + 1];
-  uint32_t index = nodes.root();
-  int at = nodes.level();
-  Vec3i corner;
-  while (index != Octree::kNone) {
-    const Octree::NodeView node = nodes.node(index);
-    if (at == level) {
-      const Vec3i place{origin.x + corner.x, origin.y + corner.y, origin.z + corner.z};
-      if (node.mask == 0) {
-        sink->solid(place, level, node.material, node.merged);
-      } else if (level > 1) {
-        sink->inner(node.mask);
-      } else {
-        uint8_t materials[8] = {};
-        nodes.materials(index, node, materials);
-        sink->voxels(place, node.mask, materials);
-      }
-    }
-    stack[at] = {Octree::kNone, 0};
-    if (at > level && node.mask != 0) {
-      stack[at] = {node.first_child, node.mask};
-    }
-    // The next node in order: the first child not yet visited of the lowest node on the path that has one.
-    while (at <= nodes.level() && stack[at].octants == 0) {
-      ++at;
-    }
-    if (at == 0 || at > nodes.level()) {  // nothing is left (and level 0 never has children)
-      return;
-    }
-    OpenNode& frame = stack[at];
-    const unsigned octant = static_cast<unsigned>(__builtin_ctz(frame.octants));
-    frame.octants = static_cast<uint8_t>(frame.octants & (frame.octants - 1U));
-    index = frame.next_child;
-    frame.next_child = index == Octree::kNone || frame.octants == 0 ? Octree::kNone : nodes.next(index);
-    --at;
-    const int32_t side = int32_t{1} << at;
-    for (int axis = 0; axis < 3; ++axis) {
-      corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
-    }
-  }
-}
-
+// A source shows a sink the nodes of a level, in Morton order, which is that level's breadth-first order.
 struct OctreeSource {
   const Octree& octree;
 
@@ -408,7 +306,61 @@ struct OctreeSource {
   uint64_t solid_added() const { return octree.solid_added(); }
   template <class Sink>
   void walk_level(int level, Sink* sink) const {
-    walk_tree(PoolReader{octree}, Vec3i{}, level, sink);
+    // stack[k]: of the node of level k on the path, the children not yet visited.
+    struct OpenNode {
+      uint32_t next_child;
+      uint8_t octants;
+    } stack[kMaxLevel + 1];
+    uint32_t index = octree.root();
+    int at = octree.level();
+    Vec3i corner;
+    while (index != Octree::kNone) {
+      const Octree::NodeView node = octree.node(index);
+      if (at == level) {
+        show(node, corner, level, sink);
+      }
+      stack[at] = {Octree::kNone, 0};
+      if (at > level && node.mask != 0) {
+        stack[at] = {node.first_child, node.mask};
+      }
+      // The next node in order: the first child not yet visited of the lowest node on the path that has one.
+      while (at <= octree.level() && stack[at].octants == 0) {
+        ++at;
+      }
+      if (at > octree.level()) {
+        return;
+      }
+      OpenNode& frame = stack[at];
+      const unsigned octant = bits::lowest_bit(frame.octants);
+      frame.octants = static_cast<uint8_t>(frame.octants & (frame.octants - 1U));
+      index = frame.next_child;
+      frame.next_child =
+          index == Octree::kNone || frame.octants == 0 ? Octree::kNone : octree.node(index).next;
+      move_to_octant(octant, --at, &corner);
+    }
+  }
+  template <class Sink>
+  void show(const Octree::NodeView& node, const Vec3i& corner, int level, Sink* sink) const {
+    if (node.mask == 0) {
+      sink->solid(corner, level, node.material, node.merged);
+      return;
+    }
+    if (level > 1) {
+      sink->inner(node.mask);
+      return;
+    }
+    uint8_t materials[8] = {};
+    uint32_t voxel = node.first_child;
+    for (unsigned left = node.mask; left != 0; left &= left - 1) {
+      uint8_t& material = materials[bits::lowest_bit(left)];
+      material = node.material;
+      if (node.has_children && voxel != Octree::kNone) {
+        const Octree::NodeView view = octree.node(voxel);
+        material = view.material;
+        voxel = view.next;
+      }
+    }
+    sink->voxels(corner, node.mask, materials);
   }
 };
 
@@ -449,6 +401,32 @@ struct PartsSource {
     return true;
   }
 
+  // `origin` is where the part's lowest corner lies.
+  template <class Sink>
+  static void walk_part(const CompactTree& part, const Vec3i& origin, int level, Sink* sink) {
+    walk_leaves(part, level, [&](uint32_t node, const Vec3i& corner, int at) {
+      if (at != level) {
+        return true;  // a block of another level
+      }
+      const bool is_there = node < part.node_count();  // else it is a damaged tree
+      const unsigned mask = is_there ? part.mask(node) : 0;
+      const Vec3i place{origin.x + corner.x, origin.y + corner.y, origin.z + corner.z};
+      if (mask == 0) {
+        sink->solid(place, level, is_there ? part.block_material(node) : uint8_t{0},
+                    is_there && part.is_merged(node));
+      } else if (level > 1) {
+        sink->inner(mask);
+      } else {
+        uint8_t materials[8] = {};
+        uint32_t number = part.first_child(node);
+        for (unsigned left = mask; left != 0; left &= left - 1) {
+          materials[bits::lowest_bit(left)] = part.voxel_material(number++);
+        }
+        sink->voxels(place, mask, materials);
+      }
+      return true;
+    });
+  }
   template <class Sink>
   void walk_level(int level, Sink* sink) const {
     const int above = level > part_level ? level - part_level : 0;
@@ -463,7 +441,7 @@ struct PartsSource {
         origin[axis] *= int32_t{1} << part_level;
       }
       if (above == 0) {
-        walk_tree(CompactReader{parts[first]}, origin, level, sink);
+        walk_part(parts[first], origin, level, sink);
       } else if (uniform(first, count)) {
         sink->solid(origin, level, parts[first].block_material(0), parts[first].is_merged(0));
       } else {

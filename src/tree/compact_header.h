@@ -98,6 +98,21 @@ constexpr unsigned octant_of(const Vec3i& voxel, int level) {
          (static_cast<uint32_t>(voxel.z) >> shift & 1U) << 2;
 }
 
+// Whether a voxel lies in a world of 2^level.
+constexpr bool is_in_world(const Vec3i& voxel, int level) {
+  const uint32_t all =
+      static_cast<uint32_t>(voxel.x) | static_cast<uint32_t>(voxel.y) | static_cast<uint32_t>(voxel.z);
+  return (all >> level) == 0;
+}
+
+// Moves the corner of a block of `level` to that of the block in `octant` of the same parent.
+constexpr void move_to_octant(unsigned octant, int level, Vec3i* corner) {
+  const int32_t side = int32_t{1} << level;
+  for (int axis = 0; axis < 3; ++axis) {
+    (*corner)[axis] = ((*corner)[axis] & ~(2 * side - 1)) | ((octant >> axis & 1U) != 0 ? side : 0);
+  }
+}
+
 // Calls leaf(node, corner, level) for what a tree that is not empty holds, in Morton order: solid blocks, and nodes of
 // level `lowest`; also for numbers of no node, which a damaged tree has. `leaf` may be false to stop.
 template <class Leaf>
@@ -126,11 +141,7 @@ template <class Leaf>
     const unsigned octant = bits::lowest_bit(open.rest);
     open.rest = static_cast<uint8_t>(open.rest & (open.rest - 1));
     node = open.child++;
-    --level;
-    const int32_t side = int32_t{1} << level;
-    for (int axis = 0; axis < 3; ++axis) {
-      corner[axis] = (corner[axis] & ~(2 * side - 1)) | (((octant >> axis) & 1U) != 0 ? side : 0);
-    }
+    move_to_octant(octant, --level, &corner);
   }
 }
 

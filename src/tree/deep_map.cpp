@@ -50,6 +50,12 @@ struct DeepLayout {
 int32_t pages_along(int32_t bricks) {
   return (bricks + kPageSide - 1) / kPageSide;
 }
+// The corner of an entry's brick in a page that begins at `corner`, in voxels.
+Vec3i corner_of_entry(const Vec3i& corner, uint32_t entry) {
+  return {corner.x + static_cast<int32_t>(4 * (entry & 3U)),
+          corner.y + static_cast<int32_t>(4 * (entry >> 2 & 3U)),
+          corner.z + static_cast<int32_t>(4 * (entry >> 4))};
+}
 uint32_t deep_place_of(const Vec3i& brick) {
   return static_cast<uint32_t>(brick.x) | static_cast<uint32_t>(brick.y) << 8 |
          static_cast<uint32_t>(brick.z) << 16;
@@ -64,8 +70,7 @@ uint32_t table_cells_of(const Vec3i& size) {
 
 struct DeepHeader {
   int level;
-  Vec3i low;
-  Vec3i size;
+  VoxelBox box;
   DeepLayout layout;
 };
 
@@ -79,17 +84,18 @@ const char* read_deep_header(ConstBytes bytes, DeepHeader* header) {
     return "level out of range";
   }
   const int32_t side = int32_t{1} << (header->level - 2);
+  Vec3i size_of;
   for (int axis = 0; axis < 3; ++axis) {
-    header->low[axis] =
-        static_cast<int32_t>(bits::load16(base + kDeepBoxLowOffset + 2 * static_cast<uint32_t>(axis)));
-    header->size[axis] =
-        static_cast<int32_t>(bits::load16(base + kDeepBoxSizeOffset + 2 * static_cast<uint32_t>(axis)));
-    if (header->low[axis] + header->size[axis] > side) {
+    const uint8_t* const halves = base + 2 * axis;
+    size_of[axis] = static_cast<int32_t>(bits::load16(halves + kDeepBoxSizeOffset));
+    header->box.low[axis] = static_cast<int32_t>(bits::load16(halves + kDeepBoxLowOffset));
+    header->box.high[axis] = header->box.low[axis] + size_of[axis];
+    if (header->box.high[axis] > side) {
       return "box outside the world";
     }
   }
   DeepLayout& layout = header->layout;
-  layout.cells = table_cells_of(header->size);
+  layout.cells = table_cells_of(size_of);
   layout.pages = bits::load32(base + kDeepPagesOffset);
   layout.bricks = bits::load32(base + kDeepBricksOffset);
   layout.mixed = bits::load32(base + kDeepMixedOffset);
@@ -171,10 +177,7 @@ struct DeepPage {
 void read_deep_page(const CompactTree& tree, const DeepBlock& block, const Vec3i& corner, DeepPage* page) {
   page->bricks = 0;
   for (uint32_t i = 0; i < kPageEntries; ++i) {
-    const Vec3i at{corner.x + static_cast<int32_t>(4 * (i & 3U)),
-                   corner.y + static_cast<int32_t>(4 * (i >> 2 & 3U)),
-                   corner.z + static_cast<int32_t>(4 * (i >> 4))};
-    const DeepBlock brick = find_deep_block(tree, block, kPageLevel, at, 2);
+    const DeepBlock brick = find_deep_block(tree, block, kPageLevel, corner_of_entry(corner, i), 2);
     uint32_t number = 0;
     if (brick.kind != DeepKind::kEmpty) {
       number = page->bricks + 1;
@@ -324,8 +327,7 @@ class DeepBuilder {
     if (at.x < 0 || at.y < 0 || at.z < 0 || at.x >= size_.x || at.y >= size_.y || at.z >= size_.z) {
       return false;
     }
-    const int bit = (voxel.x & 3) + 4 * (voxel.y & 3) + 16 * (voxel.z & 3);
-    return (brick_at(number_at(at))[bit >> 3] >> (bit & 7) & 1) != 0;
+    return brick_parts::has_voxel(brick_at(number_at(at)), voxel);
   }
   // Finds for each brick the material of all of it that is seen, or writes its origin.
   Status name_materials(size_t room) {
@@ -343,11 +345,8 @@ class DeepBuilder {
         }
         last = page->entry[i];
         const DeepBlock& brick = page->source[last - 1];
-        const Vec3i at{corner.x + static_cast<int32_t>(4 * (i & 3U)),
-                       corner.y + static_cast<int32_t>(4 * (i >> 2 & 3U)),
-                       corner.z + static_cast<int32_t>(4 * (i >> 4))};
         if (status == Status::kOk && brick.kind == DeepKind::kNode) {
-          status = name_material(bricks - 1 + last, brick.node, at, room);
+          status = name_material(bricks - 1 + last, brick.node, corner_of_entry(corner, i), room);
         }
       }
       bricks += page->bricks;
@@ -391,10 +390,9 @@ class DeepBuilder {
     bits::store32(base_, kDeepMagic);
     base_[kDeepLevelOffset] = static_cast<uint8_t>(tree_.level());
     for (int axis = 0; axis < 3; ++axis) {
-      bits::store16(base_ + kDeepBoxLowOffset + 2 * static_cast<uint32_t>(axis),
-                    static_cast<uint32_t>(low_[axis]));
-      bits::store16(base_ + kDeepBoxSizeOffset + 2 * static_cast<uint32_t>(axis),
-                    static_cast<uint32_t>(size_[axis]));
+      uint8_t* const halves = base_ + 2 * axis;
+      bits::store16(halves + kDeepBoxLowOffset, static_cast<uint32_t>(low_[axis]));
+      bits::store16(halves + kDeepBoxSizeOffset, static_cast<uint32_t>(size_[axis]));
     }
     const size_t size = layout_.size();
     bits::store32(base_ + kDeepSizeOffset, static_cast<uint32_t>(size));
@@ -432,10 +430,7 @@ Status DeepMap::open(ConstBytes bytes, BrickMap* map) {
   result.bricks_ = bytes.data + layout.bricks_at();
   result.materials_ = bytes.data + layout.materials_at();
   result.origins_ = bytes.data + layout.origins_at();
-  result.box_.low = header.low;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.box_.high[axis] = header.low[axis] + header.size[axis];
-  }
+  result.box_ = header.box;
   result.size_bytes_ = bits::load32(bytes.data + kDeepSizeOffset);
   result.cells_ = layout.cells;
   result.brick_count_ = layout.bricks;

@@ -392,17 +392,8 @@ Status DeepWorld::make(const CompactTree& tree, uint8_t* bytes, EditedWorld* wor
   world->kinds_ = take(numbers) + 1;
   world->origins_ = take(kOriginBytes * (numbers - kPageEntries));
 
-  for (size_t i = 0; i < kCompactHeaderBytes; ++i) {
-    world->header_[i] = tree.bytes()[i];
-  }
+  world->look_at_sections(tree, 0);
   CompactTree& view = world->tree_;
-  view = tree;
-  view.base_ = world->header_;
-  view.masks_ = world->masks_;
-  view.ranks_ = world->ranks_;
-  view.block_ranks_ = world->block_ranks_;
-  view.materials_ = world->leaves_;
-  view.rank_shift_ = 0;
   view.node_count_ = tree.empty() ? 0 : nodes;
   view.solid_blocks_ = kMaterials + kPlaces * room.bricks;
   view.voxel_bits_ = kVoxels * room.bricks;
@@ -428,18 +419,12 @@ Status DeepWorld::make_map(EditedWorld* world, uint8_t* ranks) {
   const int level = world->level();
   const uint32_t numbers = kPageEntries * (room.pages + 1);
   BrickMap& map = world->map_;
-  const int32_t side = int32_t{1} << (level - 2);
+  const int32_t side = map.box_.high.x;
   const size_t table = table_bytes(level);
-  map.directory_ = world->cells_;
-  map.bricks_ = world->bricks_;
-  map.origins_ = world->origins_;
   map.materials_ = world->kinds_ - 1;
-  map.box_ = {{0, 0, 0}, {side, side, side}};
   map.cells_ = static_cast<uint32_t>(table / 4);
   map.brick_count_ = numbers;
   map.mixed_count_ = map.brick_count_ - 1;
-  map.size_bytes_ = deep_world_bytes(level, room);
-  map.level_ = static_cast<uint8_t>(level);
   world->tree_.size_bytes_ = map.size_bytes_;
   for (size_t cell = 0; cell < table / 4; ++cell) {
     bits::store32(world->cells_ + 4 * cell, static_cast<uint32_t>(table));

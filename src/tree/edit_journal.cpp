@@ -1,6 +1,7 @@
 // Edits of many voxels, and taking them back. An entry of the journal is x, y, z and what stood there, 16 bits each; the
 // entry behind an edit's last has kMark for x, and how many there are.
 #include "../base/bits.h"
+#include "compact_header.h"
 #include "thimble/tree/edited_world.h"
 
 namespace thimble {
@@ -32,13 +33,7 @@ bool is_in_ellipsoid(const VoxelBox& box, const Vec3i& voxel) {
 }  // namespace
 
 int EditedWorld::material(const Vec3i& voxel) const {
-  const int32_t side = int32_t{1} << tree_.level();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (voxel[axis] < 0 || voxel[axis] >= side) {
-      return kEmpty;
-    }
-  }
-  return material_within(voxel);
+  return is_in_world(voxel, tree_.level()) ? material_within(voxel) : kEmpty;
 }
 
 Status EditedWorld::make_voxel(const Vec3i& voxel, int material) {

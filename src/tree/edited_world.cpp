@@ -168,9 +168,6 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
   made.origins_ = take(kOriginBytes * size_t{room.bricks});
   made.kinds_ = next;
 
-  for (size_t i = 0; i < kCompactHeaderBytes; ++i) {
-    made.header_[i] = tree.base_[i];
-  }
   for (uint32_t node = 0; node < room.nodes + 8; ++node) {
     made.masks_[node] = node < used.nodes ? tree.mask(node) : uint8_t{0};
   }
@@ -180,28 +177,13 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
   for (size_t i = 0; i < 2 * size_t{cells}; ++i) {
     made.cells_[i] = 0;
   }
-  CompactTree& view = made.tree_;
-  view = tree;
-  view.base_ = made.header_;
-  view.masks_ = made.masks_;
-  view.ranks_ = made.ranks_;
-  view.block_ranks_ = made.block_ranks_;
-  view.materials_ = made.leaves_;
-  view.rank_shift_ = kDefaultRankShift;
+  made.look_at_sections(tree, kDefaultRankShift);
   made.count_from(0);
-
   BrickMap& map = made.map_;
-  map.directory_ = made.cells_;
-  map.bricks_ = made.bricks_;
-  map.origins_ = made.origins_;
   map.materials_ = made.kinds_;
-  const int32_t side = int32_t{1} << (tree.level() - 2);
-  map.box_ = {{0, 0, 0}, {side, side, side}};
   map.cells_ = cells;
   map.mixed_count_ = room.bricks;
   map.brick_count_ = 1 + room.bricks + kSolidBrickKinds;
-  map.size_bytes_ = edited_world_bytes(tree.level(), room);
-  map.level_ = static_cast<uint8_t>(tree.level());
   bits::store64(made.bricks_, 0);
   for (uint32_t number = room.bricks; number != 0; --number) {
     bits::store16(made.bricks_ + 8 * size_t{number}, made.free_brick_);
@@ -213,6 +195,7 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
   }
   made.write_header(0);
   made.forget_changes();
+  const int32_t side = map.box_.high.x;
   const int bits_a_side = tree.level() - 2;
   for (int32_t cell = 0; cell < static_cast<int32_t>(cells); ++cell) {
     const Status status = made.update_cell(
@@ -225,16 +208,33 @@ Status EditedWorld::make(const CompactTree& tree, const EditRoom& room, Bytes by
   return Status::kOk;
 }
 
-EditRoom EditedWorld::free_room() const {
-  EditRoom room;
-  if (is_deep(tree_)) {
-    room = DeepWorld::free_room(*this);
-    return room;
+// The views are on the sections, which are laid out, and the header is the tree's.
+void EditedWorld::look_at_sections(const CompactTree& tree, int rank_shift) {
+  for (size_t i = 0; i < kCompactHeaderBytes; ++i) {
+    header_[i] = tree.base_[i];
   }
-  room.nodes = room_.nodes - tree_.node_count_;
-  room.leaves = room_.leaves - tree_.solid_blocks_ - tree_.voxel_bits_;
-  room.bricks = free_bricks_;
-  return room;
+  tree_ = tree;
+  tree_.base_ = header_;
+  tree_.masks_ = masks_;
+  tree_.ranks_ = ranks_;
+  tree_.block_ranks_ = block_ranks_;
+  tree_.materials_ = leaves_;
+  tree_.rank_shift_ = static_cast<uint8_t>(rank_shift);
+  const int32_t side = int32_t{1} << (tree.level() - 2);
+  map_.directory_ = cells_;
+  map_.bricks_ = bricks_;
+  map_.origins_ = origins_;
+  map_.box_ = {{0, 0, 0}, {side, side, side}};
+  map_.size_bytes_ = edited_world_bytes(tree.level(), room_);
+  map_.level_ = static_cast<uint8_t>(tree.level());
+}
+
+EditRoom EditedWorld::free_room() const {
+  if (is_deep(tree_)) {
+    return DeepWorld::free_room(*this);
+  }
+  return {room_.nodes - tree_.node_count_, room_.leaves - tree_.solid_blocks_ - tree_.voxel_bits_,
+          free_bricks_, 0};
 }
 
 // ---- looking
@@ -276,9 +276,7 @@ int EditedWorld::material_within(const Vec3i& voxel) const {
 // Whether there is room for `voxel` to become `material` (-1: empty), and whether anything changes.
 Status EditedWorld::check_room(const Vec3i& voxel, int material, bool* changes) const {
   *changes = false;
-  const int32_t side = int32_t{1} << tree_.level();
-  if (tree_.bytes() == nullptr || voxel.x < 0 || voxel.y < 0 || voxel.z < 0 || voxel.x >= side ||
-      voxel.y >= side || voxel.z >= side) {
+  if (tree_.bytes() == nullptr || !is_in_world(voxel, tree_.level())) {
     return Status::kOutOfRange;
   }
   Place place{};

@@ -180,9 +180,7 @@ void Octree::detach(uint32_t parent, uint32_t octant) {
 // --- descending ----------------------------------------------------------------------------------------
 
 bool Octree::inside(Vec3i voxel) const {
-  const uint32_t all =
-      static_cast<uint32_t>(voxel.x) | static_cast<uint32_t>(voxel.y) | static_cast<uint32_t>(voxel.z);
-  return (all >> level_) == 0;
+  return is_in_world(voxel, level_);
 }
 
 /// The lowest level, `lowest` or above, whose node above `voxel` is in the cached path.
@@ -664,16 +662,13 @@ Status Octree::insert_box(const VoxelBox& box, uint8_t material) {
     }
     // The next block: the sibling, or that of the first parent that has one left.
     while (level < level_ && octant_of(corner, level + 1) == 7) {
-      corner = {corner.x & ~(1 << level), corner.y & ~(1 << level), corner.z & ~(1 << level)};
+      move_to_octant(0, level, &corner);
       ++level;
     }
     if (level == level_) {
       return Status::kOk;
     }
-    const uint32_t octant = octant_of(corner, level + 1) + 1;
-    corner = {(corner.x & ~(1 << level)) | static_cast<int32_t>(octant & 1) << level,
-              (corner.y & ~(1 << level)) | static_cast<int32_t>((octant >> 1) & 1) << level,
-              (corner.z & ~(1 << level)) | static_cast<int32_t>(octant >> 2) << level};
+    move_to_octant(octant_of(corner, level + 1) + 1, level, &corner);
   }
 }
 

@@ -203,25 +203,23 @@ constexpr uint32_t price_code(int step) {
 }
 }  // namespace
 
-uint32_t Octree::nodes_at(int step) {
+uint32_t Octree::pass_at(Pass kind, int step) {
   if (used_ == 0) {
     return 0;
   }
   Ratio next_ratio{0, 1};
-  const uint32_t freed = pass(Pass::kMeasure, threshold(price_code(step)), UINT32_MAX, next_ratio);
+  const uint32_t freed = pass(kind, threshold(price_code(step)), UINT32_MAX, next_ratio);
   path_low_ = level_;
   path_[level_] = root_;
-  return used_ - freed;
+  return freed;
+}
+
+uint32_t Octree::nodes_at(int step) {
+  return used_ - pass_at(Pass::kMeasure, step);
 }
 
 void Octree::coarsen_at(int step) {
-  if (used_ == 0) {
-    return;
-  }
-  Ratio next_ratio{0, 1};
-  pass(Pass::kMergeWithin, threshold(price_code(step)), UINT32_MAX, next_ratio);
-  path_low_ = level_;
-  path_[level_] = root_;
+  pass_at(Pass::kMergeWithin, step);
 }
 
 Status Octree::make_room(size_t nodes) {

@@ -189,6 +189,7 @@ class EditedWorld {
   friend struct DeepWorld;
   struct Place;
 
+  void look_at_sections(const CompactTree& tree, int rank_shift);
   uint32_t child_of(uint32_t node, unsigned octant) const;
   bool find(const Vec3i& voxel, int to_level, Place* place) const;
   int material_within(const Vec3i& voxel) const;

@@ -263,6 +263,7 @@ class Octree {
   static Ratio threshold(uint32_t code);
   static uint32_t threshold_code(Ratio ratio);
   uint32_t pass(Pass kind, Ratio limit, uint32_t wanted, Ratio& next_ratio);
+  uint32_t pass_at(Pass kind, int step);
   void free_nodes(uint32_t wanted);
 
   Node* nodes_ = nullptr;
