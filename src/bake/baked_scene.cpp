@@ -141,23 +141,14 @@ void store_camera(uint8_t* to, const SceneCamera& camera) {
 
 // A part as its section holds it, where it is bytes already; none for the camera.
 ConstBytes bytes_of(const BakedParts& parts, SectionKind kind) {
-  switch (kind) {
-    case SectionKind::kTree:
-      return parts.tree;
-    case SectionKind::kPalette:
-      return {reinterpret_cast<const uint8_t*>(parts.palette.data), sizeof(Rgb8) * parts.palette.size};
-    case SectionKind::kCamera:
-      return {};
-    case SectionKind::kBrickMap:
-      return parts.brick_map;
-    case SectionKind::kName:
-      return parts.name;
-    case SectionKind::kLighting:
-      return parts.lighting;
-    case SectionKind::kLook:
-      return parts.look;
-  }
-  return {};
+  return kind == SectionKind::kTree       ? parts.tree
+         : kind == SectionKind::kBrickMap ? parts.brick_map
+         : kind == SectionKind::kName     ? parts.name
+         : kind == SectionKind::kLighting ? parts.lighting
+         : kind == SectionKind::kLook     ? parts.look
+         : kind == SectionKind::kPalette  ? ConstBytes(reinterpret_cast<const uint8_t*>(parts.palette.data),
+                                                       sizeof(Rgb8) * parts.palette.size)
+                                          : ConstBytes();
 }
 
 // Bytes of a part's section; 0 for one that is left out.
@@ -325,14 +316,15 @@ ConstBytes BakedScene::section(SectionKind kind) const {
 }
 
 size_t baked_bytes(const BakedParts& parts) {
-  if (parts.palette.size > kMaxPaletteColors || parts.name.size > kMaxNameBytes ||
-      parts.tree.size > UINT32_MAX || parts.brick_map.size > UINT32_MAX || parts.lighting.size > UINT32_MAX ||
-      parts.look.size > UINT32_MAX) {
-    return SIZE_MAX;
-  }
+  bool fits = parts.palette.size <= kMaxPaletteColors && parts.name.size <= kMaxNameBytes;
   uint64_t bytes = kBakedHeaderBytes;
   for (const SectionKind kind : kKinds) {
-    bytes += section_bytes(parts, kind) == 0 ? 0 : kBakedEntryBytes;
+    const size_t length = section_bytes(parts, kind);
+    fits = fits && length <= UINT32_MAX;
+    bytes += length == 0 ? 0 : kBakedEntryBytes;
+  }
+  if (!fits) {
+    return SIZE_MAX;
   }
   for (const SectionKind kind : kKinds) {
     const size_t length = section_bytes(parts, kind);

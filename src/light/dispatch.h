@@ -11,41 +11,24 @@ inline constexpr EffectSet kAlwaysCompiled = Effect::kDirectLight | Effect::kEmi
                                              Effect::kSky | Effect::kDepthCue | Effect::kSmoothNormals |
                                              Effect::kEdges | Effect::kRipples;
 
-/// With or without each of the effects that are left to choose.
-template <EffectSet kChosen, class AnyFrame>
-Status choose_surroundings(const AnyFrame& frame, const Band& band, LitCounts* counts) {
-  switch (frame.effects & (Effect::kShadows | Effect::kAmbientOcclusion)) {
-    case Effect::kShadows:
-      return draw<kChosen | Effect::kShadows>(frame, band, counts);
-    case Effect::kAmbientOcclusion:
-      return draw<kChosen | Effect::kAmbientOcclusion>(frame, band, counts);
-    case Effect::kShadows | Effect::kAmbientOcclusion:
-      return draw<kChosen | Effect::kShadows | Effect::kAmbientOcclusion>(frame, band, counts);
-    default:
-      return draw<kChosen>(frame, band, counts);
+/// With or without each of the effects that are left to choose. Not inlined: the frame of all renderers together would be
+/// larger than that of each.
+template <EffectSet kChosen, EffectSet kEffect, EffectSet... kLeft, class AnyFrame>
+[[gnu::noinline]] Status draw_chosen(const AnyFrame& frame, const Band& band, LitCounts* counts) {
+  constexpr EffectSet kWith = kChosen | kEffect;
+  const bool is_on = (frame.effects & kEffect) != 0;
+  if constexpr (sizeof...(kLeft) == 0) {
+    return is_on ? draw<kWith>(frame, band, counts) : draw<kChosen>(frame, band, counts);
+  } else {
+    return is_on ? draw_chosen<kWith, kLeft...>(frame, band, counts)
+                 : draw_chosen<kChosen, kLeft...>(frame, band, counts);
   }
-}
-
-/// Not inlined: the frame of all renderers together would be larger than that of each.
-template <EffectSet kChosen, class AnyFrame>
-[[gnu::noinline]] Status choose_mirror(const AnyFrame& frame, const Band& band, LitCounts* counts) {
-  return (frame.effects & Effect::kMirror) != 0
-             ? choose_surroundings<kChosen | Effect::kMirror>(frame, band, counts)
-             : choose_surroundings<kChosen>(frame, band, counts);
-}
-
-template <EffectSet kChosen, class AnyFrame>
-Status choose_clear(const AnyFrame& frame, const Band& band, LitCounts* counts) {
-  constexpr EffectSet kClear = Effect::kGlass | Effect::kMedia;
-  return (frame.effects & kClear) != 0 ? choose_mirror<kChosen | kClear>(frame, band, counts)
-                                       : choose_mirror<kChosen>(frame, band, counts);
 }
 
 template <class AnyFrame>
 Status choose_renderer(const AnyFrame& frame, const Band& band, LitCounts* counts) {
-  return (frame.effects & Effect::kWater) != 0
-             ? choose_clear<kAlwaysCompiled | Effect::kWater>(frame, band, counts)
-             : choose_clear<kAlwaysCompiled>(frame, band, counts);
+  return draw_chosen<kAlwaysCompiled, Effect::kWater, Effect::kGlass | Effect::kMedia, Effect::kMirror,
+                     Effect::kShadows, Effect::kAmbientOcclusion>(frame, band, counts);
 }
 
 }  // namespace thimble::lit
