@@ -264,7 +264,6 @@ Status LookRows::draw_run(const SampleRun& run, Bytes samples, LitCounts* counts
 Status LookRows::draw_places(const Camera& camera, Span<const SamplePlace> places, Bytes colors,
                              Bytes samples, LitCounts* counts) const {
   const int threads = canvas_.streams != nullptr ? canvas_.streams->threads() : canvas_.threads;
-  constexpr std::size_t kAtOnce = 256;
   const auto tasks = static_cast<std::int32_t>((places.size + kAtOnce - 1) / kAtOnce);
   const auto each = [&](const auto& draw) {
     return each_until_error(tasks, threads, [&](std::int32_t task, std::size_t /*thread*/) {
