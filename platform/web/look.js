@@ -91,7 +91,7 @@ class Look {
   }
 }
 
-// In the words of the viewer on the desktop (tools/viewer/picking.cpp).
+// In the words of the viewer on the desktop (tools/viewer/open_scene.cpp).
 const FACES = ['left face (-x)', 'right face (+x)', 'front face (-y)', 'back face (+y)', 'bottom face (-z)', 'top face (+z)'];
 const KINDS = ['', ' metal', ' glass', ' that glows', ' cloud'];
 function nameOf({voxel, face, material, color, kind}) {
