@@ -33,14 +33,14 @@ int32_t end_of(int32_t at, int32_t size) {
   return at > INT32_MAX - size ? INT32_MAX : at + size;
 }
 
-// Draws or erases a box.
-int32_t change_box(thimble_particles_t* world, Vec2i from, Vec2i size,
-                   void (ParticleWorld::*change)(const CellBox& box)) {
+// Draws or erases a box, as `change(world, box)` does.
+template <class Change>
+int32_t change_box(thimble_particles_t* world, Vec2i from, Vec2i size, const Change& change) {
   return with<ParticleWorld>(world, [&](ParticleWorld& balls) {
     if (size.x < 0 || size.y < 0) {
       return Status::kOutOfRange;
     }
-    (balls.*change)(CellBox{from, {end_of(from.x, size.x), end_of(from.y, size.y)}});
+    change(balls, CellBox{from, {end_of(from.x, size.x), end_of(from.y, size.y)}});
     return Status::kOk;
   });
 }
@@ -114,12 +114,14 @@ extern "C" int32_t thimble_particles_set_gravity(thimble_particles_t* world, int
 
 extern "C" int32_t thimble_particles_draw_box(thimble_particles_t* world, int32_t x, int32_t y, int32_t width,
                                               int32_t height) {
-  return change_box(world, {x, y}, {width, height}, &ParticleWorld::draw_box);
+  return change_box(world, {x, y}, {width, height},
+                    [](ParticleWorld& balls, const CellBox& box) { balls.draw_box(box); });
 }
 
 extern "C" int32_t thimble_particles_erase_box(thimble_particles_t* world, int32_t x, int32_t y,
                                                int32_t width, int32_t height) {
-  return change_box(world, {x, y}, {width, height}, &ParticleWorld::erase_box);
+  return change_box(world, {x, y}, {width, height},
+                    [](ParticleWorld& balls, const CellBox& box) { balls.erase_box(box); });
 }
 
 extern "C" int32_t thimble_particles_step(thimble_particles_t* world) {

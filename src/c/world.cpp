@@ -18,11 +18,14 @@ extern "C" size_t thimble_world_bytes(const thimble_tree_t* tree) {
 extern "C" int32_t thimble_world_make(thimble_world_t* world, const thimble_tree_t* tree, void* bytes,
                                       size_t size_bytes) {
   const CompactTree* const from = held<CompactTree>(tree);
-  return from == nullptr
-             ? number(Status::kBadArgument)
-             : make_held<EditedWorld>(world, bytes, size_bytes, [=](Bytes room, EditedWorld* made) {
-                 return EditedWorld::make(*from, EditedWorld::room_in(*from, room.size), room, made);
-               });
+  Bytes room;
+  if (from == nullptr || !stands(world) || !take_bytes(bytes, size_bytes, &room)) {
+    return number(Status::kBadArgument);
+  }
+  EditedWorld made;
+  const EditRoom most = EditedWorld::room_in(*from, size_bytes);
+  const Status status = EditedWorld::make(*from, most, room, &made);
+  return hold(status, made, world);
 }
 
 extern "C" int32_t thimble_world_tree(const thimble_world_t* world, thimble_tree_t* tree) {
