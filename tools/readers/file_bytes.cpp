@@ -1,5 +1,6 @@
 #include "readers/file_bytes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace thimble::tools {
@@ -48,6 +49,18 @@ void ByteReader::expect(std::string_view magic, const char* what) {
 ByteReader ByteReader::sub(std::uint64_t count, std::string_view place) {
   const std::uint64_t first_offset = offset();
   return ByteReader(take(count), place, first_offset);
+}
+
+std::string load_named(const std::string& path, std::string& name, std::uint64_t limit_bytes,
+                       SharedBytes& file) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  const std::string folder = path.substr(0, path.rfind('/') + 1);
+  std::string fault = load_beside(name.starts_with('/') ? name : folder + name, limit_bytes, file);
+  if (const std::size_t last = name.rfind('/') + 1; !fault.empty() && last != 0) {
+    name.erase(0, last);
+    fault = load_beside(folder + name, limit_bytes, file).empty() ? "" : fault;
+  }
+  return fault;
 }
 
 }  // namespace thimble::tools

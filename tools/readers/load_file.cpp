@@ -410,18 +410,6 @@ std::string load_beside(const std::string& path, std::uint64_t limit_bytes, Shar
   }
 }
 
-std::string load_named(const std::string& path, std::string& name, std::uint64_t limit_bytes,
-                       SharedBytes& file) {
-  std::replace(name.begin(), name.end(), '\\', '/');
-  const std::string folder = path.substr(0, path.rfind('/') + 1);
-  std::string fault = load_beside(name.starts_with('/') ? name : folder + name, limit_bytes, file);
-  if (const std::size_t last = name.rfind('/') + 1; !fault.empty() && last != 0) {
-    name.erase(0, last);
-    fault = load_beside(folder + name, limit_bytes, file).empty() ? "" : fault;
-  }
-  return fault;
-}
-
 SharedBytes load_file(const std::string& path, std::uint64_t limit_bytes, const FirstLook& look) {
   limit_bytes = std::clamp<std::uint64_t>(limit_bytes, 1, SIZE_MAX - 1);
   const Descriptor file(path);
