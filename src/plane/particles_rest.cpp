@@ -56,29 +56,26 @@ bool ParticleWorld::is_held(uint32_t id) const {
   return id < id_limit_ && balls_[id].diameter != 0 && held(balls_[id]);
 }
 
-// What ball `id` would meet one cell along gravity on `axis`; false at a side of the box.
-bool ParticleWorld::contacts_along(uint32_t id, int axis, Contacts* contacts) const {
-  const DiscStamp disc = small_disc(balls_[id].diameter);
-  const Vec2i corner = corner_of(balls_[id]);
-  const Vec2i place = along_gravity(corner, config_.gravity_q16, axis);
-  if (!field_.holds(disc, place)) {
-    return false;
-  }
-  uint32_t rows[kMaxSmallDisc];
-  if (field_.overlap_inside(disc, place, corner, rows)) {
-    contacts_at(id, disc, place, rows, rows_set_of(rows, disc.diameter), 1, contacts);
-  }
-  return true;
-}
-
 // Whether ball `id` is held by something that lies still itself: so a heap falls asleep from the ground up.
 bool ParticleWorld::lies_still(uint32_t id) const {
+  const Ball& ball = balls_[id];
+  const DiscStamp disc = small_disc(ball.diameter);
+  const Vec2i corner = corner_of(ball);
   for (int axis = 0; axis < 2; ++axis) {
-    Contacts contacts;
     if (!pulls_most(axis)) {
       continue;
     }
-    if (!contacts_along(id, axis, &contacts) || contacts.wall) {
+    const Vec2i place = along_gravity(corner, config_.gravity_q16, axis);
+    if (!field_.holds(disc, place)) {
+      return true;
+    }
+    Contacts contacts;
+    uint32_t rows[kMaxSmallDisc];
+    if (!field_.overlap_inside(disc, place, corner, rows)) {
+      continue;
+    }
+    contacts_at(id, disc, place, rows, rows_set_of(rows, disc.diameter), 1, &contacts);
+    if (contacts.wall) {
       return true;
     }
     for (int32_t i = 0; i < contacts.count; ++i) {
@@ -93,10 +90,18 @@ bool ParticleWorld::lies_still(uint32_t id) const {
 
 // Marks the balls that hold sleeper `id`.
 void ParticleWorld::hold(uint32_t id) {
+  const Ball& ball = balls_[id];
+  const DiscStamp disc = small_disc(ball.diameter);
+  const Vec2i corner = corner_of(ball);
   for (int axis = 0; axis < 2; ++axis) {
-    Contacts contacts;
-    if (config_.gravity_q16[axis] == 0 || !contacts_along(id, axis, &contacts)) {
+    const Vec2i place = along_gravity(corner, config_.gravity_q16, axis);
+    if (config_.gravity_q16[axis] == 0 || !field_.holds(disc, place)) {
       continue;
+    }
+    Contacts contacts;
+    uint32_t rows[kMaxSmallDisc];
+    if (field_.overlap_inside(disc, place, corner, rows)) {
+      contacts_at(id, disc, place, rows, rows_set_of(rows, disc.diameter), 1, &contacts);
     }
     for (int32_t i = 0; i < contacts.count; ++i) {
       balls_[contacts.ids[i]].flags |= kSupports;

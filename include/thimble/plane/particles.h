@@ -336,7 +336,6 @@ class ParticleWorld {
   void wake(uint32_t id);
   static bool has_settled(Ball& ball);
   void rest(uint32_t id);
-  bool contacts_along(uint32_t id, int axis, Contacts* contacts) const;
   bool lies_still(uint32_t id) const;
   bool pulls_most(int axis) const;
   bool held(const Ball& ball) const;
